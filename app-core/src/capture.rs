@@ -1,0 +1,199 @@
+//! What is learned from the real toy and its real shadow, once, and kept while the camera stays.
+
+use glam::UVec2;
+use wgpu::{BufferUsages, TextureFormat};
+
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::Globals;
+use crate::gpu::texture::{Texture, TextureShape};
+use crate::light_points::ambient_directions;
+use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
+use crate::passes::composite::{N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::evidence::EVIDENCE_FORMAT;
+use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
+use crate::passes::fit::{Fit, FitInputs, FitShared, Subject};
+use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
+use crate::passes::occlusion::{Caster, OcclusionTargets};
+use crate::passes::residual::ResidualInputs;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::pipeline::Passes;
+use crate::plan::Plan;
+
+/// Format of the ambient map.
+pub(crate) const AMBIENT_FORMAT: TextureFormat = TextureFormat::R16Float;
+
+/// Visibility of the lights and of the ambient light, for one pose.
+pub(crate) struct Visibilities {
+    pub(crate) lights: Texture,
+    pub(crate) ambient: Texture,
+}
+
+/// Everything of the region's size, and what was learned.
+pub(crate) struct Capture {
+    pub(crate) plan: Plan,
+    pub(crate) globals: wgpu::Buffer,
+    pub(crate) solution: wgpu::Buffer,
+    pub(crate) grid: wgpu::Buffer,
+    pub(crate) cells: wgpu::Buffer,
+    pub(crate) physical: Visibilities,
+    pub(crate) shown: Visibilities,
+    pub(crate) object_base: Texture,
+    pub(crate) object_normal: Texture,
+    pub(crate) object_depth: Texture,
+    pub(crate) evidence: Texture,
+    pub(crate) appearance: Texture,
+    pub(crate) samples: Texture,
+    pub(crate) samples_depth: Texture,
+    pub(crate) picture: Texture,
+    light_points: Vec<Vec<glam::Vec4>>,
+    light_targets: Vec<OcclusionTargets>,
+    ambient_targets: OcclusionTargets,
+}
+
+impl Capture {
+    /// Allocates what `plan` asks for. `light_points` has the points of each of its lights.
+    pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<glam::Vec4>>) -> Self {
+        let region_px = plan.region.size_px;
+        let target = |label, format| texture(gpu, label, region_px, (format, 1));
+        let n_cells = n_pyramid_cells(plan.grid.size);
+        Self {
+            globals: gpu.uniform("globals", globals),
+            solution: gpu.buffer(
+                "fit",
+                bytemuck::bytes_of(&Fit::start(plan.lights.len())),
+                BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+            ),
+            grid: gpu.uniform("grid", &plan.grid),
+            cells: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("residual cells"),
+                size: CELL_BYTES * n_cells,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            physical: visibilities(gpu, &plan),
+            shown: visibilities(gpu, &plan),
+            object_base: target("object base", BASE_FORMAT),
+            object_normal: target("object normal", NORMAL_FORMAT),
+            object_depth: target("object depth", TextureFormat::Depth32Float),
+            evidence: target("evidence", EVIDENCE_FORMAT),
+            appearance: target("appearance", APPEARANCE_FORMAT),
+            samples: texture(gpu, "composite samples", region_px, (PICTURE_FORMAT, N_SAMPLES)),
+            samples_depth: texture(gpu, "composite depth", region_px, (TextureFormat::Depth32Float, N_SAMPLES)),
+            picture: target("composite", PICTURE_FORMAT),
+            light_targets: plan
+                .lights
+                .iter()
+                .map(|light| OcclusionTargets::new(gpu, region_px, light.n_points))
+                .collect(),
+            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, plan.n_ambient_directions),
+            light_points,
+            plan,
+        }
+    }
+
+    /// Encodes what is learned from one frame: geometry of the physical pose, fits, residual.
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+    ) {
+        let outputs = ObjectOutputs {
+            base: &self.object_base.view,
+            normal: &self.object_normal.view,
+            depth: &self.object_depth.view,
+        };
+        passes.object.encode(gpu, encoder, &self.globals, toy, &outputs);
+        passes.evidence.encode(gpu, encoder, &self.globals, &self.object_depth.view, &self.evidence.view);
+        self.encode_visibilities(gpu, encoder, passes, (toy, &toy.physical.positions), &self.physical);
+        let shared = FitShared { plan: &self.plan, globals: &self.globals, solution: &self.solution };
+        let inputs = FitInputs {
+            frame: pictures.frame,
+            plate: pictures.plate,
+            evidence: &self.evidence.view,
+            visibility: &self.physical.lights.view,
+            ambient: &self.physical.ambient.view,
+            object_base: &self.object_base.view,
+            object_normal: &self.object_normal.view,
+        };
+        passes.fit.encode(gpu, encoder, &shared, &inputs, Subject::Receiver);
+        passes.fit.encode(gpu, encoder, &shared, &inputs, Subject::Toy);
+        let inputs = ResidualInputs {
+            globals: &self.globals,
+            solution: &self.solution,
+            grid: &self.grid,
+            frame: pictures.frame,
+            plate: pictures.plate,
+            evidence: &self.evidence.view,
+            visibility: &self.physical.lights.view,
+            ambient: &self.physical.ambient.view,
+        };
+        passes.residual.encode(gpu, encoder, &inputs, self.plan.grid.size, &self.cells);
+        passes.fill.encode(gpu, encoder, &self.grid, &self.cells);
+    }
+
+    /// Encodes the toy's own colours, which follow each new camera frame.
+    pub(crate) fn encode_appearance(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        frame: &wgpu::TextureView,
+    ) {
+        let inputs = AppearanceInputs {
+            frame,
+            evidence: &self.evidence.view,
+            object_depth: &self.object_depth.view,
+        };
+        passes.appearance.encode(gpu, encoder, &self.globals, &inputs, &self.appearance.view);
+    }
+
+    /// Encodes visibility and ambient visibility of the toy at `positions`.
+    pub(crate) fn encode_visibilities(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        (toy, positions): (&ToyMesh, &wgpu::Buffer),
+        outputs: &Visibilities,
+    ) {
+        for (index, points) in self.light_points.iter().enumerate() {
+            let (Some(targets), Some(pass)) = (self.light_targets.get(index), passes.lights.get(index)) else {
+                continue;
+            };
+            let caster = Caster { toy, positions, points };
+            pass.occlusion.encode(gpu, encoder, &self.globals, &caster, targets);
+            pass.visibility.encode(gpu, encoder, targets, &outputs.lights.view);
+        }
+        let directions = ambient_directions(self.plan.n_ambient_directions);
+        let caster = Caster { toy, positions, points: &directions };
+        passes.ambient.occlusion.encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
+        passes.ambient.visibility.encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
+    }
+}
+
+/// The camera frame and the plate, of the image's size.
+pub(crate) struct Pictures<'a> {
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+}
+
+fn texture(
+    gpu: &Gpu,
+    label: &str,
+    size_px: UVec2,
+    (format, n_samples): (TextureFormat, u32),
+) -> Texture {
+    Texture::target(gpu, label, TextureShape { size_px: size_px.to_array(), format, n_samples })
+}
+
+fn visibilities(gpu: &Gpu, plan: &Plan) -> Visibilities {
+    Visibilities {
+        lights: texture(gpu, "visibility", plan.region.size_px, (plan.visibility_format, 1)),
+        ambient: texture(gpu, "ambient", plan.ambient_px, (AMBIENT_FORMAT, 1)),
+    }
+}
+

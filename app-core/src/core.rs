@@ -1,0 +1,183 @@
+//! [`Core`]: the one type a shell or a harness holds.
+
+use std::sync::Arc;
+
+use bytemuck::Zeroable;
+use thiserror::Error;
+
+use crate::frame::{FrameInput, FrameReport};
+use crate::gpu::encoder::{Encoder, PassTime, Stamps};
+use crate::gpu::layout::Fit;
+use crate::gpu::{AdapterChoice, Gpu, GpuError};
+use crate::preset::Preset;
+use crate::scene::{Image, Scene};
+use crate::stage::Stage;
+use crate::toy::ToyError;
+use crate::window::Window;
+
+/// Why the core cannot go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CoreError {
+    /// There is no device, or it was lost.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The surface cannot be drawn on.
+    #[error("drawing on the surface: {reason}")]
+    Surface {
+        /// What the driver said.
+        reason: String,
+    },
+    /// The toy cannot be posed.
+    #[error(transparent)]
+    Toy(#[from] ToyError),
+    /// A frame came before there was a scene.
+    #[error("a frame came before its scene")]
+    NoScene,
+    /// A picture is not of the scene's size.
+    #[error("the {what} has {actual_px:?} pixels, the scene {expected_px:?}")]
+    SizeDiffers {
+        /// Which picture.
+        what: &'static str,
+        /// The scene's size.
+        expected_px: [u32; 2],
+        /// The picture's size.
+        actual_px: [u32; 2],
+    },
+    /// A scene that no frame could be made from.
+    #[error("the scene has no receiver")]
+    NoReceiver,
+}
+
+/// The pipeline on a device: scene in, frames in, pictures out.
+pub struct Core {
+    gpu: Gpu,
+    window: Option<Window>,
+    stage: Option<Stage>,
+    stamps: Option<Stamps>,
+}
+
+impl Core {
+    /// A core that draws into textures alone, for replay and tests.
+    ///
+    /// # Errors
+    /// When there is no adapter of that choice, or it falls short of a phone's limits.
+    pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
+        let gpu = Gpu::open(instance, adapter, None).await?;
+        Ok(Self { gpu, window: None, stage: None, stamps: None })
+    }
+
+    /// A core that presents on `surface`, of `size_px` physical pixels.
+    ///
+    /// # Errors
+    /// When no adapter can draw on the surface, or it falls short of a phone's limits.
+    pub async fn on_surface(
+        instance: &wgpu::Instance,
+        surface: wgpu::Surface<'static>,
+        size_px: [u32; 2],
+    ) -> Result<Self, CoreError> {
+        let gpu = Gpu::open(instance, &AdapterChoice::Fastest, Some(&surface)).await?;
+        let window = Window::new(&gpu, surface, size_px)?;
+        Ok(Self { gpu, window: Some(window), stage: None, stamps: None })
+    }
+
+    /// Drops the surface; device, pipelines and what was learned stay.
+    pub fn suspend(&mut self) {
+        self.window = None;
+    }
+
+    /// Continues on a new surface.
+    ///
+    /// # Errors
+    /// When the device cannot draw on it.
+    pub fn resume(&mut self, surface: wgpu::Surface<'static>, size_px: [u32; 2]) -> Result<(), CoreError> {
+        self.window = Some(Window::new(&self.gpu, surface, size_px)?);
+        Ok(())
+    }
+
+    /// Follows a new size of the surface, in physical pixels.
+    pub fn resize(&mut self, size_px: [u32; 2]) {
+        if let Some(window) = &mut self.window {
+            window.resize(&self.gpu, size_px);
+        }
+    }
+
+    /// Shows the latest picture, or black before the first.
+    ///
+    /// # Errors
+    /// When the surface is lost for good; one that is only out of date is set up anew.
+    pub fn present(&mut self) -> Result<(), CoreError> {
+        let Some(window) = &mut self.window else { return Ok(()) };
+        window.present(&self.gpu, self.stage.as_ref().map(|stage| &stage.output.view))
+    }
+
+    /// Takes a scene; what was learned of another is forgotten.
+    ///
+    /// # Errors
+    /// When it has no receiver, or a plate is not of its size.
+    pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
+        if scene.receivers.is_empty() {
+            return Err(CoreError::NoReceiver);
+        }
+        for plate in &scene.plates {
+            check_size("plate", &scene, &plate.image)?;
+        }
+        self.stage = Some(Stage::new(&self.gpu, scene, preset)?);
+        Ok(())
+    }
+
+    /// Makes the picture of one frame.
+    ///
+    /// # Errors
+    /// When there is no scene, or the camera's picture is not of its size.
+    pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        check_size("camera frame", stage.scene(), &input.image)?;
+        let mut encoder = Encoder::new(&self.gpu);
+        let report = stage.encode(&self.gpu, &mut encoder, input)?;
+        self.stamps = encoder.submit(&self.gpu);
+        Ok(report)
+    }
+
+    /// Waits for the device and returns the latest picture, alpha 255.
+    ///
+    /// # Errors
+    /// When there is no scene, or the device is lost.
+    pub fn read_picture(&self) -> Result<Image, CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let rgba8 = self.gpu.read_texture(&stage.output.raw)?;
+        Ok(Image { width_px: stage.output.raw.width(), height_px: stage.output.raw.height(), rgba8 })
+    }
+
+    /// Waits for the device and returns the latest frame's time per pass; empty where the device cannot tell.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn take_pass_times(&mut self) -> Result<Vec<PassTime>, CoreError> {
+        Ok(self.stamps.take().map(|stamps| stamps.read(&self.gpu)).transpose()?.unwrap_or_default())
+    }
+
+    /// Waits for the device and returns what was learned from the real shadow, once anything was.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
+        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else { return Ok(None) };
+        let bytes = self.gpu.read_buffer(&capture.solution)?;
+        let mut fit = Fit::zeroed();
+        bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
+        Ok(Some(fit))
+    }
+
+    /// The device, for reports.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}
+
+fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
+    let expected_px = [scene.width_px, scene.height_px];
+    let actual_px = [image.width_px, image.height_px];
+    if expected_px == actual_px { Ok(()) } else { Err(CoreError::SizeDiffers { what, expected_px, actual_px }) }
+}

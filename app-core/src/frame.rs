@@ -1,0 +1,98 @@
+//! One frame in, one report out.
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use crate::plan::{LeftOut, Path};
+use crate::region::PixelRect;
+use crate::scene::{Image, PoseTime};
+use crate::session::SessionFrame;
+
+/// A camera frame of the real, static toy, and the pose to show.
+#[derive(Clone, Debug)]
+pub struct FrameInput {
+    /// The camera's picture, of the scene's size.
+    pub image: Arc<Image>,
+    /// Rigid transform of the camera.
+    pub world_from_camera: DMat4,
+    /// The pose the toy is to be shown in.
+    pub shown_pose: PoseTime,
+}
+
+impl From<&SessionFrame> for FrameInput {
+    fn from(frame: &SessionFrame) -> Self {
+        Self {
+            image: Arc::clone(&frame.image),
+            world_from_camera: frame.world_from_camera,
+            shown_pose: frame.shown_pose,
+        }
+    }
+}
+
+/// What was done for a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameReport {
+    /// The passes that ran, in order.
+    pub ran: Vec<(Path, &'static str)>,
+    /// What did not run, and why.
+    pub skipped: Vec<LeftOut>,
+    /// The rectangle that was worked on; none when the camera frame passed through.
+    pub region: Option<PixelRect>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// A degraded mode: the picture is the best that can be had, for a reason.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// No light is listed, and none is estimated: the camera frame passes through.
+    NoLight,
+    /// No plate was taken from this frame's camera: the camera frame passes through.
+    NoPlate,
+    /// More receivers than this version moves shadows on.
+    ReceiversLeftOut {
+        /// Those whose shadow stays as photographed.
+        names: Vec<String>,
+    },
+    /// More lights than are moved.
+    LightsLeftOut {
+        /// How many shadows stay as photographed.
+        n_lights: usize,
+    },
+    /// A light does not stand above the receiver, so it casts no shadow there.
+    LightBelowReceiver {
+        /// Its place in the scene's list.
+        light: usize,
+    },
+    /// The toy and its shadow are out of the picture.
+    OutOfPicture,
+    /// The camera's centre lies in the receiver's plane.
+    CameraInPlane,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoLight => f.write_str("no light is listed: the camera frame passes through"),
+            Self::NoPlate => {
+                f.write_str("no plate was taken from this camera: the camera frame passes through")
+            }
+            Self::ReceiversLeftOut { names } => {
+                write!(f, "the shadow on {} stays as photographed: one receiver is handled", names.join(", "))
+            }
+            Self::LightsLeftOut { n_lights } => {
+                write!(f, "the shadows of {n_lights} lights stay as photographed: four are handled")
+            }
+            Self::LightBelowReceiver { light } => {
+                write!(f, "light {light} is not above the receiver and is left out")
+            }
+            Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
+            Self::CameraInPlane => {
+                f.write_str("the camera is in the receiver's plane: the camera frame passes through")
+            }
+        }
+    }
+}

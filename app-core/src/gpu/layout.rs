@@ -1,0 +1,89 @@
+//! Mirrors of the WGSL structs, and nothing else. A test compares each with the shaders through naga.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Most lights that a scene may list.
+pub const MAX_LIGHTS: usize = 4;
+/// Most unknowns of a fit: two, and one a light.
+pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
+/// Most light points of one occlusion pass: 16 a colour target, four targets.
+pub const MAX_LIGHT_POINTS: usize = 64;
+
+/// A 3 x 3 matrix in uniform layout: columns on 16 bytes.
+pub type Mat3Columns = [[f32; 4]; 3];
+
+/// `Globals` in `common/globals.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Globals {
+    pub clip_from_plane: [[f32; 4]; 4],
+    pub plane_from_region_px: Mat3Columns,
+    pub clip_from_receiver: Mat3Columns,
+    pub lights: [[f32; 4]; MAX_LIGHTS],
+    pub border_px: [f32; 4],
+    pub camera_in_plane: [f32; 3],
+    pub n_lights: u32,
+    pub reference_in_plane: [f32; 2],
+    pub half_extent_m: [f32; 2],
+    pub region_size_px: [f32; 2],
+    pub region_origin_px: [f32; 2],
+}
+
+/// `Fit` in `common/fit.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Fit {
+    pub gain: [f32; 4],
+    pub bounce: [f32; 4],
+    pub share: [[f32; 4]; MAX_LIGHTS],
+    pub toy: [[f32; 4]; N_COLUMNS],
+    pub contrast: [f32; 4],
+}
+
+/// `FitStep` in `common/fit_step.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct FitStep {
+    pub is_reweighted: u32,
+    pub n_rows: u32,
+    pub n_columns: u32,
+    pub subject: u32,
+}
+
+/// `Grid` in `common/grid.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Grid {
+    pub size: [u32; 2],
+    pub cell_px: u32,
+    pub _pad: u32,
+}
+
+/// `LightPoints` in `occlusion.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct LightPoints {
+    pub points: [[f32; 4]; MAX_LIGHT_POINTS],
+}
+
+/// `Material` in `common/material.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Material {
+    pub base_color_linear: [f32; 4],
+}
+
+/// `Placement` in `present.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Placement {
+    pub origin_px: [u32; 2],
+    pub size_px: [u32; 2],
+}

@@ -1,0 +1,94 @@
+//! The registry of shaders: each pass's WGSL, joined from its shared parts.
+
+/// A pass's shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// The pass's one name.
+    pub name: &'static str,
+    parts: &'static [&'static str],
+    /// Its entry points.
+    pub entry_points: &'static [&'static str],
+}
+
+impl Shader {
+    /// The joined WGSL.
+    #[must_use]
+    pub fn source(&self) -> String {
+        self.parts.join("\n")
+    }
+}
+
+macro_rules! wgsl {
+    ($path:literal) => {
+        include_str!(concat!("../../../shaders/", $path, ".wgsl"))
+    };
+}
+
+const GLOBALS: &str = wgsl!("common/globals");
+const DEPTH: &str = wgsl!("common/depth");
+const FIT: &str = wgsl!("common/fit");
+const FIT_STEP: &str = wgsl!("common/fit_step");
+const FULLSCREEN: &str = wgsl!("common/fullscreen");
+const GRID: &str = wgsl!("common/grid");
+const MATERIAL: &str = wgsl!("common/material");
+const MODEL: &str = wgsl!("common/model");
+const PIXEL: &str = wgsl!("common/pixel");
+const TOY: &str = wgsl!("common/toy");
+
+pub(crate) const OBJECT: Shader = Shader {
+    name: "object",
+    parts: &[GLOBALS, MATERIAL, wgsl!("object")],
+    entry_points: &["vs_project", "fs_describe"],
+};
+pub(crate) const EVIDENCE: Shader = Shader {
+    name: "evidence",
+    parts: &[GLOBALS, DEPTH, FULLSCREEN, wgsl!("evidence")],
+    entry_points: &["vs_fullscreen", "fs_mark"],
+};
+pub(crate) const APPEARANCE: Shader = Shader {
+    name: "appearance",
+    parts: &[GLOBALS, DEPTH, FULLSCREEN, wgsl!("appearance")],
+    entry_points: &["vs_fullscreen", "fs_clean"],
+};
+pub(crate) const OCCLUSION: Shader = Shader {
+    name: "occlusion",
+    parts: &[GLOBALS, wgsl!("occlusion")],
+    entry_points: &["vs_flatten", "fs_cover"],
+};
+pub(crate) const VISIBILITY: Shader = Shader {
+    name: "visibility",
+    parts: &[FULLSCREEN, wgsl!("visibility")],
+    entry_points: &["vs_fullscreen", "fs_average"],
+};
+pub(crate) const FIT_SUMS: Shader = Shader {
+    name: "fit",
+    parts: &[GLOBALS, FIT, FIT_STEP, MODEL, TOY, PIXEL, wgsl!("fit")],
+    entry_points: &["cs_accumulate"],
+};
+pub(crate) const FIT_SOLVE: Shader = Shader {
+    name: "fit_solve",
+    parts: &[GLOBALS, FIT, FIT_STEP, wgsl!("fit_solve")],
+    entry_points: &["cs_solve"],
+};
+pub(crate) const RESIDUAL: Shader = Shader {
+    name: "residual",
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, wgsl!("residual")],
+    entry_points: &["cs_pool"],
+};
+pub(crate) const FILL: Shader =
+    Shader { name: "fill", parts: &[GRID, wgsl!("fill")], entry_points: &["cs_pull_push"] };
+pub(crate) const COMPOSITE: Shader = Shader {
+    name: "composite",
+    parts: &[GLOBALS, FIT, MODEL, TOY, GRID, MATERIAL, DEPTH, FULLSCREEN, wgsl!("composite")],
+    entry_points: &["vs_fullscreen", "fs_receiver", "vs_toy", "fs_toy"],
+};
+pub(crate) const PRESENT: Shader = Shader {
+    name: "present",
+    parts: &[FULLSCREEN, wgsl!("present")],
+    entry_points: &["vs_fullscreen", "fs_place"],
+};
+
+/// Every shader there is.
+pub const ALL: &[Shader] = &[
+    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE, PRESENT,
+];

@@ -1,0 +1,81 @@
+//! Textures of our own: created from plans, filled from pictures.
+
+use super::Gpu;
+
+/// A texture with its whole view.
+#[derive(Debug)]
+pub(crate) struct Texture {
+    pub(crate) raw: wgpu::Texture,
+    pub(crate) view: wgpu::TextureView,
+}
+
+/// What a texture is to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TextureShape {
+    pub(crate) size_px: [u32; 2],
+    pub(crate) format: wgpu::TextureFormat,
+    pub(crate) n_samples: u32,
+}
+
+impl Texture {
+    /// A texture that passes draw to and read from; a multisampled one is drawn to and resolved only.
+    pub(crate) fn target(gpu: &Gpu, label: &str, shape: TextureShape) -> Self {
+        let usage = if shape.n_samples > 1 {
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TRANSIENT_ATTACHMENT
+        } else {
+            wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+        };
+        Self::create(gpu, label, shape, usage)
+    }
+
+    /// A picture to read from, sRGB-encoded.
+    pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: [u32; 2]) -> Self {
+        let shape = TextureShape { size_px, format: wgpu::TextureFormat::Rgba8UnormSrgb, n_samples: 1 };
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        Self::create(gpu, label, shape, usage)
+    }
+
+    fn create(gpu: &Gpu, label: &str, shape: TextureShape, usage: wgpu::TextureUsages) -> Self {
+        // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
+        let view_formats: &[_] = match (shape.format, shape.n_samples) {
+            (wgpu::TextureFormat::Rgba8UnormSrgb, 1) => &[wgpu::TextureFormat::Rgba8Unorm],
+            _ => &[],
+        };
+        let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: shape.size_px[0], height: shape.size_px[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: shape.n_samples,
+            dimension: wgpu::TextureDimension::D2,
+            format: shape.format,
+            usage,
+            view_formats,
+        });
+        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { raw, view }
+    }
+
+    /// The codes of an sRGB texture, not decoded.
+    pub(crate) fn codes(&self) -> wgpu::TextureView {
+        self.raw.create_view(&wgpu::TextureViewDescriptor {
+            format: Some(wgpu::TextureFormat::Rgba8Unorm),
+            ..Default::default()
+        })
+    }
+
+    /// Fills the whole texture with rows of four bytes a pixel.
+    pub(crate) fn write(&self, gpu: &Gpu, rgba8: &[u8]) {
+        gpu.queue.write_texture(
+            self.raw.as_image_copy(),
+            rgba8,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * self.raw.width()),
+                rows_per_image: None,
+            },
+            self.raw.size(),
+        );
+    }
+}

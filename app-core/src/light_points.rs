@@ -1,0 +1,65 @@
+//! Points over a light, and directions over the hemisphere, from which the mesh is flattened onto the receiver.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec4};
+
+use crate::scene::Light;
+
+/// A light in a receiver's plane space, homogeneous: (position, 1) or (unit direction to the light, 0).
+#[must_use]
+pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
+    match *light {
+        Light::Sphere { position_in_world, .. } => {
+            plane_from_world.transform_point3(position_in_world).extend(1.0)
+        }
+        Light::Directional { direction_to_light_in_world, .. } => {
+            plane_from_world.transform_vector3(direction_to_light_in_world).extend(0.0)
+        }
+    }
+}
+
+/// `n_points` points over the light's disc as the toy at `target_in_plane` sees it, each standing for an equal area.
+///
+/// The disc of a sphere faces the toy; seen from anywhere near the toy it is the sphere's outline.
+/// Source: Vogel 1979 (sunflower spiral), of which every fourth point is a spiral of its own, so that each
+/// multisample position gets points from all over the light.
+#[must_use]
+pub fn light_points(
+    light: &Light,
+    plane_from_world: &DMat4,
+    target_in_plane: DVec3,
+    n_points: usize,
+) -> Vec<Vec4> {
+    let centre = light_in_plane(light, plane_from_world);
+    let (axis, radius) = match *light {
+        Light::Sphere { radius_m, .. } => (centre.truncate() - target_in_plane, radius_m),
+        Light::Directional { angular_radius_rad, .. } => (centre.truncate(), angular_radius_rad.tan()),
+    };
+    // A light inside the toy has no side that faces it; any disc will do.
+    let (across, along) = axis.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
+    vogel_disc(n_points)
+        .map(|at| {
+            let moved = centre.truncate() + radius * (at.x * across + at.y * along);
+            let point = if centre.w == 0.0 { moved.normalize() } else { moved };
+            point.extend(centre.w).as_vec4()
+        })
+        .collect()
+}
+
+/// `n_directions` directions over the hemisphere, cosine-weighted: each stands for an equal share of ambient light.
+///
+/// Source: Malley's method, points on a disc lifted to the hemisphere.
+#[must_use]
+pub fn ambient_directions(n_directions: usize) -> Vec<Vec4> {
+    vogel_disc(n_directions)
+        .map(|at| DVec4::new(at.x, (1.0 - at.length_squared()).max(0.0).sqrt(), at.y, 0.0).as_vec4())
+        .collect()
+}
+
+fn vogel_disc(n_points: usize) -> impl Iterator<Item = DVec2> {
+    let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+    (0..n_points).map(move |i| {
+        let radius = ((i as f64 + 0.5) / n_points as f64).sqrt();
+        radius * DVec2::from_angle(i as f64 * golden_angle_rad)
+    })
+}

@@ -1,0 +1,40 @@
+//! `evidence`: which pixels of the frame show the receiver alone, and which one surface of the toy.
+
+use wgpu::TextureFormat;
+
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
+use crate::gpu::shaders::EVIDENCE;
+
+/// Format of the evidence: r for the receiver, g for the toy.
+pub(crate) const EVIDENCE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
+
+pub(crate) struct Evidence {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Evidence {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self { pipeline: gpu.fullscreen_pipeline(&EVIDENCE, "fs_mark", EVIDENCE_FORMAT, &[]) }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        globals: &wgpu::Buffer,
+        object_depth: &wgpu::TextureView,
+        evidence: &wgpu::TextureView,
+    ) {
+        let layout = |group| self.pipeline.get_bind_group_layout(group);
+        let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
+        let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(object_depth))]);
+        encoder.fullscreen(
+            EVIDENCE.name,
+            &self.pipeline,
+            &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
+            evidence,
+        );
+    }
+}

@@ -1,0 +1,15 @@
+//! The passes, one a module, each under the one name that its shader, label and time stamp have.
+//!
+//! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
+
+pub(crate) mod appearance;
+pub(crate) mod composite;
+pub(crate) mod evidence;
+pub(crate) mod fill;
+pub(crate) mod fit;
+pub(crate) mod object;
+pub(crate) mod occlusion;
+pub(crate) mod present;
+pub(crate) mod residual;
+pub(crate) mod toy_mesh;
+pub(crate) mod visibility;

@@ -1,0 +1,113 @@
+//! The passes of a plan, built once, and the frame path in order.
+
+use crate::capture::{AMBIENT_FORMAT, Capture, Pictures};
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::Placement;
+use crate::passes::appearance::Appearance;
+use crate::passes::composite::{Composite, CompositeInputs, CompositeTargets};
+use crate::passes::evidence::Evidence;
+use crate::passes::fill::Fill;
+use crate::passes::fit::Fit;
+use crate::passes::object::Object;
+use crate::passes::occlusion::Occlusion;
+use crate::passes::present::{Present, PresentInputs};
+use crate::passes::residual::Residual;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::visibility::Visibility;
+use crate::plan::Plan;
+
+/// Flattening and averaging for one map.
+pub(crate) struct VisibilityPasses {
+    pub(crate) occlusion: Occlusion,
+    pub(crate) visibility: Visibility,
+}
+
+/// Every pass that a plan runs.
+pub(crate) struct Passes {
+    pub(crate) object: Object,
+    pub(crate) evidence: Evidence,
+    pub(crate) appearance: Appearance,
+    pub(crate) lights: Vec<VisibilityPasses>,
+    pub(crate) ambient: VisibilityPasses,
+    pub(crate) fit: Fit,
+    pub(crate) residual: Residual,
+    pub(crate) fill: Fill,
+    pub(crate) composite: Composite,
+}
+
+impl Passes {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let passes = |n_points, channel, format| VisibilityPasses {
+            occlusion: Occlusion::new(gpu, n_points),
+            visibility: Visibility::new(gpu, n_points, channel, format),
+        };
+        Self {
+            object: Object::new(gpu),
+            evidence: Evidence::new(gpu),
+            appearance: Appearance::new(gpu),
+            lights: plan
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(channel, light)| passes(light.n_points, channel, plan.visibility_format))
+                .collect(),
+            ambient: passes(plan.n_ambient_directions, 0, AMBIENT_FORMAT),
+            fit: Fit::new(gpu),
+            residual: Residual::new(gpu),
+            fill: Fill::new(gpu),
+            composite: Composite::new(gpu),
+        }
+    }
+
+    /// The frame path: visibility of the shown pose, then the picture of the region.
+    pub(crate) fn encode_frame(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        capture: &Capture,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+    ) {
+        capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let inputs = CompositeInputs {
+            globals: &capture.globals,
+            solution: &capture.solution,
+            grid: &capture.grid,
+            cells: &capture.cells,
+            frame: pictures.frame,
+            plate: pictures.plate,
+            evidence: &capture.evidence.view,
+            physical_visibility: &capture.physical.lights.view,
+            physical_ambient: &capture.physical.ambient.view,
+            visibility: &capture.shown.lights.view,
+            ambient: &capture.shown.ambient.view,
+            appearance: &capture.appearance.view,
+            object_depth: &capture.object_depth.view,
+        };
+        let targets = CompositeTargets {
+            samples: &capture.samples.view,
+            depth: &capture.samples_depth.view,
+            picture: &capture.picture.view,
+        };
+        self.composite.encode(gpu, encoder, toy, &inputs, &targets);
+    }
+}
+
+/// Lays the region over the camera frame, or passes the frame through where there is no region.
+pub(crate) fn encode_present(
+    gpu: &Gpu,
+    encoder: &mut Encoder,
+    present: &Present,
+    (frame_codes, capture): (&wgpu::TextureView, Option<&Capture>),
+    output: &wgpu::TextureView,
+) {
+    let region_codes = capture.map(|capture| capture.picture.codes());
+    let placement = capture.map_or(Placement { origin_px: [0; 2], size_px: [0; 2] }, |capture| Placement {
+        origin_px: capture.plan.region.origin_px.to_array(),
+        size_px: capture.plan.region.size_px.to_array(),
+    });
+    let inputs =
+        PresentInputs { frame_codes, region_codes: region_codes.as_ref().unwrap_or(frame_codes), placement };
+    present.encode(gpu, encoder, &inputs, output);
+}

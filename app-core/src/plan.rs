@@ -1,0 +1,168 @@
+//! The plan of a scene: which passes run on which path, with which sizes and formats. Pure data, made without a device.
+//!
+//! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
+//! A plan holds what the scene needs and names what it leaves out, with the reason.
+
+use glam::UVec2;
+use wgpu::TextureFormat;
+
+use crate::gpu::layout::{Grid, MAX_LIGHTS};
+use crate::preset::Settings;
+use crate::region::PixelRect;
+
+/// Most cells of the residual's grid along a side.
+const MAX_GRID_CELLS: u32 = 64;
+/// A penumbra narrower than this is drawn as a hard edge.
+const HARD_PENUMBRA_PX: f64 = 1.0;
+/// Light points of a hard edge: one for each multisample position, so that it stays antialiased.
+const N_HARD_POINTS: usize = 4;
+/// Steps of the reweighted least squares; each more moved no share by 1e-3 on the sessions they were chosen on.
+const N_FIT_STEPS: u32 = 5;
+/// Workgroups of one sum, enough to fill a phone's cores.
+const MAX_FIT_ROWS: u32 = 64;
+/// Invocations of one workgroup of the fit.
+const FIT_WORKGROUP: u32 = 256;
+
+/// Which of the two paths a pass belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// Once, when the place, the physical pose or the camera is new.
+    Capture,
+    /// For every picture.
+    Frame,
+}
+
+impl Path {
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Capture => "capture",
+            Self::Frame => "frame",
+        }
+    }
+}
+
+/// Facts of a scene that decide its plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFacts {
+    /// What toy and shadows can reach.
+    pub region: PixelRect,
+    /// Width of each listed light's widest penumbra on the screen, in pixels.
+    pub penumbra_px: Vec<f64>,
+}
+
+/// How one light's visibility is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightPlan {
+    /// Points drawn: 4 for a hard edge, else a multiple of 16.
+    pub n_points: usize,
+}
+
+/// What is allocated and run for a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The work region.
+    pub region: PixelRect,
+    /// One entry a light, at most four.
+    pub lights: Vec<LightPlan>,
+    /// Format of the visibility maps, one channel a light.
+    pub visibility_format: TextureFormat,
+    /// Directions of ambient light.
+    pub n_ambient_directions: usize,
+    /// Size of the ambient maps.
+    pub ambient_px: UVec2,
+    /// Grid of the residual.
+    pub grid: Grid,
+    /// Steps of the fit.
+    pub n_fit_steps: u32,
+    /// Workgroups of one sum of the fit.
+    pub n_fit_rows: u32,
+    /// The passes in the order they run.
+    pub passes: Vec<PlannedPass>,
+    /// What the scene does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A pass on its path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannedPass {
+    /// The pass's name.
+    pub name: &'static str,
+    /// Its path.
+    pub path: Path,
+}
+
+/// Work that a scene does not need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// What is left out.
+    pub what: &'static str,
+    /// Why.
+    pub why: &'static str,
+}
+
+const PASSES: &[PlannedPass] = &[
+    PlannedPass { name: "object", path: Path::Capture },
+    PlannedPass { name: "evidence", path: Path::Capture },
+    PlannedPass { name: "appearance", path: Path::Capture },
+    PlannedPass { name: "occlusion", path: Path::Capture },
+    PlannedPass { name: "visibility", path: Path::Capture },
+    PlannedPass { name: "fit", path: Path::Capture },
+    PlannedPass { name: "fit_solve", path: Path::Capture },
+    PlannedPass { name: "residual", path: Path::Capture },
+    PlannedPass { name: "fill", path: Path::Capture },
+    PlannedPass { name: "occlusion", path: Path::Frame },
+    PlannedPass { name: "visibility", path: Path::Frame },
+    PlannedPass { name: "composite", path: Path::Frame },
+    PlannedPass { name: "present", path: Path::Frame },
+];
+
+impl Plan {
+    /// Plans a scene. Lights beyond the fourth are left out.
+    #[must_use]
+    pub fn new(facts: &SceneFacts, settings: &Settings) -> Self {
+        let size_px = facts.region.size_px;
+        let lights: Vec<LightPlan> = facts
+            .penumbra_px
+            .iter()
+            .take(MAX_LIGHTS)
+            .map(|px| LightPlan {
+                n_points: if *px < HARD_PENUMBRA_PX { N_HARD_POINTS } else { settings.n_light_points },
+            })
+            .collect();
+        let cell_px = size_px.max_element().div_ceil(MAX_GRID_CELLS).max(1);
+        let n_pixels = size_px.x * size_px.y;
+        Self {
+            region: facts.region,
+            visibility_format: match lights.len() {
+                0 | 1 => TextureFormat::R16Float,
+                2 => TextureFormat::Rg16Float,
+                _ => TextureFormat::Rgba16Float,
+            },
+            left_out: left_out(&lights),
+            lights,
+            n_ambient_directions: settings.n_ambient_directions,
+            ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
+            grid: Grid {
+                size: [size_px.x.div_ceil(cell_px), size_px.y.div_ceil(cell_px)],
+                cell_px,
+                _pad: 0,
+            },
+            n_fit_steps: N_FIT_STEPS,
+            n_fit_rows: n_pixels.div_ceil(FIT_WORKGROUP).min(MAX_FIT_ROWS),
+            passes: PASSES.to_vec(),
+        }
+    }
+}
+
+fn left_out(lights: &[LightPlan]) -> Vec<LeftOut> {
+    let mut left_out = Vec::new();
+    if lights.len() < 2 {
+        left_out.push(LeftOut { what: "overlap of shadows", why: "one light is listed" });
+    }
+    if lights.iter().all(|light| light.n_points == N_HARD_POINTS) {
+        left_out.push(LeftOut { what: "penumbra", why: "every light's penumbra is narrower than a pixel" });
+    }
+    left_out
+}

@@ -1,0 +1,197 @@
+//! Reads `shadow-capture` folders, version 1: `capture.json`, a glTF binary and pictures.
+
+mod convert;
+mod field;
+mod place;
+mod record;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DMat4;
+use serde::Deserialize;
+
+use self::field::{INDEX_FILE, WHOLE_FILE, check_named, frame_field, in_index};
+use self::record::{CaptureRecord, Header};
+use super::error::{PictureError, SessionError, SessionErrorKind};
+use super::files::Files;
+use super::picture::{PictureSize, decode_mask, decode_photo};
+use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
+use crate::scene::{Image, PoseTime, Scene};
+
+const FORMAT: &str = "shadow-capture";
+const VERSION: u64 = 1;
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+
+/// A `shadow-capture` folder.
+///
+/// Opening checks all of `capture.json` and reads the toy and the plates. The frames' pictures are
+/// read when they are asked for.
+pub struct Capture {
+    store: PictureStore,
+    scene: Scene,
+    warnings: Vec<SessionWarning>,
+    frames: Vec<Frame>,
+    /// The last frame's picture: a still camera repeats one picture over and over.
+    last_picture: Mutex<Option<(String, Arc<Image>)>>,
+}
+
+/// A frame whose picture is not read yet.
+struct Frame {
+    time_secs: f64,
+    picture: String,
+    world_from_camera: DMat4,
+    shown_pose: PoseTime,
+    warnings: Vec<SessionWarning>,
+    truth: Option<TruthFiles>,
+}
+
+struct TruthFiles {
+    picture: String,
+    mask: String,
+}
+
+impl Capture {
+    /// Opens the capture that `files` reads from.
+    ///
+    /// # Errors
+    /// When `capture.json`, the toy, a plate or the probe's picture is missing, damaged or breaks a
+    /// rule of the format. The error names the file, the field and the reason.
+    pub fn open(files: impl Files + 'static) -> Result<Self, SessionError> {
+        let bytes = files
+            .read(INDEX_FILE, MAX_INDEX_BYTES)
+            .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
+        let record = parse_index(&bytes)?;
+        convert::capture_from_record(Box::new(files), record)
+    }
+
+    fn frame_at(&self, index: usize) -> Result<&Frame, SessionError> {
+        let n_frames = self.frames.len();
+        self.frames.get(index).ok_or_else(|| {
+            in_index(
+                &frame_field(index, ""),
+                SessionErrorKind::NoSuchFrame { n_frames },
+            )
+        })
+    }
+
+    fn frame_picture(&self, path: &str, field: &str) -> Result<Arc<Image>, SessionError> {
+        let mut last = self.last_picture.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, image)) = last.as_ref().filter(|(last_path, _)| last_path == path) {
+            return Ok(Arc::clone(image));
+        }
+        let image = Arc::new(self.store.photo(path, field)?);
+        *last = Some((path.to_owned(), Arc::clone(&image)));
+        Ok(image)
+    }
+}
+
+impl Session for Capture {
+    fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    fn warnings(&self) -> &[SessionWarning] {
+        &self.warnings
+    }
+
+    fn n_frames(&self) -> usize {
+        self.frames.len()
+    }
+
+    fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
+        let frame = self.frame_at(index)?;
+        Ok(SessionFrame {
+            time_secs: frame.time_secs,
+            image: self.frame_picture(&frame.picture, &frame_field(index, ".image"))?,
+            world_from_camera: frame.world_from_camera,
+            shown_pose: frame.shown_pose,
+            warnings: frame.warnings.clone(),
+        })
+    }
+}
+
+impl GroundTruth for Capture {
+    fn truth(&self, index: usize) -> Result<Option<Truth>, SessionError> {
+        let Some(files) = &self.frame_at(index)?.truth else {
+            return Ok(None);
+        };
+        let image = self.store.photo(&files.picture, &frame_field(index, ".truth"))?;
+        let mask = self.store.mask(&files.mask, &frame_field(index, ".mask"))?;
+        Ok(Some(Truth { image, mask }))
+    }
+}
+
+/// Reads pictures of one size.
+struct PictureStore {
+    files: Box<dyn Files>,
+    size: PictureSize,
+}
+
+impl PictureStore {
+    fn photo(&self, path: &str, field: &str) -> Result<Image, SessionError> {
+        self.read(path, field, decode_photo)
+    }
+
+    fn mask(&self, path: &str, field: &str) -> Result<Image, SessionError> {
+        self.read(path, field, decode_mask)
+    }
+
+    fn read(
+        &self,
+        path: &str,
+        field: &str,
+        decode: fn(&[u8], PictureSize) -> Result<Image, PictureError>,
+    ) -> Result<Image, SessionError> {
+        let bytes = read_named(self.files.as_ref(), path, field, self.size.max_file_bytes())?;
+        decode(&bytes, self.size).map_err(|error| SessionError::new(path, field, error))
+    }
+}
+
+/// Reads a file that a field of `capture.json` names.
+fn read_named(files: &dyn Files, path: &str, field: &str, max_bytes: u64) -> Result<Vec<u8>, SessionError> {
+    check_named(path, field)?;
+    files
+        .read(path, max_bytes)
+        .map_err(|error| SessionError::new(path, field, error))
+}
+
+/// Looks at format and version first: another version may break every other rule.
+fn parse_index(bytes: &[u8]) -> Result<CaptureRecord, SessionError> {
+    let header: Header = match parse(bytes) {
+        Ok(header) => header,
+        // What is no JSON at all is found again by reading everything, which can name the field.
+        Err(error) if !is_about_values(&error) => {
+            return Err(parse::<CaptureRecord>(bytes).err().unwrap_or(error));
+        }
+        Err(error) => return Err(error),
+    };
+    if header.format != FORMAT {
+        let kind = SessionErrorKind::Format {
+            found: header.format,
+            supported: FORMAT,
+        };
+        return Err(in_index("format", kind));
+    }
+    if header.version != VERSION {
+        let kind = SessionErrorKind::Version {
+            found: header.version,
+            supported: VERSION,
+        };
+        return Err(in_index("version", kind));
+    }
+    parse(bytes)
+}
+
+fn is_about_values(error: &SessionError) -> bool {
+    matches!(error.kind.as_ref(), SessionErrorKind::Json(error) if error.is_data())
+}
+
+fn parse<'json, T: Deserialize<'json>>(bytes: &'json [u8]) -> Result<T, SessionError> {
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let record = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let field = error.path().to_string();
+        in_index(if field == "." { WHOLE_FILE } else { &field }, error.into_inner())
+    })?;
+    json.end().map_err(|error| in_index(WHOLE_FILE, error))?;
+    Ok(record)
+}

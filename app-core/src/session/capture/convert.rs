@@ -1,0 +1,178 @@
+//! From `capture.json` as written to a capture whose values are checked.
+
+use std::sync::{Arc, Mutex};
+
+use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty};
+use super::place::{fresnel_lens, intrinsics, light, plates, receiver};
+use super::record::{CaptureRecord, FrameRecord, PoseRecord};
+use super::{Capture, Frame, PictureStore, TruthFiles, read_named};
+use crate::scene::{PoseTime, Scene};
+use crate::session::error::{FieldError, SessionError};
+use crate::session::picture::PictureSize;
+use crate::session::{Files, SessionWarning, check};
+use crate::toy::Toy;
+
+const MAX_TOY_BYTES: u64 = 256 << 20;
+const MAX_SIDE_PX: f64 = 16384.0;
+/// Pixels of one picture: four times those of a 4K camera.
+const MAX_PICTURE_PIXELS: u64 = 1 << 25;
+
+/// Checks every value, then reads what all frames share: the toy, the plates, the probe.
+pub(super) fn capture_from_record(
+    files: Box<dyn Files>,
+    record: CaptureRecord,
+) -> Result<Capture, SessionError> {
+    let size = picture_size(&record)?;
+    let intrinsics = intrinsics(&record.intrinsics)?;
+    let world_from_object = at(
+        "toy.world_from_object",
+        check::similarity(record.toy.world_from_object),
+    )?;
+    let receivers = non_empty("receivers", &record.receivers, receiver)?;
+    let lights = each("lights", &record.lights, light)?;
+
+    let toy = read_toy(files.as_ref(), &record.toy.file)?;
+    let mut warnings = toy_warnings(&toy, &record.toy.file);
+    let physical_pose = pose(
+        &toy,
+        "toy.physical_pose",
+        &record.toy.physical_pose,
+        &mut warnings,
+    )?;
+    let frames = non_empty("frames", &record.frames, |field, frame| {
+        frame_from_record(&toy, field, frame)
+    })?;
+
+    let store = PictureStore { files, size };
+    let plates = plates(&store, &record.backgrounds)?;
+    let probe = record
+        .probe
+        .map(|probe| fresnel_lens(&store, &probe))
+        .transpose()?;
+    let scene = Scene {
+        name: record.name,
+        width_px: size.width_px,
+        height_px: size.height_px,
+        intrinsics,
+        toy: Arc::new(toy),
+        world_from_object,
+        physical_pose,
+        receivers,
+        lights,
+        plates,
+        probe,
+    };
+    Ok(Capture {
+        store,
+        scene,
+        warnings,
+        frames,
+        last_picture: Mutex::new(None),
+    })
+}
+
+fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
+    at(
+        "width",
+        check::number(f64::from(record.width), &(1.0..=MAX_SIDE_PX)),
+    )?;
+    at(
+        "height",
+        check::number(f64::from(record.height), &(1.0..=MAX_SIDE_PX)),
+    )?;
+    let size = PictureSize {
+        width_px: record.width,
+        height_px: record.height,
+    };
+    if size.n_pixels() > MAX_PICTURE_PIXELS {
+        let error = FieldError::TooManyPixels {
+            max_pixels: MAX_PICTURE_PIXELS,
+        };
+        return Err(in_index("width, height", error));
+    }
+    Ok(size)
+}
+
+fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
+    let field = "toy.file";
+    let bytes = read_named(files, path, field, MAX_TOY_BYTES)?;
+    Toy::from_glb(path, &bytes).map_err(|error| SessionError::new(path, field, error))
+}
+
+fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {
+    let warnings = toy.warnings().iter().cloned();
+    warnings
+        .map(|warning| SessionWarning::Toy {
+            file: file.to_owned(),
+            warning,
+        })
+        .collect()
+}
+
+/// Finds the clip and brings the time into it, with a warning where it had to be moved.
+fn pose(
+    toy: &Toy,
+    field: &str,
+    record: &PoseRecord,
+    warnings: &mut Vec<SessionWarning>,
+) -> Result<PoseTime, SessionError> {
+    let time_field = format!("{field}.time");
+    let asked_secs = at(&time_field, check::number(record.time, &check::CLIP_TIME_SECS))?;
+    let Some(name) = &record.clip else {
+        return Ok(PoseTime {
+            clip: None,
+            time_secs: asked_secs,
+        });
+    };
+    let clip = toy
+        .find_clip(name)
+        .map_err(|error| in_index(&format!("{field}.clip"), error))?;
+    let (used_secs, clamped) = toy
+        .clamp_time(clip, asked_secs)
+        .map_err(|error| in_index(&time_field, error))?;
+    if clamped {
+        let file = INDEX_FILE.to_owned();
+        warnings.push(SessionWarning::TimeClamped {
+            file,
+            field: time_field,
+            asked_secs,
+            used_secs,
+        });
+    }
+    Ok(PoseTime {
+        clip: Some(clip),
+        time_secs: used_secs,
+    })
+}
+
+fn frame_from_record(toy: &Toy, field: &str, record: &FrameRecord) -> Result<Frame, SessionError> {
+    let mut warnings = Vec::new();
+    let picture_fields = [
+        ("image", Some(&record.image)),
+        ("truth", record.truth.as_ref()),
+        ("mask", record.mask.as_ref()),
+    ];
+    for (name, path) in picture_fields {
+        path.map_or(Ok(()), |path| check_named(path, &format!("{field}.{name}")))?;
+    }
+    let truth = record.truth.clone().zip(record.mask.clone());
+    Ok(Frame {
+        time_secs: at(
+            &format!("{field}.time"),
+            check::number(record.time, &check::TIME_SECS),
+        )?,
+        picture: record.image.clone(),
+        world_from_camera: at(
+            &format!("{field}.world_from_camera"),
+            check::rigid(record.world_from_camera),
+        )?,
+        shown_pose: pose(
+            toy,
+            &format!("{field}.animation"),
+            &record.animation,
+            &mut warnings,
+        )?,
+        warnings,
+        truth: truth.map(|(picture, mask)| TruthFiles { picture, mask }),
+    })
+}

@@ -1,0 +1,50 @@
+//! Where in `capture.json` something stands, for the errors.
+
+use crate::session::error::{FieldError, SessionError, SessionErrorKind};
+use crate::session::files::{FileError, check_path};
+
+pub(super) const INDEX_FILE: &str = "capture.json";
+/// Stands in the place of a field when no single one is at fault.
+pub(super) const WHOLE_FILE: &str = "the whole file";
+
+/// Refuses a bad path at once, before the file is asked for.
+pub(super) fn check_named(path: &str, field: &str) -> Result<(), SessionError> {
+    check_path(path).map_err(|error| in_index(field, FileError::from(error)))
+}
+
+/// An error of `capture.json` itself.
+pub(super) fn in_index(field: &str, kind: impl Into<SessionErrorKind>) -> SessionError {
+    SessionError::new(INDEX_FILE, field, kind)
+}
+
+pub(super) fn frame_field(index: usize, rest: &str) -> String {
+    format!("frames[{index}]{rest}")
+}
+
+/// Puts the field's path into the error of a check.
+pub(super) fn at<T>(field: &str, checked: Result<T, FieldError>) -> Result<T, SessionError> {
+    checked.map_err(|error| in_index(field, error))
+}
+
+/// Converts a list, telling each entry its path.
+pub(super) fn each<R, T>(
+    field: &str,
+    records: &[R],
+    convert: impl Fn(&str, &R) -> Result<T, SessionError>,
+) -> Result<Vec<T>, SessionError> {
+    let entries = records.iter().enumerate();
+    entries
+        .map(|(i, record)| convert(&format!("{field}[{i}]"), record))
+        .collect()
+}
+
+pub(super) fn non_empty<R, T>(
+    field: &str,
+    records: &[R],
+    convert: impl Fn(&str, &R) -> Result<T, SessionError>,
+) -> Result<Vec<T>, SessionError> {
+    if records.is_empty() {
+        return Err(in_index(field, FieldError::Empty));
+    }
+    each(field, records, convert)
+}

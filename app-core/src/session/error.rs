@@ -1,0 +1,146 @@
+//! What can be wrong with a session: always the file, the field and the reason.
+
+use thiserror::Error;
+
+use super::files::FileError;
+use crate::toy::ToyError;
+
+/// A session that cannot be used, or a frame of it.
+#[derive(Debug, Error)]
+#[error("{file} ({field}): {kind}")]
+pub struct SessionError {
+    /// The file at fault, relative to the session.
+    pub file: String,
+    /// The field at fault, or for another file the field that names it, as in `frames[3].image`.
+    pub field: String,
+    /// What is wrong.
+    pub kind: Box<SessionErrorKind>,
+}
+
+impl SessionError {
+    pub(super) fn new(file: &str, field: &str, kind: impl Into<SessionErrorKind>) -> Self {
+        Self {
+            file: file.to_owned(),
+            field: field.to_owned(),
+            kind: Box::new(kind.into()),
+        }
+    }
+}
+
+/// The reason of a [`SessionError`].
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SessionErrorKind {
+    /// The file itself cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Not JSON, or not the JSON that the format asks for.
+    #[error("{0}")]
+    Json(#[from] serde_json::Error),
+    /// Another format.
+    #[error("the format is {found:?}, but only {supported:?} can be read")]
+    Format {
+        /// The format as written.
+        found: String,
+        /// The one format that is read.
+        supported: &'static str,
+    },
+    /// Another version of the format.
+    #[error("version {found} of the format is not supported, only version {supported} is")]
+    Version {
+        /// The version as written.
+        found: u64,
+        /// The one version that is read.
+        supported: u64,
+    },
+    /// A value outside what the format allows.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// A picture that cannot be used.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// A toy that cannot be used, or a clip that it does not have.
+    #[error(transparent)]
+    Toy(#[from] ToyError),
+    /// A frame beyond the last.
+    #[error("the session has {n_frames} frames, counted from 0")]
+    NoSuchFrame {
+        /// Number of frames.
+        n_frames: usize,
+    },
+}
+
+/// Why the value of a field is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// A number that is too small, too large or not a number.
+    #[error("{value} is not from {min} to {max}")]
+    Range {
+        /// The number as written.
+        value: f64,
+        /// Smallest allowed.
+        min: f64,
+        /// Largest allowed.
+        max: f64,
+    },
+    /// A list that needs an entry.
+    #[error("the list is empty, but needs at least one entry")]
+    Empty,
+    /// A field that this kind of entry needs.
+    #[error("missing, but needed for this kind")]
+    Missing,
+    /// A vector without a direction.
+    #[error("the vector is too short to have a direction")]
+    NoDirection,
+    /// A matrix whose last row is not 0 0 0 1.
+    #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
+    NotAffine,
+    /// A matrix that does more than rotate and move.
+    #[error("the matrix is not rigid: its axes must be of length 1 and at right angles")]
+    NotRigid,
+    /// A matrix that stretches or shears.
+    #[error("the matrix scales its axes differently or shears: only one scale for all is allowed")]
+    NotUniform,
+    /// A matrix that turns right hands into left ones.
+    #[error("the matrix mirrors: its axes must be right-handed")]
+    Mirrored,
+    /// Pictures that would take more memory than a session may.
+    #[error("the pictures hold more than {max_pixels} pixels in all")]
+    TooManyPixels {
+        /// Limit for the sum over all pictures.
+        max_pixels: u64,
+    },
+}
+
+/// Why a picture is refused.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// Not one of the two formats.
+    #[error("neither PNG nor JPEG")]
+    Format,
+    /// Another size than the session's; checked before anything is decoded.
+    #[error(
+        "the picture is {width_px} x {height_px} px, but the session's is {expected_width_px} x {expected_height_px} px"
+    )]
+    Size {
+        /// Width that the picture's header states.
+        width_px: u32,
+        /// Height that the picture's header states.
+        height_px: u32,
+        /// Width of the session.
+        expected_width_px: u32,
+        /// Height of the session.
+        expected_height_px: u32,
+    },
+    /// Damaged or cut short.
+    #[error("damaged picture: {0}")]
+    Decode(#[from] image::ImageError),
+    /// A JPEG without its end, which decoders fill with grey.
+    #[error("damaged picture: the JPEG is cut short")]
+    Truncated,
+    /// A mask without its fourth number.
+    #[error("not an 8-bit RGBA picture, as a mask must be")]
+    NotAMask,
+}

@@ -1,0 +1,106 @@
+//! Sessions: a place, and camera frames taken in it, whatever they are stored in.
+//!
+//! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that
+//! is known at once and frames that are fetched one by one. Bytes come through [`Files`], so this
+//! crate opens no file itself.
+
+mod capture;
+mod check;
+mod error;
+mod files;
+mod picture;
+
+use std::sync::Arc;
+
+use glam::DMat4;
+use thiserror::Error;
+
+use crate::scene::{Image, PoseTime, Scene};
+use crate::toy::ToyWarning;
+
+pub use capture::Capture;
+pub use error::{FieldError, PictureError, SessionError, SessionErrorKind};
+pub use files::{FileError, Files, PathError, check_path};
+
+/// A place with frames taken in it.
+pub trait Session {
+    /// What stays the same for all frames.
+    fn scene(&self) -> &Scene;
+
+    /// What was odd, but usable, about the session as a whole.
+    fn warnings(&self) -> &[SessionWarning];
+
+    /// Number of frames; at least one.
+    fn n_frames(&self) -> usize;
+
+    /// Fetches and decodes the frame `index`, counted from 0.
+    ///
+    /// # Errors
+    /// When there is no such frame, or its picture cannot be read.
+    fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
+}
+
+/// One camera frame and what is to be shown in it.
+#[derive(Clone, Debug)]
+pub struct SessionFrame {
+    /// When the frame was taken, from an origin of the session's own.
+    pub time_secs: f64,
+    /// The camera's picture of the real toy. Frames that repeat a picture share it.
+    pub image: Arc<Image>,
+    /// Rigid transform of the camera.
+    pub world_from_camera: DMat4,
+    /// The pose the toy is to be shown in.
+    pub shown_pose: PoseTime,
+    /// What was odd, but usable, about this frame.
+    pub warnings: Vec<SessionWarning>,
+}
+
+/// The photographs that the camera would have taken if the toy really had moved.
+///
+/// For scoring only. It is not part of [`Session`], so code that makes pictures from a session
+/// has no way to look at them.
+pub trait GroundTruth {
+    /// Fetches the truth of the frame `index`, or `None` where the session has none.
+    ///
+    /// # Errors
+    /// When there is no such frame, or its pictures cannot be read.
+    fn truth(&self, index: usize) -> Result<Option<Truth>, SessionError>;
+}
+
+/// The truth of one frame, both pictures of the session's size.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// The photograph of the moved toy.
+    pub image: Image,
+    /// What each pixel shows, with plain numbers in all four channels.
+    ///
+    /// R is 255 where the moved toy is, G where the real toy is. B is 255 times one minus the
+    /// smallest visibility over all lights with the moved toy, A the same with the real one.
+    pub mask: Image,
+}
+
+/// Something that was put right or left out on the way in.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SessionWarning {
+    /// A time lay beyond the end of its clip; the clip's last moment is shown.
+    #[error("{file} ({field}): {asked_secs} s is beyond the end of the clip, {used_secs} s is used")]
+    TimeClamped {
+        /// File that holds the time.
+        file: String,
+        /// Path of the time within the file.
+        field: String,
+        /// The time as written.
+        asked_secs: f64,
+        /// The time in its place.
+        used_secs: f64,
+    },
+    /// Something in the toy's file is not followed.
+    #[error("{file}: {warning}")]
+    Toy {
+        /// File of the toy.
+        file: String,
+        /// What it is.
+        warning: ToyWarning,
+    },
+}

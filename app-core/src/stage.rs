@@ -1,0 +1,303 @@
+//! A scene on the device: the toy, the plate and the frame, and what was learned from them.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec2, DVec3, UVec2};
+
+use crate::capture::{Capture, Pictures};
+use crate::frame::{FrameInput, FrameReport, Warning};
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::MAX_LIGHTS;
+use crate::gpu::texture::{Texture, TextureShape};
+use crate::light_points::{light_in_plane, light_points};
+use crate::passes::present::Present;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::pipeline::{Passes, encode_present};
+use crate::plan::{LeftOut, Path, Plan, SceneFacts};
+use crate::preset::Preset;
+use crate::region::{Bounds, PixelRect, Place, View};
+use crate::scene::{Image, Light, PoseTime, Scene};
+use crate::toy::{ClipId, PosedMesh, ToyError};
+
+/// Cameras closer than this, in matrix elements, are one camera.
+const SAME_CAMERA: f64 = 1e-6;
+/// Format of the finished picture: codes, as a screen takes them.
+pub(crate) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// A scene on the device.
+pub(crate) struct Stage {
+    scene: Scene,
+    preset: Preset,
+    plane_from_object: DMat4,
+    plane_from_world: DMat4,
+    lights: Vec<Light>,
+    physical_bounds: Bounds,
+    /// Where the toy can be over the clip shown last.
+    clip_reach: Option<(ClipId, Bounds)>,
+    toy: ToyMesh,
+    posed: PosedMesh,
+    frame: Texture,
+    frame_image: Option<Arc<Image>>,
+    plate: Texture,
+    present: Present,
+    learned: Option<Learned>,
+    standing_warnings: Vec<Warning>,
+    pub(crate) output: Texture,
+}
+
+/// What was learned, and of which camera.
+struct Learned {
+    world_from_camera: DMat4,
+    capture: Capture,
+    passes: Passes,
+}
+
+impl Stage {
+    pub(crate) fn new(gpu: &Gpu, scene: Scene, preset: Preset) -> Result<Self, ToyError> {
+        let receiver = &scene.receivers[0];
+        let plane_from_world = receiver.world_from_plane.inverse();
+        let plane_from_object = plane_from_world * scene.world_from_object;
+        let mut posed = PosedMesh::default();
+        scene.toy.pose(clip_time(&scene.physical_pose), &plane_from_object, &mut posed)?;
+        let size_px = [scene.width_px, scene.height_px];
+        let (lights, standing_warnings) = usable_lights(&scene, &plane_from_world);
+        let output = TextureShape { size_px, format: OUTPUT_FORMAT, n_samples: 1 };
+        Ok(Self {
+            physical_bounds: bounds_of(posed.positions.iter().map(|p| p.as_dvec3())),
+            toy: ToyMesh::new(gpu, &scene.toy, &posed),
+            posed,
+            frame: Texture::picture(gpu, "frame", size_px),
+            frame_image: None,
+            plate: Texture::picture(gpu, "plate", size_px),
+            present: Present::new(gpu, OUTPUT_FORMAT),
+            learned: None,
+            standing_warnings,
+            output: Texture::target(gpu, "output", output),
+            preset,
+            plane_from_object,
+            plane_from_world,
+            lights,
+            scene,
+            clip_reach: None,
+        })
+    }
+
+    /// The scene that is staged.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What was learned so far.
+    pub(crate) fn capture(&self) -> Option<&Capture> {
+        self.learned.as_ref().map(|learned| &learned.capture)
+    }
+
+    /// Encodes one frame into `output`.
+    pub(crate) fn encode(&mut self, gpu: &Gpu, encoder: &mut Encoder, input: &FrameInput) -> Result<FrameReport, ToyError> {
+        let is_new_image = self.take_image(gpu, &input.image);
+        let mut report = FrameReport {
+            ran: Vec::new(),
+            skipped: Vec::new(),
+            region: None,
+            warnings: self.standing_warnings.clone(),
+        };
+        let reach = self.reach(&input.shown_pose)?;
+        let worked = match self.region_of(input, &reach) {
+            Err(reason) => {
+                reason.tell(&mut report);
+                None
+            }
+            Ok(region) => {
+                self.encode_region(gpu, encoder, input, (region, is_new_image), &mut report)?;
+                self.learned.as_ref()
+            }
+        };
+        let capture = worked.map(|learned| &learned.capture);
+        let codes = self.frame.codes();
+        encode_present(gpu, encoder, &self.present, (&codes, capture), &self.output.view);
+        report.ran.push((Path::Frame, "present"));
+        Ok(report)
+    }
+
+    fn encode_region(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        input: &FrameInput,
+        (region, is_new_image): (PixelRect, bool),
+        report: &mut FrameReport,
+    ) -> Result<(), ToyError> {
+        let is_fresh = self.ensure_learned(gpu, input, region);
+        self.scene.toy.pose(clip_time(&input.shown_pose), &self.plane_from_object, &mut self.posed)?;
+        self.toy.shown.write(gpu, &self.posed);
+        let Some(Learned { capture, passes, .. }) = &self.learned else { return Ok(()) };
+        let pictures = Pictures { frame: &self.frame.view, plate: &self.plate.view };
+        if is_fresh {
+            capture.encode(gpu, encoder, passes, &self.toy, &pictures);
+        } else {
+            report.skipped.push(LeftOut { what: "capture path", why: "place, pose and camera are known" });
+        }
+        if is_fresh || is_new_image {
+            capture.encode_appearance(gpu, encoder, passes, &self.frame.view);
+        }
+        passes.encode_frame(gpu, encoder, capture, &self.toy, &pictures);
+        let ran = |pass: &&crate::plan::PlannedPass| {
+            pass.name != "present"
+                && (pass.path == Path::Frame || is_fresh || (is_new_image && pass.name == "appearance"))
+        };
+        report.ran.extend(capture.plan.passes.iter().filter(ran).map(|pass| (pass.path, pass.name)));
+        report.skipped.extend_from_slice(&capture.plan.left_out);
+        report.region = Some(capture.plan.region);
+        Ok(())
+    }
+
+    /// Uploads the camera's picture unless it is the one that is there already.
+    fn take_image(&mut self, gpu: &Gpu, image: &Arc<Image>) -> bool {
+        if self.frame_image.as_ref().is_some_and(|known| Arc::ptr_eq(known, image)) {
+            return false;
+        }
+        self.frame.write(gpu, &image.rgba8);
+        self.frame_image = Some(Arc::clone(image));
+        true
+    }
+
+    fn region_of(&self, input: &FrameInput, reach: &Bounds) -> Result<PixelRect, PassThrough> {
+        if input.shown_pose == self.scene.physical_pose
+            || (input.shown_pose.clip.is_none() && self.scene.physical_pose.clip.is_none())
+        {
+            return Err(PassThrough::PhysicalPose);
+        }
+        if self.lights.is_empty() {
+            return Err(PassThrough::Warned(Warning::NoLight));
+        }
+        if self.plate_image(&input.world_from_camera).is_none() {
+            return Err(PassThrough::Warned(Warning::NoPlate));
+        }
+        let view = self.view(&input.world_from_camera);
+        if view.camera_in_plane().y == 0.0 {
+            return Err(PassThrough::Warned(Warning::CameraInPlane));
+        }
+        view.region(reach, &self.lights, &self.plane_from_world)
+            .ok_or(PassThrough::Warned(Warning::OutOfPicture))
+    }
+
+    /// Makes what was learned cover `region` from this camera; true when it must be learned anew.
+    fn ensure_learned(&mut self, gpu: &Gpu, input: &FrameInput, region: PixelRect) -> bool {
+        if let Some(learned) = &self.learned
+            && learned.world_from_camera.abs_diff_eq(input.world_from_camera, SAME_CAMERA)
+            && learned.capture.plan.region.contains(&region)
+        {
+            return false;
+        }
+        if let Some(image) = self.plate_image(&input.world_from_camera) {
+            self.plate.write(gpu, &image.rgba8);
+        }
+        let view = self.view(&input.world_from_camera);
+        let centre = self.physical_bounds.centre();
+        let place = Place {
+            receiver: &self.scene.receivers[0],
+            lights: &self.lights,
+            plane_from_world: &self.plane_from_world,
+            reference_in_plane: DVec2::new(centre.x, centre.z),
+        };
+        let penumbra_px =
+            self.lights.iter().map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
+        let facts = SceneFacts { region, penumbra_px: penumbra_px.collect() };
+        let plan = Plan::new(&facts, &self.preset.settings());
+        let points = self
+            .lights
+            .iter()
+            .zip(&plan.lights)
+            .map(|(light, planned)| light_points(light, &self.plane_from_world, centre, planned.n_points))
+            .collect();
+        let globals = view.globals(&region, &place);
+        self.learned = Some(Learned {
+            world_from_camera: input.world_from_camera,
+            passes: Passes::new(gpu, &plan),
+            capture: Capture::new(gpu, plan, &globals, points),
+        });
+        true
+    }
+
+    fn view(&self, world_from_camera: &DMat4) -> View {
+        let image_px = UVec2::new(self.scene.width_px, self.scene.height_px);
+        View::new(image_px, self.scene.intrinsics, world_from_camera, &self.scene.receivers[0])
+    }
+
+    fn plate_image(&self, world_from_camera: &DMat4) -> Option<&Image> {
+        let plates = &self.scene.plates;
+        let same = plates.iter().find(|plate| plate.world_from_camera.abs_diff_eq(*world_from_camera, SAME_CAMERA));
+        same.map(|plate| plate.image.as_ref())
+    }
+
+    /// Where the toy can be, in its physical pose and over the whole clip that is shown, in plane space.
+    fn reach(&mut self, shown: &PoseTime) -> Result<Bounds, ToyError> {
+        let Some(clip) = shown.clip else { return Ok(self.physical_bounds) };
+        if let Some((known, bounds)) = self.clip_reach
+            && known == clip
+        {
+            return Ok(bounds);
+        }
+        let over_clip = self.scene.toy.bounds_over_clip(clip)?;
+        let in_object = Bounds { min: over_clip.min.as_dvec3(), max: over_clip.max.as_dvec3() };
+        let over_clip = bounds_of(in_object.corners().map(|p| self.plane_from_object.transform_point3(p)));
+        let bounds = Bounds {
+            min: self.physical_bounds.min.min(over_clip.min),
+            max: self.physical_bounds.max.max(over_clip.max),
+        };
+        self.clip_reach = Some((clip, bounds));
+        Ok(bounds)
+    }
+}
+
+/// Why a camera frame is shown as it is.
+enum PassThrough {
+    PhysicalPose,
+    Warned(Warning),
+}
+
+impl PassThrough {
+    fn tell(self, report: &mut FrameReport) {
+        let why = match self {
+            Self::PhysicalPose => "the shown pose is the physical pose",
+            Self::Warned(warning) => {
+                report.warnings.push(warning);
+                "see the warnings"
+            }
+        };
+        report.skipped.push(LeftOut { what: "every pass but present", why });
+    }
+}
+
+fn clip_time(pose: &PoseTime) -> Option<(ClipId, f64)> {
+    pose.clip.map(|clip| (clip, pose.time_secs))
+}
+
+fn bounds_of(points: impl Iterator<Item = DVec3>) -> Bounds {
+    points.fold(Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, |bounds, p| Bounds {
+        min: bounds.min.min(p),
+        max: bounds.max.max(p),
+    })
+}
+
+fn usable_lights(scene: &Scene, plane_from_world: &DMat4) -> (Vec<Light>, Vec<Warning>) {
+    let mut warnings = Vec::new();
+    let mut lights = Vec::new();
+    for (index, light) in scene.lights.iter().enumerate() {
+        if light_in_plane(light, plane_from_world).y > 0.0 {
+            lights.push(*light);
+        } else {
+            warnings.push(Warning::LightBelowReceiver { light: index });
+        }
+    }
+    if lights.len() > MAX_LIGHTS {
+        warnings.push(Warning::LightsLeftOut { n_lights: lights.len() - MAX_LIGHTS });
+        lights.truncate(MAX_LIGHTS);
+    }
+    if scene.receivers.len() > 1 {
+        let names = scene.receivers[1..].iter().map(|receiver| receiver.name.clone()).collect();
+        warnings.push(Warning::ReceiversLeftOut { names });
+    }
+    (lights, warnings)
+}

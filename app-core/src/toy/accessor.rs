@@ -1,0 +1,279 @@
+//! Reads accessors: every offset, stride and count is checked before a byte is touched.
+
+use std::cell::Cell;
+
+use glam::{Vec2, Vec3, Vec4};
+use gltf::json::accessor::{Accessor, Type, sparse::Sparse};
+use gltf::json::{Index, Root, buffer};
+
+use super::check::{check_finite, check_limit};
+use super::component::{float_decoder, integer_decoder};
+use super::container::{allowed, get};
+use super::error::{Flaw, ToyProblem};
+use super::limits::MAX_DECODED_VALUES;
+
+/// The JSON tree with its binary chunk, and how much has been decoded from it.
+pub(super) struct Source<'a> {
+    pub(super) root: &'a Root,
+    bin: &'a [u8],
+    n_decoded: Cell<usize>,
+}
+
+/// Where the numbers of an accessor lie.
+struct Layout {
+    count: usize,
+    /// Numbers of one element.
+    width: usize,
+    /// Bytes of one number.
+    size: usize,
+}
+
+impl Layout {
+    fn element_bytes(&self) -> usize {
+        self.width * self.size
+    }
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(root: &'a Root, bin: &'a [u8]) -> Self {
+        Self {
+            root,
+            bin,
+            n_decoded: Cell::new(0),
+        }
+    }
+
+    /// Adds `n_values` to what this file fills memory with.
+    pub(super) fn charge(&self, field: &str, n_values: usize) -> Result<(), Flaw> {
+        let found = self.n_decoded.get().saturating_add(n_values);
+        self.n_decoded
+            .set(check_limit("decoded numbers", found, MAX_DECODED_VALUES, field)?);
+        Ok(())
+    }
+
+    /// Reads finite numbers, element after element; normalised integers become fractions.
+    pub(super) fn floats(&self, field: &str, index: Index<Accessor>, shape: Type) -> Result<Vec<f32>, Flaw> {
+        let field = format!("{field} (accessor {})", index.value());
+        let accessor = get(self.root, &field, index, "accessor")?;
+        let component = allowed(accessor.component_type, &field)?.0;
+        let decode = float_decoder(component, accessor.normalized).ok_or_else(|| {
+            wrong_type(
+                &field,
+                "float or integer up to 16 bits",
+                &format!("{component:?}"),
+            )
+        })?;
+        let values = self.decode(&field, accessor, shape, decode)?;
+        check_finite(&field, &values, shape.multiplicity())?;
+        Ok(values)
+    }
+
+    /// Reads unsigned integers, element after element.
+    pub(super) fn integers(
+        &self,
+        field: &str,
+        index: Index<Accessor>,
+        shape: Type,
+    ) -> Result<Vec<u32>, Flaw> {
+        let field = format!("{field} (accessor {})", index.value());
+        let accessor = get(self.root, &field, index, "accessor")?;
+        let component = allowed(accessor.component_type, &field)?.0;
+        let decode = integer_decoder(component)
+            .ok_or_else(|| wrong_type(&field, "an unsigned integer", &format!("{component:?}")))?;
+        self.decode(&field, accessor, shape, decode)
+    }
+
+    pub(super) fn vec2s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec2>, Flaw> {
+        Ok(grouped(&self.floats(field, index, Type::Vec2)?))
+    }
+
+    pub(super) fn vec3s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec3>, Flaw> {
+        Ok(grouped(&self.floats(field, index, Type::Vec3)?))
+    }
+
+    pub(super) fn vec4s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec4>, Flaw> {
+        Ok(grouped(&self.floats(field, index, Type::Vec4)?))
+    }
+
+    /// The bytes of a buffer view, and its stride where it has one.
+    pub(super) fn view(
+        &self,
+        field: &str,
+        index: Index<buffer::View>,
+    ) -> Result<(&'a [u8], Option<usize>), Flaw> {
+        let view = get(self.root, field, index, "buffer view")?;
+        let field = format!("bufferViews[{}]", index.value());
+        let buffer = get(self.root, &field, view.buffer, "buffer")?;
+        if buffer.uri.is_some() || view.buffer.value() != 0 {
+            return Err(ToyProblem::External.at(format!("buffers[{}]", view.buffer.value())));
+        }
+        let bytes = range(
+            &field,
+            self.bin,
+            view.byte_offset.unwrap_or_default().0,
+            view.byte_length.0,
+        )?;
+        Ok((bytes, view.byte_stride.map(|stride| stride.0)))
+    }
+
+    fn decode<T: Copy + Default>(
+        &self,
+        field: &str,
+        accessor: &Accessor,
+        shape: Type,
+        decode: fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, Flaw> {
+        let found = allowed(accessor.type_, field)?;
+        if found != shape {
+            return Err(wrong_type(field, &format!("{shape:?}"), &format!("{found:?}")));
+        }
+        let size = allowed(accessor.component_type, field)?.0.size();
+        let layout = Layout {
+            count: count(accessor.count.0),
+            width: shape.multiplicity(),
+            size,
+        };
+        let n_values = layout.count.saturating_mul(layout.width);
+        self.charge(field, n_values)?;
+        let Some(view) = accessor.buffer_view else {
+            let mut values = vec![T::default(); n_values];
+            self.apply_sparse(field, accessor, &layout, decode, &mut values)?;
+            return Ok(values);
+        };
+        let (bytes, stride) = self.view(field, view)?;
+        let stride = stride.unwrap_or(layout.element_bytes());
+        let bytes = strided(
+            field,
+            bytes,
+            accessor.byte_offset.unwrap_or_default().0,
+            stride,
+            &layout,
+        )?;
+        let mut values = vec![T::default(); n_values];
+        for (element, bytes) in values.chunks_exact_mut(layout.width).zip(bytes.chunks(stride)) {
+            fill(element, bytes, size, decode);
+        }
+        self.apply_sparse(field, accessor, &layout, decode, &mut values)?;
+        Ok(values)
+    }
+
+    fn apply_sparse<T>(
+        &self,
+        field: &str,
+        accessor: &Accessor,
+        layout: &Layout,
+        decode: fn(&[u8]) -> T,
+        values: &mut [T],
+    ) -> Result<(), Flaw> {
+        let Some(sparse) = &accessor.sparse else {
+            return Ok(());
+        };
+        let field = format!("{field}.sparse");
+        let n = count(sparse.count.0);
+        check_limit("sparse elements", n, layout.count, &field)?;
+        let replaced = self.sparse_indices(&field, sparse, n, layout.count)?;
+        let (bytes, _) = self.view(&field, sparse.values.buffer_view)?;
+        let packed = Layout { count: n, ..*layout };
+        let bytes = strided(
+            &field,
+            bytes,
+            sparse.values.byte_offset.0,
+            layout.element_bytes(),
+            &packed,
+        )?;
+        for (element, bytes) in replaced.into_iter().zip(bytes.chunks(layout.element_bytes())) {
+            let first = element * layout.width;
+            fill(
+                &mut values[first..first + layout.width],
+                bytes,
+                layout.size,
+                decode,
+            );
+        }
+        Ok(())
+    }
+
+    /// The `n` elements that a sparse accessor replaces: rising, each below `count`.
+    fn sparse_indices(
+        &self,
+        field: &str,
+        sparse: &Sparse,
+        n: usize,
+        count: usize,
+    ) -> Result<Vec<usize>, Flaw> {
+        let component = allowed(sparse.indices.component_type, field)?.0;
+        let decode = integer_decoder(component).ok_or_else(|| ToyProblem::NotAllowed.at(field))?;
+        let layout = Layout {
+            count: n,
+            width: 1,
+            size: component.size(),
+        };
+        let (bytes, _) = self.view(field, sparse.indices.buffer_view)?;
+        let bytes = strided(field, bytes, sparse.indices.byte_offset.0, layout.size, &layout)?;
+        let mut indices: Vec<usize> = Vec::with_capacity(n);
+        for bytes in bytes.chunks_exact(layout.size) {
+            let index = decode(bytes) as usize;
+            if index >= count || indices.last().is_some_and(|&last| index <= last) {
+                return Err(ToyProblem::SparseIndex { index, count }.at(field));
+            }
+            indices.push(index);
+        }
+        Ok(indices)
+    }
+}
+
+fn grouped<const N: usize, T: From<[f32; N]>>(values: &[f32]) -> Vec<T> {
+    values.as_chunks().0.iter().copied().map(T::from).collect()
+}
+
+/// A count as written; one that memory could not even address is refused by the budget right after.
+fn count(written: u64) -> usize {
+    usize::try_from(written).unwrap_or(usize::MAX)
+}
+
+fn wrong_type(field: &str, expected: &str, found: &str) -> Flaw {
+    ToyProblem::WrongType {
+        expected: expected.to_owned(),
+        found: found.to_owned(),
+    }
+    .at(field)
+}
+
+fn range<'b>(field: &str, bytes: &'b [u8], offset: u64, length: u64) -> Result<&'b [u8], Flaw> {
+    let end = offset.saturating_add(length);
+    let inside = || bytes.get(usize::try_from(offset).ok()?..usize::try_from(end).ok()?);
+    inside().ok_or_else(|| {
+        ToyProblem::OutOfRange {
+            end,
+            available: bytes.len(),
+        }
+        .at(field)
+    })
+}
+
+/// The bytes from the first element to the end of the last.
+fn strided<'b>(
+    field: &str,
+    bytes: &'b [u8],
+    offset: u64,
+    stride: usize,
+    layout: &Layout,
+) -> Result<&'b [u8], Flaw> {
+    let element = layout.element_bytes();
+    if stride < element {
+        return Err(ToyProblem::Stride { stride, element }.at(field));
+    }
+    let Some(n_steps) = (layout.count as u64).checked_sub(1) else {
+        return Ok(&[]);
+    };
+    let length = n_steps
+        .saturating_mul(stride as u64)
+        .saturating_add(element as u64);
+    range(field, bytes, offset, length)
+}
+
+fn fill<T>(element: &mut [T], bytes: &[u8], size: usize, decode: fn(&[u8]) -> T) {
+    for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(size)) {
+        *value = decode(bytes);
+    }
+}

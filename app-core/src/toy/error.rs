@@ -1,0 +1,283 @@
+//! What can be wrong with a toy's file: always the file, the field and the reason.
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// A toy that cannot be used, or a question about it that has no answer.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ToyError {
+    /// The file is not a glTF that can be posed.
+    #[error("{file}: {field}: {problem}")]
+    Malformed {
+        /// The file as named by the caller.
+        file: String,
+        /// Path of the field in the glTF, as in `meshes[0].primitives[1].attributes.POSITION`.
+        field: String,
+        /// What is wrong with it.
+        problem: ToyProblem,
+    },
+    /// No clip has this name.
+    #[error("{file}: clip: none is called {name:?}; it has {}", Listed(known))]
+    UnknownClip {
+        /// The file as named by the caller.
+        file: String,
+        /// The name asked for.
+        name: String,
+        /// Every name that would have been found.
+        known: Vec<String>,
+    },
+    /// A [`ClipId`](super::ClipId) of another toy.
+    #[error("{file}: clip: number {clip} is asked for, but it has {n_clips} clips")]
+    ForeignClip {
+        /// The file as named by the caller.
+        file: String,
+        /// The number asked for.
+        clip: usize,
+        /// Number of clips, counted from 0.
+        n_clips: usize,
+    },
+    /// A time before the clip, or none at all.
+    #[error("{file}: clip time: {time_secs} s is not a time from 0 on")]
+    Time {
+        /// The file as named by the caller.
+        file: String,
+        /// The time asked for.
+        time_secs: f64,
+    },
+    /// Finite numbers whose product is too large to be stored.
+    #[error("{file}: pose: the position of vertex {vertex} is beyond what a 32-bit float holds")]
+    PoseOverflow {
+        /// The file as named by the caller.
+        file: String,
+        /// First vertex at fault.
+        vertex: usize,
+    },
+}
+
+/// Why a field of a toy's file is refused.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ToyProblem {
+    /// Not the container or not the JSON that glTF asks for.
+    #[error("not binary glTF: {0}")]
+    Container(#[source] Box<gltf::Error>),
+    /// The length in the header is impossible.
+    #[error("the header gives a length of {found} bytes, which is less than itself")]
+    HeaderLength {
+        /// The length as written.
+        found: u32,
+    },
+    /// A feature without which the file would look or move wrongly.
+    #[error("the file requires the extension {name:?}, which is not supported")]
+    Extension {
+        /// Name of the extension.
+        name: String,
+    },
+    /// Data outside the file.
+    #[error("refers to data outside the file, which is not read")]
+    External,
+    /// More than is allowed.
+    #[error("{found} {what} are more than the {limit} allowed")]
+    TooMany {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: u64,
+        /// The most there may be.
+        limit: u64,
+    },
+    /// Something that must be there.
+    #[error("missing")]
+    Missing,
+    /// A value that glTF does not define.
+    #[error("not a value that glTF allows")]
+    NotAllowed,
+    /// A reference to something that is not in the file.
+    #[error("refers to {what} {index}, but the file has {n}, counted from 0")]
+    NoSuch {
+        /// What is referred to.
+        what: &'static str,
+        /// The index as written.
+        index: usize,
+        /// How many there are.
+        n: usize,
+    },
+    /// An accessor of another shape.
+    #[error("is {found}, but {expected} is needed")]
+    WrongType {
+        /// The shape that fits here.
+        expected: String,
+        /// The shape as written.
+        found: String,
+    },
+    /// An accessor, a view or an image that reaches beyond its bytes.
+    #[error("reaches to byte {end}, but there are {available}")]
+    OutOfRange {
+        /// One past the last byte asked for.
+        end: u64,
+        /// Bytes there are.
+        available: usize,
+    },
+    /// Elements that overlap.
+    #[error("a stride of {stride} bytes is less than the {element} bytes of an element")]
+    Stride {
+        /// The stride as written.
+        stride: usize,
+        /// Size of one element.
+        element: usize,
+    },
+    /// Sparse indices out of order or out of range.
+    #[error("sparse index {index} is not above the one before it and below {count}")]
+    SparseIndex {
+        /// The index as written.
+        index: usize,
+        /// Elements of the accessor.
+        count: usize,
+    },
+    /// NaN or infinity.
+    #[error("{n_bad} of {n} numbers are not finite, the first in element {first}")]
+    NotFinite {
+        /// How many numbers are at fault.
+        n_bad: usize,
+        /// How many there are.
+        n: usize,
+        /// The first element at fault.
+        first: usize,
+    },
+    /// Two counts that must agree.
+    #[error("has {found} {what}, but {expected} are needed")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+    /// Key times that stand still or go back.
+    #[error("key {key} is not later than the one before it")]
+    KeyOrder {
+        /// The key at fault, from 0.
+        key: usize,
+    },
+    /// A quaternion of length zero.
+    #[error("rotation {element} is a quaternion of length zero")]
+    ZeroRotation {
+        /// The element at fault.
+        element: usize,
+    },
+    /// A matrix whose last row is not 0 0 0 1.
+    #[error("matrix {element} is not affine")]
+    NotAffine {
+        /// The element at fault.
+        element: usize,
+    },
+    /// An animated node that is given by a matrix.
+    #[error("node {node} is given by a matrix, which glTF does not allow for an animated node")]
+    AnimatedMatrix {
+        /// The node at fault.
+        node: usize,
+    },
+    /// Nodes below themselves.
+    #[error("node {node} stands in or below a cycle of nodes")]
+    Cycle {
+        /// The first node at fault.
+        node: usize,
+    },
+    /// A node below two others.
+    #[error("node {node} has two parents")]
+    TwoParents {
+        /// The node at fault.
+        node: usize,
+    },
+    /// Nothing to draw.
+    #[error("holds no triangles")]
+    NoTriangles,
+    /// A picture that cannot be decoded.
+    #[error("the image cannot be decoded: {0}")]
+    Image(#[from] image::ImageError),
+}
+
+impl ToyProblem {
+    /// Says where the problem is.
+    pub(super) fn at(self, field: impl Into<String>) -> Flaw {
+        Flaw {
+            field: field.into(),
+            problem: self,
+        }
+    }
+}
+
+/// A problem and its field: an error that does not know its file yet.
+#[derive(Debug)]
+pub(super) struct Flaw {
+    field: String,
+    problem: ToyProblem,
+}
+
+impl Flaw {
+    pub(super) fn in_file(self, file: &str) -> ToyError {
+        ToyError::Malformed {
+            file: file.to_owned(),
+            field: self.field,
+            problem: self.problem,
+        }
+    }
+}
+
+/// Something in a toy's file that is not followed; the toy is usable all the same.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ToyWarning {
+    /// Points and lines throw no shadow that the method knows.
+    #[error("{field}: not made of triangles, left out")]
+    PrimitiveSkipped {
+        /// Path of the primitive.
+        field: String,
+    },
+    /// Skin weights that did not sum to one; they were scaled, or given to the first joint where all were 0.
+    #[error("meshes: the skin weights of {n_vertices} vertices did not sum to 1 and were repaired")]
+    WeightsRepaired {
+        /// Vertices touched, over the whole file.
+        n_vertices: usize,
+    },
+    /// A skin on a primitive that has no joints: drawn rigid.
+    #[error("{field}: has a skin but no joints, drawn rigid")]
+    SkinIgnored {
+        /// Path of the primitive.
+        field: String,
+    },
+    /// A picture that is outside the file or neither PNG nor JPEG: the plain colour is used.
+    #[error("{field}: the image is not embedded PNG or JPEG, left out")]
+    ImageIgnored {
+        /// Path of the image.
+        field: String,
+    },
+    /// Animated weights on a node without morph targets.
+    #[error("{field}: moves nothing, left out")]
+    ChannelIgnored {
+        /// Path of the channel.
+        field: String,
+    },
+    /// An extension that changes how the toy looks.
+    #[error("extensionsUsed: {name:?} is not followed")]
+    ExtensionIgnored {
+        /// Name of the extension.
+        name: String,
+    },
+}
+
+/// Names in a sentence.
+struct Listed<'a>(&'a [String]);
+
+impl fmt::Display for Listed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            write!(f, "no clips")
+        } else {
+            write!(f, "{}", self.0.join(", "))
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! One primitive as read: its vertices at rest, before any node, skin or morph target moves them.
+
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use gltf::json::accessor::{Accessor, Type};
+use gltf::json::mesh::{MorphTarget as JsonTarget, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, mesh::Mode};
+
+use super::accessor::Source;
+use super::check::{check_count, check_limit};
+use super::container::{allowed, get};
+use super::error::{Flaw, ToyProblem};
+use super::limits::{MAX_INDICES, MAX_VERTICES};
+use super::skin::{Influences, read_influences};
+use super::topology::{compacted, triangles, unwelded};
+
+/// A primitive in the space of its mesh.
+pub(super) struct Geometry {
+    pub(super) positions: Vec<Vec3>,
+    /// Absent where the file has none: every triangle is then flat, with three vertices of its own.
+    pub(super) normals: Option<Vec<Vec3>>,
+    pub(super) targets: Vec<MorphTarget>,
+    pub(super) influences: Option<Influences>,
+    /// Base colour texture coordinates.
+    pub(super) uvs: Option<Vec<Vec2>>,
+    /// Linear RGBA.
+    pub(super) colors: Option<Vec<Vec4>>,
+    /// Corners of triangles, counter-clockwise seen from outside.
+    pub(super) indices: Vec<u32>,
+}
+
+/// What a morph target adds at full weight.
+pub(super) struct MorphTarget {
+    positions: Option<Vec<Vec3>>,
+    normals: Option<Vec<Vec3>>,
+}
+
+/// A morph target and its weight, which is not zero.
+pub(super) struct ActiveTarget<'a> {
+    target: &'a MorphTarget,
+    weight: f64,
+}
+
+impl Geometry {
+    pub(super) fn active_targets(&self, weights: &[f64]) -> Vec<ActiveTarget<'_>> {
+        let all = self
+            .targets
+            .iter()
+            .zip(weights)
+            .map(|(target, &weight)| ActiveTarget { target, weight });
+        all.filter(|active| active.weight != 0.0).collect()
+    }
+
+    pub(super) fn morphed_position(&self, vertex: usize, active: &[ActiveTarget]) -> DVec3 {
+        morphed(
+            &self.positions,
+            vertex,
+            active.iter().map(|a| (a.weight, a.target.positions.as_deref())),
+        )
+    }
+
+    /// The normal before skinning, not of unit length; `normals` are this geometry's.
+    pub(super) fn morphed_normal(normals: &[Vec3], vertex: usize, active: &[ActiveTarget]) -> DVec3 {
+        morphed(
+            normals,
+            vertex,
+            active.iter().map(|a| (a.weight, a.target.normals.as_deref())),
+        )
+    }
+}
+
+fn morphed<'a>(
+    base: &[Vec3],
+    vertex: usize,
+    deltas: impl Iterator<Item = (f64, Option<&'a [Vec3]>)>,
+) -> DVec3 {
+    let added = |(weight, deltas): (f64, Option<&[Vec3]>)| Some(deltas?[vertex].as_dvec3() * weight);
+    base[vertex].as_dvec3() + deltas.filter_map(added).sum::<DVec3>()
+}
+
+/// Reads a primitive; `None` where it holds points or lines. `tex_coord` is the set its material reads.
+pub(super) fn read(
+    source: &Source,
+    field: &str,
+    primitive: &Primitive,
+    tex_coord: u32,
+) -> Result<Option<Geometry>, Flaw> {
+    let mode = allowed(primitive.mode, &format!("{field}.mode"))?;
+    let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+    let position_field = format!("{field}.attributes.POSITION");
+    let positions = attribute(Semantic::Positions).ok_or_else(|| ToyProblem::Missing.at(&position_field))?;
+    let positions = source.vec3s(&position_field, positions)?;
+    let n_vertices = check_limit("vertices", positions.len(), MAX_VERTICES, &position_field)?;
+    let Some(triangles) = read_triangles(source, field, primitive, mode, n_vertices)? else {
+        return Ok(None);
+    };
+    let normals = attribute(Semantic::Normals);
+    let corners = match normals {
+        Some(_) => compacted(&triangles, n_vertices),
+        None => unwelded(triangles),
+    };
+    check_limit("vertices", corners.sources.len(), MAX_VERTICES, &position_field)?;
+    let gather = Gather {
+        source,
+        field,
+        n_vertices,
+        sources: &corners.sources,
+    };
+    let targets = primitive.targets.iter().flatten().enumerate();
+    let targets = targets
+        .map(|(i, target)| gather.target(i, target, normals.is_some()))
+        .collect::<Result<_, _>>()?;
+    let influences = read_influences(source, field, primitive, n_vertices)?;
+    if let Some(influences) = &influences {
+        source.charge(
+            field,
+            influences.n_per_vertex.saturating_mul(2 * corners.sources.len()),
+        )?;
+    }
+    Ok(Some(Geometry {
+        targets,
+        influences: influences.map(|all| all.gather(&corners.sources)),
+        uvs: gather.attribute(
+            "TEXCOORD",
+            attribute(Semantic::TexCoords(tex_coord)),
+            Source::vec2s,
+        )?,
+        colors: gather.attribute("COLOR_0", attribute(Semantic::Colors(0)), read_colors)?,
+        normals: gather.attribute("NORMAL", normals, Source::vec3s)?,
+        positions: gather.picked(&positions)?,
+        indices: corners.indices,
+    }))
+}
+
+fn read_triangles(
+    source: &Source,
+    field: &str,
+    primitive: &Primitive,
+    mode: Mode,
+    n_vertices: usize,
+) -> Result<Option<Vec<u32>>, Flaw> {
+    let field = format!("{field}.indices");
+    let corners = match primitive.indices {
+        Some(indices) => source.integers(&field, indices, Type::Scalar)?,
+        None => (0..).take(n_vertices).collect(),
+    };
+    check_limit("indices", corners.len(), MAX_INDICES, &field)?;
+    if let Some(&index) = corners.iter().find(|&&corner| corner as usize >= n_vertices) {
+        return Err(ToyProblem::NoSuch {
+            what: "vertex",
+            index: index as usize,
+            n: n_vertices,
+        }
+        .at(field));
+    }
+    if mode == Mode::Triangles {
+        let whole = corners.len().next_multiple_of(3);
+        check_count("corners of triangles", corners.len(), whole, &field)?;
+    }
+    let triangles = triangles(mode, &corners);
+    check_limit(
+        "indices",
+        triangles.as_ref().map_or(0, Vec::len),
+        MAX_INDICES,
+        &field,
+    )?;
+    Ok(triangles)
+}
+
+/// Reads attributes and keeps the vertices asked for.
+struct Gather<'a> {
+    source: &'a Source<'a>,
+    field: &'a str,
+    n_vertices: usize,
+    sources: &'a [u32],
+}
+
+impl<'a> Gather<'a> {
+    fn attribute<T: Copy>(
+        &self,
+        name: &str,
+        index: Option<Index<Accessor>>,
+        read: impl Fn(&Source<'a>, &str, Index<Accessor>) -> Result<Vec<T>, Flaw>,
+    ) -> Result<Option<Vec<T>>, Flaw> {
+        let Some(index) = index else { return Ok(None) };
+        let field = format!("{}.attributes.{name}", self.field);
+        let all = read(self.source, &field, index)?;
+        check_count("elements", all.len(), self.n_vertices, &field)?;
+        self.picked(&all).map(Some)
+    }
+
+    fn target(&self, i: usize, target: &JsonTarget, has_normals: bool) -> Result<MorphTarget, Flaw> {
+        let name = |attribute| format!("{attribute} of targets[{i}]");
+        // Without normals at rest there is nothing to add to: the morphed triangles are flat as well.
+        let normals = target.normals.filter(|_| has_normals);
+        Ok(MorphTarget {
+            positions: self.attribute(&name("POSITION"), target.positions, Source::vec3s)?,
+            normals: self.attribute(&name("NORMAL"), normals, Source::vec3s)?,
+        })
+    }
+
+    fn picked<T: Copy>(&self, all: &[T]) -> Result<Vec<T>, Flaw> {
+        let n_values = self
+            .sources
+            .len()
+            .saturating_mul(size_of::<T>() / size_of::<f32>());
+        self.source.charge(self.field, n_values)?;
+        Ok(self.sources.iter().map(|&source| all[source as usize]).collect())
+    }
+}
+
+/// Colours with or without alpha.
+fn read_colors(source: &Source, field: &str, index: Index<Accessor>) -> Result<Vec<Vec4>, Flaw> {
+    match get(source.root, field, index, "accessor")?.type_ {
+        Checked::Valid(Type::Vec3) => Ok(source
+            .vec3s(field, index)?
+            .into_iter()
+            .map(|rgb| rgb.extend(1.0))
+            .collect()),
+        _ => source.vec4s(field, index),
+    }
+}

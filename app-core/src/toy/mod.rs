@@ -1,0 +1,180 @@
+//! The toy: a glTF file as one posable mesh.
+//!
+//! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
+//! triangles, materials, texture coordinates.
+//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) set nodes and morph weights (`rig`), the
+//! weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
+//!
+//! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
+//! A toy opens no file itself; pictures outside the file are left out with a warning.
+
+mod accessor;
+mod assemble;
+mod bounds;
+mod check;
+mod clip;
+mod component;
+mod container;
+mod error;
+mod geometry;
+mod graph;
+mod limits;
+mod material;
+mod normal;
+mod pose;
+mod rig;
+mod skin;
+mod surface;
+mod texture;
+mod topology;
+mod track;
+
+use std::fmt;
+
+pub use bounds::Bounds;
+pub use clip::{Clip, ClipId};
+pub use error::{ToyError, ToyProblem, ToyWarning};
+pub use material::{Material, MaterialTexture, Wrap};
+pub use pose::PosedMesh;
+pub use surface::Part;
+pub use texture::Texture;
+
+use geometry::Geometry;
+use rig::Rig;
+use surface::{Draws, Surface};
+
+/// A toy's model: everything that its file says about shape, look and movement.
+pub struct Toy {
+    file: String,
+    rig: Rig,
+    geometries: Vec<Geometry>,
+    surfaces: Vec<Surface>,
+    draws: Draws,
+    materials: Vec<Material>,
+    textures: Vec<Texture>,
+    warnings: Vec<ToyWarning>,
+}
+
+impl fmt::Debug for Toy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (n_vertices, n_clips) = (self.n_vertices(), self.clips().len());
+        write!(f, "Toy({:?}, {n_vertices} vertices, {n_clips} clips)", self.file)
+    }
+}
+
+impl Toy {
+    /// Reads a binary glTF 2.0 file. `file` names it in messages.
+    ///
+    /// Only the default scene is drawn (the first where there is none). Vertices that no triangle uses are dropped.
+    ///
+    /// # Errors
+    /// [`ToyError::Malformed`] for anything that glTF forbids, that is not finite or too large, for a required
+    /// extension that is not supported, and where no triangle is left.
+    pub fn from_glb(file: &str, bytes: &[u8]) -> Result<Self, ToyError> {
+        assemble::assemble(file, bytes).map_err(|flaw| flaw.in_file(file))
+    }
+
+    /// The animation clips, in the order of the file.
+    pub fn clips(&self) -> &[Clip] {
+        &self.rig.clips
+    }
+
+    /// Finds a clip by its name, or by `#N`, its number from 0. A name wins over a number.
+    ///
+    /// # Errors
+    /// [`ToyError::UnknownClip`], which lists the names that there are.
+    pub fn find_clip(&self, name: &str) -> Result<ClipId, ToyError> {
+        let by_name = || {
+            self.clips()
+                .iter()
+                .position(|clip| clip.name.as_deref() == Some(name))
+        };
+        let by_number = || {
+            name.strip_prefix('#')?
+                .parse()
+                .ok()
+                .filter(|&number| number < self.clips().len())
+        };
+        by_name()
+            .or_else(by_number)
+            .map(ClipId)
+            .ok_or_else(|| ToyError::UnknownClip {
+                file: self.file.clone(),
+                name: name.to_owned(),
+                known: self.clip_names(),
+            })
+    }
+
+    /// A name for each clip that [`Toy::find_clip`] takes: `#N` for those without one.
+    pub fn clip_names(&self) -> Vec<String> {
+        let clips = self.clips().iter().enumerate();
+        clips
+            .map(|(i, clip)| clip.name.clone().unwrap_or_else(|| format!("#{i}")))
+            .collect()
+    }
+
+    /// Brings a time into a clip, and says whether it lay beyond its end.
+    ///
+    /// # Errors
+    /// An id of another toy, or a time that is negative or not finite.
+    pub fn clamp_time(&self, id: ClipId, time_secs: f64) -> Result<(f64, bool), ToyError> {
+        let end_secs = self.clip(id)?.duration_secs;
+        if !time_secs.is_finite() || time_secs < 0.0 {
+            return Err(ToyError::Time {
+                file: self.file.clone(),
+                time_secs,
+            });
+        }
+        Ok((time_secs.min(end_secs), time_secs > end_secs))
+    }
+
+    /// The materials that parts refer to.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// The textures that materials refer to.
+    pub fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// The draws, which together cover all of [`Toy::indices`].
+    pub fn parts(&self) -> &[Part] {
+        &self.draws.parts
+    }
+
+    /// Corners of all triangles, counter-clockwise seen from outside; each below [`Toy::n_vertices`].
+    pub fn indices(&self) -> &[u32] {
+        &self.draws.indices
+    }
+
+    /// Base colour texture coordinates, one for each vertex, v downwards; zero where a part has none.
+    pub fn uvs(&self) -> &[[f32; 2]] {
+        &self.draws.uvs
+    }
+
+    /// Linear RGBA, one for each vertex, white where a part has none; `None` where no part has any.
+    pub fn colors_linear(&self) -> Option<&[[f32; 4]]> {
+        (!self.draws.colors_linear.is_empty()).then_some(&self.draws.colors_linear)
+    }
+
+    /// Number of vertices; at least three.
+    pub fn n_vertices(&self) -> usize {
+        self.draws.uvs.len()
+    }
+
+    /// What in the file is not followed or was repaired.
+    pub fn warnings(&self) -> &[ToyWarning] {
+        &self.warnings
+    }
+
+    fn clip(&self, id: ClipId) -> Result<&Clip, ToyError> {
+        let n_clips = self.clips().len();
+        let foreign = || ToyError::ForeignClip {
+            file: self.file.clone(),
+            clip: id.0,
+            n_clips,
+        };
+        self.clips().get(id.0).ok_or_else(foreign)
+    }
+}

@@ -1,0 +1,96 @@
+//! Posing: the vertices of a toy at one moment of a clip.
+
+use glam::{DAffine3, DMat4, DVec3, Vec3};
+
+use super::Toy;
+use super::clip::ClipId;
+use super::error::ToyError;
+use super::geometry::{ActiveTarget, Geometry};
+use super::normal::{carried_normal, face_normal};
+use super::rig::RigPose;
+use super::surface::Surface;
+
+/// The vertices of a posed toy. Keep it from frame to frame: its memory is used again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PosedMesh {
+    /// One for each vertex, in anchor space.
+    pub positions: Vec<Vec3>,
+    /// One for each vertex, of unit length, outward, in anchor space.
+    pub normals: Vec<Vec3>,
+}
+
+impl Toy {
+    /// Poses the toy at a time of a clip, or with its nodes as authored, and writes positions and normals.
+    ///
+    /// `anchor_from_object` is affine and does not mirror; object space is that of the glTF scene.
+    /// A time beyond the clip shows its end. Everything is composed in 64 bits and stored in 32.
+    /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest.
+    ///
+    /// # Errors
+    /// An id of another toy, a time that is negative or not finite, or a position too large to be stored.
+    pub fn pose(
+        &self,
+        pose: Option<(ClipId, f64)>,
+        anchor_from_object: &DMat4,
+        out: &mut PosedMesh,
+    ) -> Result<(), ToyError> {
+        let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;
+        out.positions.resize(self.n_vertices(), Vec3::ZERO);
+        out.normals.resize(self.n_vertices(), Vec3::Y);
+        for surface in &self.surfaces {
+            let geometry = &self.geometries[surface.geometry];
+            let active = geometry.active_targets(self.rig.morph_weights(&rig_pose, surface.node));
+            let vertices = surface.first_vertex..surface.first_vertex + geometry.positions.len();
+            let positions = &mut out.positions[vertices.clone()];
+            let normals = &mut out.normals[vertices];
+            pose_surface(surface, geometry, &rig_pose, &active, (positions, normals));
+        }
+        self.check_positions(&out.positions)
+    }
+
+    pub(super) fn rig_pose(
+        &self,
+        pose: Option<(ClipId, f64)>,
+        anchor_from_object: DAffine3,
+    ) -> Result<RigPose, ToyError> {
+        let moment = match pose {
+            Some((id, time_secs)) => Some((self.clip(id)?, self.clamp_time(id, time_secs)?.0)),
+            None => None,
+        };
+        Ok(self.rig.pose(moment, anchor_from_object))
+    }
+
+    fn check_positions(&self, positions: &[Vec3]) -> Result<(), ToyError> {
+        match positions.iter().position(|position| !position.is_finite()) {
+            Some(vertex) => Err(ToyError::PoseOverflow {
+                file: self.file.clone(),
+                vertex,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn pose_surface(
+    surface: &Surface,
+    geometry: &Geometry,
+    pose: &RigPose,
+    active: &[ActiveTarget],
+    (positions, normals): (&mut [Vec3], &mut [Vec3]),
+) {
+    // Without normals each triangle has three vertices of its own, which come by one after the other.
+    let mut corners = [DVec3::ZERO; 3];
+    surface.deform(geometry, pose, active, |vertex, position, anchor_from_mesh| {
+        let linear = &anchor_from_mesh.matrix3;
+        positions[vertex] = position.as_vec3();
+        if let Some(smooth) = &geometry.normals {
+            let normal = Geometry::morphed_normal(smooth, vertex, active);
+            normals[vertex] = carried_normal(linear, normal);
+            return;
+        }
+        corners[vertex % 3] = position;
+        if vertex % 3 == 2 {
+            normals[vertex - 2..=vertex].fill(face_normal(linear, corners));
+        }
+    });
+}

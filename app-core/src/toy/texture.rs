@@ -1,0 +1,144 @@
+//! Pictures embedded in the file, decoded to bytes.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::io::Cursor;
+
+use gltf::json::Image;
+use image::{ImageFormat, ImageReader};
+
+use super::accessor::Source;
+use super::error::{Flaw, ToyProblem, ToyWarning};
+use super::limits::{MAX_TEXELS, MAX_TEXTURE_SIDE_PX};
+
+/// A picture on a surface.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// Columns; at least one.
+    pub width_px: u32,
+    /// Rows; at least one.
+    pub height_px: u32,
+    /// `width_px * height_px * 4` bytes, rows from top to bottom; RGB is sRGB-encoded, alpha is not.
+    pub rgba8_srgb: Vec<u8>,
+}
+
+impl fmt::Debug for Texture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Texture({} x {} px)", self.width_px, self.height_px)
+    }
+}
+
+/// The pictures decoded so far, each once.
+pub(super) struct TextureStore<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) textures: Vec<Texture>,
+    texture_from_image: HashMap<usize, Option<usize>>,
+    n_texels: u64,
+}
+
+impl<'a> TextureStore<'a> {
+    pub(super) fn new(source: &'a Source<'a>) -> Self {
+        Self {
+            source,
+            textures: Vec::new(),
+            texture_from_image: HashMap::new(),
+            n_texels: 0,
+        }
+    }
+
+    /// The texture of an image; `None`, with a warning, where the image is not one that is read.
+    pub(super) fn texture(
+        &mut self,
+        index: usize,
+        image: &Image,
+        warnings: &mut Vec<ToyWarning>,
+    ) -> Result<Option<usize>, Flaw> {
+        if let Some(&texture) = self.texture_from_image.get(&index) {
+            return Ok(texture);
+        }
+        let field = format!("images[{index}]");
+        let bytes = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => Some(self.source.view(&field, view)?.0.to_vec()),
+            (None, Some(uri)) => bytes_from_data_uri(uri),
+            (None, None) => return Err(ToyProblem::Missing.at(format!("{field}.bufferView"))),
+        };
+        let format = bytes.as_ref().and_then(|bytes| image::guess_format(bytes).ok());
+        let texture = match (bytes, format) {
+            (Some(bytes), Some(format @ (ImageFormat::Png | ImageFormat::Jpeg))) => {
+                let texture = self.decode(&bytes, format).map_err(|problem| problem.at(field))?;
+                self.textures.push(texture);
+                Some(self.textures.len() - 1)
+            }
+            _ => {
+                warnings.push(ToyWarning::ImageIgnored { field });
+                None
+            }
+        };
+        self.texture_from_image.insert(index, texture);
+        Ok(texture)
+    }
+
+    fn decode(&mut self, bytes: &[u8], format: ImageFormat) -> Result<Texture, ToyProblem> {
+        let reader = || ImageReader::with_format(Cursor::new(bytes), format);
+        // From the header alone, so that a lying one cannot make the decoder allocate.
+        let (width_px, height_px) = reader().into_dimensions()?;
+        let side = width_px.max(height_px);
+        if side > MAX_TEXTURE_SIDE_PX {
+            let (found, limit) = (u64::from(side), u64::from(MAX_TEXTURE_SIDE_PX));
+            return Err(ToyProblem::TooMany {
+                what: "pixels on one side",
+                found,
+                limit,
+            });
+        }
+        self.n_texels += u64::from(width_px) * u64::from(height_px);
+        if self.n_texels > MAX_TEXELS {
+            return Err(ToyProblem::TooMany {
+                what: "texels",
+                found: self.n_texels,
+                limit: MAX_TEXELS,
+            });
+        }
+        let rgba8_srgb = reader().decode()?.into_rgba8().into_raw();
+        Ok(Texture {
+            width_px,
+            height_px,
+            rgba8_srgb,
+        })
+    }
+}
+
+/// The bytes of a base64 data URI; `None` for any other URI.
+fn bytes_from_data_uri(uri: &str) -> Option<Vec<u8>> {
+    let (head, text) = uri.strip_prefix("data:")?.split_once(',')?;
+    head.ends_with(";base64").then(|| bytes_from_base64(text))?
+}
+
+/// Source: RFC 4648, section 4.
+fn bytes_from_base64(text: &str) -> Option<Vec<u8>> {
+    let text = text.trim_end_matches('=').as_bytes();
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
+    for quad in text.chunks(4) {
+        let mut bits = 0_u32;
+        for &symbol in quad {
+            bits = bits << 6 | sextet(symbol)?;
+        }
+        // A short last group holds one byte in two symbols or two bytes in three.
+        let n_bytes = quad.len() * 6 / 8;
+        bits <<= 6 * (4 - quad.len());
+        bytes.extend_from_slice(&bits.to_be_bytes()[1..=n_bytes]);
+    }
+    Some(bytes)
+}
+
+fn sextet(symbol: u8) -> Option<u32> {
+    let value = match symbol {
+        b'A'..=b'Z' => symbol - b'A',
+        b'a'..=b'z' => symbol - b'a' + 26,
+        b'0'..=b'9' => symbol - b'0' + 52,
+        b'+' => 62,
+        b'/' => 63,
+        _ => return None,
+    };
+    Some(value.into())
+}

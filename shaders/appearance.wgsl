@@ -1,0 +1,41 @@
+// The toy's own colours from the camera frame, carried a little past its outline.
+//
+// Where a pixel mixes two surfaces its colour is taken from the nearest pixels that show one, preferring those at its own
+// depth, so that a moved limb carries no rim of what was behind it.
+//
+// Reads: frame, evidence, depth of the physical toy. Writes: linear colour, alpha 1 where a colour was found.
+
+@group(1) @binding(0) var frame: texture_2d<f32>;
+@group(1) @binding(1) var evidence: texture_2d<f32>;
+@group(1) @binding(2) var object_depth: texture_depth_2d;
+
+// Farthest that a pixel of one surface is looked for.
+const REACH_PX: i32 = 3;
+// Weight of a colour at another depth: counts where there is no other.
+const OTHER_SURFACE: f32 = 1e-4;
+
+fn frame_at(texel: vec2i) -> vec3f {
+  return textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
+}
+
+@fragment
+fn fs_clean(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2i(at.xy);
+  if textureLoad(evidence, texel, 0).g == 1.0 { return vec4f(frame_at(texel), 1.0); }
+  let last = vec2i(globals.region_size_px) - 1;
+  let here = textureLoad(object_depth, texel, 0);
+  var sum = vec4f(0.0);
+  for (var y = -REACH_PX; y <= REACH_PX; y++) {
+    for (var x = -REACH_PX; x <= REACH_PX; x++) {
+      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      if textureLoad(evidence, other, 0).g == 0.0 { continue; }
+      let distance_squared = max(f32(x * x + y * y), 1.0);
+      let is_own = here == 0.0 || is_same_surface(here, textureLoad(object_depth, other, 0));
+      let weight = select(OTHER_SURFACE, 1.0, is_own) / (distance_squared * distance_squared);
+      sum += weight * vec4f(frame_at(other), 1.0);
+    }
+  }
+  if sum.a > 0.0 { return sum / sum.a; }
+  // A part too thin to have such a pixel: its own is the best there is.
+  return select(vec4f(0.0), vec4f(frame_at(texel), 1.0), here > 0.0);
+}

@@ -1,0 +1,18 @@
+// What the least squares learn from the real shadow and from the real toy.
+
+const N_COLUMNS: u32 = 6u;
+
+struct Fit {
+  // Frame over plate where nothing changed: the exposure between the two.
+  gain: vec4f,
+  // Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
+  bounce: vec4f,
+  // Each light's share of the plate's radiance at the reference point.
+  share: array<vec4f, MAX_LIGHTS>,
+  // Radiance of the toy over its base colour: constant, vertical gradient, and one factor per light's cosine.
+  toy: array<vec4f, N_COLUMNS>,
+  // Energy of the light columns over that of the plate: how much real shadow the fit has seen.
+  contrast: vec4f,
+}
+
+@group(0) @binding(1) var<storage, read> fit: Fit;

@@ -1,0 +1,14 @@
+// One step of the iteratively reweighted least squares.
+
+const SUBJECT_RECEIVER: u32 = 0u;
+const SUBJECT_TOY: u32 = 1u;
+
+struct FitStep {
+  // 0 in the first step: there is no solution yet, all weights are 1.
+  is_reweighted: u32,
+  // Workgroups a channel, each of which leaves a row of sums a channel.
+  n_rows: u32,
+  // Unknowns: two, and one a light.
+  n_columns: u32,
+  subject: u32,
+}

@@ -1,0 +1,20 @@
+// Base colour of the toy's model, linear.
+
+struct Material {
+  base_color_linear: vec4f,
+}
+
+@group(2) @binding(0) var<uniform> material: Material;
+@group(2) @binding(1) var base_texture: texture_2d<f32>;
+@group(2) @binding(2) var base_sampler: sampler;
+
+fn base_color(uv: vec2f, vertex_color: vec4f) -> vec3f {
+  return (material.base_color_linear * vertex_color * textureSample(base_texture, base_sampler, uv)).rgb;
+}
+
+// Interpolated normals can vanish between opposite ones; up is as good as any direction there.
+fn unit_normal(v: vec3f) -> vec3f {
+  let length_squared = dot(v, v);
+  if length_squared == 0.0 { return vec3f(0.0, 1.0, 0.0); }
+  return v * inverseSqrt(length_squared);
+}

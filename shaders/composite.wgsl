@@ -1,0 +1,139 @@
+// The picture: plate times new shadow, real toy and real shadow gone, animated toy drawn with its camera pixels.
+//
+//   out = plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
+//   out = frame + plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame passes
+//
+// Reads: all that was captured, visibility and ambient of the animated pose. Writes: linear colour, opaque.
+// Twin: reference/composite.rs.
+
+@group(1) @binding(0) var<uniform> grid: Grid;
+@group(1) @binding(1) var<storage, read> cells: array<vec4f>;
+@group(1) @binding(2) var frame: texture_2d<f32>;
+@group(1) @binding(3) var plate: texture_2d<f32>;
+@group(1) @binding(4) var evidence: texture_2d<f32>;
+@group(1) @binding(5) var physical_visibility: texture_2d<f32>;
+@group(1) @binding(6) var physical_ambient: texture_2d<f32>;
+@group(1) @binding(7) var visibility: texture_2d<f32>;
+@group(1) @binding(8) var ambient: texture_2d<f32>;
+@group(1) @binding(9) var linear_sampler: sampler;
+@group(1) @binding(10) var appearance: texture_2d<f32>;
+@group(1) @binding(11) var object_depth: texture_depth_2d;
+
+// Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
+const KEEP_ALL: f32 = 0.02;
+const KEEP_NONE: f32 = 0.15;
+// Change of the model from which the pooled residual no longer holds at half its size.
+const RESIDUAL_HALF: f32 = 0.5;
+// A turned surface is never made more than this much brighter or darker than its camera pixel.
+const MAX_TURN: f32 = 3.0;
+// Cosine to the camera, in the physical pose, under which a surface is too grazing for its pixels to be carried.
+const GRAZING_COSINE: f32 = 0.15;
+
+fn pooled_residual(region_px: vec2f) -> vec3f {
+  let at = region_px / f32(grid.cell_px) - 0.5;
+  let low = floor(at);
+  let t = at - low;
+  var sum = vec3f(0.0);
+  for (var k = 0u; k < 4u; k++) {
+    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
+    let cell = vec2u(clamp(low + corner, vec2f(0.0), vec2f(grid.size) - 1.0));
+    let weight = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
+    sum += weight * cells[cell.y * grid.size.x + cell.x].rgb;
+  }
+  return sum;
+}
+
+// 1 inside, falling to 0 at an inner border of the region.
+fn inside_border(region_px: vec2f) -> f32 {
+  let to_edge = vec4f(region_px, globals.region_size_px - region_px);
+  let fade = select(vec4f(1.0), to_edge / globals.border_px, globals.border_px > vec4f(0.0));
+  return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
+}
+
+@fragment
+fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(position.xy);
+  let at = position.xy;
+  let image_texel = texel + vec2u(globals.region_origin_px);
+  let f = textureLoad(frame, image_texel, 0).rgb;
+  let point = receiver_point(at);
+  let b = textureLoad(plate, image_texel, 0).rgb;
+  if !point.is_hit { return vec4f(f, 1.0); }
+  let uv = at / globals.region_size_px;
+  let before = receiver_model(point.in_plane, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
+    textureLoad(physical_visibility, texel, 0));
+  let after = receiver_model(point.in_plane, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
+    textureLoad(visibility, texel, 0));
+  let change = abs(after - before);
+  let most = max(change.r, max(change.g, change.b));
+  let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
+  let seen = textureLoad(evidence, texel, 0).r;
+  let keep = seen * (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most));
+  let made = b * max(after + residual, vec3f(0.0));
+  let kept = f + b * (after - before);
+  let inside = max(inside_border(at), 1.0 - seen);
+  return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
+}
+
+struct Vertex {
+  @location(0) in_plane: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_plane: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+struct Surface {
+  @builtin(position) clip: vec4f,
+  @location(0) in_plane: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_plane: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+@vertex
+fn vs_toy(in: Vertex) -> Surface {
+  return Surface(globals.clip_from_plane * vec4f(in.in_plane, 1.0), in.in_plane, in.normal, in.uv, in.color,
+    in.physical_in_plane, in.physical_normal);
+}
+
+fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
+  var sum = vec3f(0.0);
+  for (var i = 0u; i < 2u + globals.n_lights; i++) { sum += fit.toy[i].rgb * toy_column(i, normal, in_plane); }
+  return max(sum, vec3f(0.0));
+}
+
+// How far the camera sees this point of the physical toy, 0 to 1.
+fn physical_visibility_to_camera(clip: vec4f, region_px: vec2f, normal: vec3f, in_plane: vec3f) -> f32 {
+  if any(region_px < vec2f(0.0)) || any(region_px >= globals.region_size_px) { return 0.0; }
+  let last = vec2i(globals.region_size_px) - 1;
+  let depth = clip.z / clip.w;
+  let corner = vec2i(floor(region_px - 0.5));
+  var is_seen = false;
+  for (var k = 0; k < 4; k++) {
+    let texel = clamp(corner + vec2i(k & 1, k >> 1), vec2i(0), last);
+    let surface = textureLoad(object_depth, texel, 0);
+    if depth >= surface || is_same_surface(depth, surface) { is_seen = true; }
+  }
+  let facing = dot(normal, normalize(globals.camera_in_plane - in_plane));
+  return select(0.0, smoothstep(0.0, GRAZING_COSINE, facing), is_seen);
+}
+
+@fragment
+fn fs_toy(in: Surface) -> @location(0) vec4f {
+  let base = base_color(in.uv, in.color);
+  let normal = unit_normal(in.normal);
+  let physical_normal = unit_normal(in.physical_normal);
+  let lit = toy_radiance_over_base(normal, in.in_plane);
+  let clip = globals.clip_from_plane * vec4f(in.physical_in_plane, 1.0);
+  let uv = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
+  let seen = physical_visibility_to_camera(clip, uv * globals.region_size_px, physical_normal, in.physical_in_plane);
+  let pixel = textureSampleLevel(appearance, linear_sampler, uv, 0.0);
+  let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);
+  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
+  let carried = pixel.rgb * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
+  return vec4f(mix(base * lit, carried, seen * step(0.999, pixel.a)), 1.0);
+}

@@ -1,0 +1,63 @@
+// Shadows of the posed toy on the receiver, from 16 points of a light a colour target, in one pass.
+//
+// Each instance flattens the mesh from one light point onto the receiver and draws it where the camera sees it, so a
+// contact edge is as sharp as the screen. Point i sets channel (i / 4) % 4 of target i / 16 at multisample position
+// i % 4; blending keeps the maximum, and the resolve averages four points. No depth, hence no bias and no acne.
+//
+// Reads: posed positions in plane space. Writes: share of four light points hidden, per channel, in [0, 1].
+// Twin: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections); Blinn 1988 (flattening).
+// Here the accumulation is done by the multisample resolve of one pass rather than by one pass a point.
+
+struct LightPoints {
+  // Homogeneous, in plane space: (position, 1) or (unit direction, 0).
+  points: array<vec4f, 64>,
+}
+
+@group(1) @binding(0) var<uniform> light_points: LightPoints;
+
+// Depth in metres nearer than which a flattened point is cut off.
+const NEAR_M: f32 = 0.01;
+
+struct Flattened {
+  @builtin(position) clip: vec4f,
+  @location(0) height_m: f32,
+  @location(1) @interpolate(flat, either) point: u32,
+}
+
+@vertex
+fn vs_flatten(@location(0) in_plane: vec3f, @builtin(instance_index) point: u32) -> Flattened {
+  let light = light_points.points[point];
+  // The line from the light through the vertex meets y = 0 at shadow.xy / shadow.z; shadow.z is the height by which the
+  // light is above the vertex. Nothing is divided here: a vertex above the light is for the rasteriser to clip.
+  let shadow = vec3f(light.y * in_plane.xz - in_plane.y * light.xz, light.y - light.w * in_plane.y);
+  let at = globals.clip_from_receiver * shadow;
+  var out: Flattened;
+  // 0 <= z keeps what the camera has in front of it, z <= w what the light has below it.
+  out.clip = vec4f(at.xy, at.z - NEAR_M * shadow.z, at.z);
+  out.height_m = in_plane.y;
+  out.point = point;
+  return out;
+}
+
+struct Hidden {
+  @location(0) points_0: vec4f,
+  @location(1) points_16: vec4f,
+  @location(2) points_32: vec4f,
+  @location(3) points_48: vec4f,
+  @builtin(sample_mask) samples: u32,
+}
+
+@fragment
+fn fs_cover(in: Flattened) -> Hidden {
+  // What lies under the receiver casts nothing on it.
+  if in.height_m < 0.0 { discard; }
+  let one = vec4f(vec4u(0u, 1u, 2u, 3u) == vec4u((in.point / 4u) % 4u));
+  let slot = in.point / 16u;
+  return Hidden(
+    select(vec4f(0.0), one, slot == 0u),
+    select(vec4f(0.0), one, slot == 1u),
+    select(vec4f(0.0), one, slot == 2u),
+    select(vec4f(0.0), one, slot == 3u),
+    1u << (in.point % 4u),
+  );
+}

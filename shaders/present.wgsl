@@ -1,0 +1,21 @@
+// The camera image with the work region laid over it, code for code.
+//
+// Reads: frame and composite as 8-bit codes. Writes: codes, opaque.
+
+struct Placement {
+  origin_px: vec2u,
+  size_px: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> placement: Placement;
+@group(1) @binding(1) var frame_codes: texture_2d<f32>;
+@group(1) @binding(2) var region_codes: texture_2d<f32>;
+
+@fragment
+fn fs_place(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(at.xy);
+  // Wraps to a large number left of the region and above it.
+  let in_region = texel - placement.origin_px;
+  if all(in_region < placement.size_px) { return vec4f(textureLoad(region_codes, in_region, 0).rgb, 1.0); }
+  return vec4f(textureLoad(frame_codes, texel, 0).rgb, 1.0);
+}

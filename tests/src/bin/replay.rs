@@ -1,0 +1,144 @@
+//! Replays a recorded session through the core and writes its pictures and a report.
+
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::session::Capture;
+use app_core::wgpu;
+use clap::Parser;
+use harness::files::Folder;
+use harness::progress::{Progress, Quiet, on_stderr};
+use harness::replay::{Options, REPORT_FILE, replay};
+use harness::report::Report;
+
+/// The session that comes with the project.
+const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+/// Where results go that were given no place.
+const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/replay");
+
+/// Replay a recorded session: one picture per frame, and report.json with times, passes and, where there is a truth,
+/// errors.
+#[derive(Parser)]
+#[command(name = "replay")]
+struct Args {
+    /// Folder of the session [default: the bundled one]
+    session: Option<PathBuf>,
+    /// Folder for pictures and report [default: target/replay/ and the name of the session's folder]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How much work a frame may cost
+    #[arg(long, value_name = "NAME", default_value_t)]
+    preset: Preset,
+    /// Only frames A up to, but without, B
+    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    frames: Option<Range<usize>>,
+    /// Part of a graphics adapter's name [default: the fastest]
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Drivers and parsers may speak in several lines.
+            let message = format!("{error:#}")
+                .lines()
+                .map(str::trim)
+                .collect::<Vec<_>>()
+                .join(" ");
+            let _ = writeln!(io::stderr(), "error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let folder = args.session.as_deref().unwrap_or(Path::new(BUNDLED_SESSION));
+    let out = match &args.out {
+        Some(out) => out.clone(),
+        None => default_out(folder)?,
+    };
+    let capture = Capture::open(Folder::open(folder)?).with_context(|| folder.display().to_string())?;
+    let adapter = args
+        .adapter
+        .clone()
+        .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    let options = Options {
+        preset: args.preset,
+        frames: args.frames.clone(),
+        out: Some(out.clone()),
+    };
+    let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
+    let report = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
+    if !args.quiet {
+        io::stdout()
+            .write_all(summary(&report, &out).as_bytes())
+            .context("writing to standard output")?;
+    }
+    Ok(())
+}
+
+/// `A..B` with A < B.
+fn parse_frames(text: &str) -> Result<Range<usize>, String> {
+    let wanted = "two numbers A..B, the first smaller than the second";
+    let (start, end) = text.split_once("..").ok_or(wanted)?;
+    let number = |text: &str| text.parse::<usize>().map_err(|_| wanted);
+    let frames = number(start)?..number(end)?;
+    if frames.is_empty() {
+        Err(wanted.to_owned())
+    } else {
+        Ok(frames)
+    }
+}
+
+fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
+    // `.` and `..` have a name of their own only when they are followed.
+    let session = session
+        .canonicalize()
+        .with_context(|| session.display().to_string())?;
+    let results = std::path::absolute(RESULTS).context("finding target/replay")?;
+    Ok(results.join(session.file_name().unwrap_or("session".as_ref())))
+}
+
+fn summary(report: &Report, out: &Path) -> String {
+    let mut lines = vec![format!(
+        "{} with preset {} on {}",
+        report.session, report.preset, report.adapter
+    )];
+    lines.extend(
+        report
+            .warnings
+            .iter()
+            .map(|warning| format!("warning: {warning}")),
+    );
+    if let Some(scores) = report.mean.scores {
+        let regions = [
+            ("shadow", scores.shadow),
+            ("toy", scores.toy),
+            ("edge", scores.edge),
+            ("frame", scores.frame),
+        ]
+        .map(|(name, score)| format!("{name} {:.2} ({:.4})", score.rmse, score.ssim));
+        lines.push(format!(
+            "mean RMSE (SSIM) against the truth: {}",
+            regions.join(", ")
+        ));
+    }
+    lines.push(format!(
+        "{} pictures and {REPORT_FILE} in {}",
+        report.frames.len(),
+        out.display()
+    ));
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,278 @@
+//! Broken files, and what the refusal must say.
+
+use std::io::Cursor;
+
+use serde_json::json;
+
+use super::builder::{CORNERS, Glb, skinned, triangle};
+
+/// A file and words of its refusal: the field and the reason.
+pub(crate) struct Refusal {
+    pub(crate) name: &'static str,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) words: Vec<&'static str>,
+}
+
+fn broken(name: &'static str, words: &[&'static str], glb: Glb) -> Refusal {
+    Refusal {
+        name,
+        bytes: glb.bytes(),
+        words: words.to_vec(),
+    }
+}
+
+/// A triangle, with one change to its tree.
+fn changed(name: &'static str, words: &[&'static str], change: impl Fn(&mut Glb)) -> Refusal {
+    let mut glb = triangle();
+    change(&mut glb);
+    broken(name, words, glb)
+}
+
+pub(crate) fn refusals() -> Vec<Refusal> {
+    [
+        containers(),
+        references(),
+        numbers(),
+        skins(),
+        animations(),
+        pictures(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn containers() -> Vec<Refusal> {
+    let whole = triangle().bytes();
+    let mut short_header = whole.clone();
+    short_header[8..12].copy_from_slice(&3_u32.to_le_bytes());
+    let raw = |name, bytes: Vec<u8>, words: &[&'static str]| Refusal {
+        name,
+        bytes,
+        words: words.to_vec(),
+    };
+    vec![
+        raw("empty", Vec::new(), &["file", "not binary glTF"]),
+        raw(
+            "truncated",
+            whole[..whole.len() / 2].to_vec(),
+            &["file", "not binary glTF"],
+        ),
+        raw("header of 3 bytes", short_header, &["file", "3 bytes"]),
+        changed("no number", &["JSON chunk", "three", "column"], |glb| {
+            glb.json["accessors"][0]["count"] = json!("three");
+        }),
+        changed(
+            "compressed",
+            &["extensionsRequired[0]", "KHR_draco_mesh_compression"],
+            |glb| {
+                glb.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+            },
+        ),
+        changed("external buffer", &["buffers[0]", "outside the file"], |glb| {
+            glb.json["buffers"] = json!([{ "byteLength": 72, "uri": "../../etc/passwd" }]);
+        }),
+    ]
+}
+
+fn references() -> Vec<Refusal> {
+    let position = "meshes[0].primitives[0].attributes.POSITION";
+    vec![
+        changed("no such accessor", &[position, "refers to accessor 99"], |glb| {
+            glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99.into();
+        }),
+        changed("no positions", &[position, "missing"], |glb| {
+            let attributes = &mut glb.json["meshes"][0]["primitives"][0]["attributes"];
+            attributes.as_object_mut().unwrap().remove("POSITION");
+        }),
+        changed(
+            "no such vertex",
+            &["primitives[0].indices", "refers to vertex 3"],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 3]);
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+            },
+        ),
+        changed("no triangles", &["meshes", "no triangles"], |glb| {
+            let indices = glb.u16s("SCALAR", &[0, 1, 1]);
+            glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+        }),
+        changed("cycle", &["nodes[1].children", "cycle"], |glb| {
+            glb.push("nodes", json!({ "children": [2] }));
+            glb.push("nodes", json!({ "children": [1] }));
+        }),
+        changed(
+            "two parents",
+            &["nodes[2].children", "node 0 has two parents"],
+            |glb| {
+                glb.push("nodes", json!({ "children": [0] }));
+                glb.push("nodes", json!({ "children": [0] }));
+            },
+        ),
+        changed(
+            "beyond the view",
+            &[position, "reaches to byte 48", "36"],
+            |glb| {
+                glb.json["accessors"][0]["count"] = 4.into();
+            },
+        ),
+        changed(
+            "beyond the buffer",
+            &["bufferViews[0]", "reaches to byte 100000"],
+            |glb| {
+                glb.json["bufferViews"][0]["byteLength"] = 100_000.into();
+            },
+        ),
+        changed(
+            "offset near 2^64",
+            &[position, "reaches to byte 18446744073709551615"],
+            |glb| {
+                glb.json["accessors"][0]["byteOffset"] = json!(u64::MAX - 3);
+            },
+        ),
+        changed("giant count", &[position, "more than"], |glb| {
+            glb.json["accessors"][0] = json!({ "componentType": 5126, "type": "VEC3", "count": 1_u64 << 62 });
+        }),
+        changed("overlapping elements", &[position, "stride of 8"], |glb| {
+            glb.json["bufferViews"][0]["byteStride"] = 8.into();
+        }),
+    ]
+}
+
+fn numbers() -> Vec<Refusal> {
+    let mut nan_position = triangle();
+    let mut corners = CORNERS;
+    corners[4] = f32::NAN;
+    let corners = nan_position.floats("VEC3", &corners);
+    nan_position.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = corners.into();
+    vec![
+        broken(
+            "NaN position",
+            &[
+                "meshes[0].primitives[0].attributes.POSITION (accessor 2)",
+                "1 of 9 numbers",
+                "element 1",
+            ],
+            nan_position,
+        ),
+        changed("infinite scale", &["nodes[0].scale", "not finite"], |glb| {
+            glb.json["nodes"][0]["scale"] = json!([1.0, 1e39, 1.0]);
+        }),
+        changed(
+            "rotation of length zero",
+            &["nodes[0].rotation", "length zero"],
+            |glb| {
+                glb.json["nodes"][0]["rotation"] = json!([0.0, 0.0, 0.0, 0.0]);
+            },
+        ),
+        changed("projection", &["nodes[0].matrix", "not affine"], |glb| {
+            glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+        }),
+        changed("sparse out of order", &["sparse", "index 1"], |glb| {
+            let (indices, values) = (glb.view(&[1, 1]), glb.view(&[0; 24]));
+            glb.json["accessors"][0]["sparse"] = json!({ "count": 2,
+                "indices": { "bufferView": indices, "componentType": 5121 },
+                "values": { "bufferView": values } });
+        }),
+        changed(
+            "morph weights",
+            &["nodes[0].weights", "has 2 weights, but 0"],
+            |glb| {
+                glb.json["nodes"][0]["weights"] = json!([0.0, 0.0]);
+            },
+        ),
+    ]
+}
+
+fn skins() -> Vec<Refusal> {
+    let joints = |glb: &mut Glb| glb.u16s("VEC4", &[0, 7, 0, 0].repeat(3));
+    let weights = |glb: &mut Glb| glb.floats("VEC4", &[0.5, 0.5, 0.0, 0.0].repeat(3));
+    let nan = |glb: &mut Glb| glb.floats("VEC4", &[f32::NAN, 0.5, 0.0, 0.0].repeat(3));
+    let mut few_matrices = skinned(|glb| glb.u16s("VEC4", &[0; 12]), weights);
+    few_matrices.json["skins"][0]["joints"] = json!([1, 2, 0]);
+    vec![
+        broken(
+            "no such joint",
+            &["JOINTS with skins[0]", "refers to joint 7"],
+            skinned(joints, weights),
+        ),
+        broken(
+            "NaN weight",
+            &["WEIGHTS_0", "3 of 12 numbers"],
+            skinned(joints, nan),
+        ),
+        broken(
+            "few matrices",
+            &["skins[0].inverseBindMatrices", "has 2 matrices, but 3"],
+            few_matrices,
+        ),
+    ]
+}
+
+fn animations() -> Vec<Refusal> {
+    let animated = |name, words: &[&'static str], times: &[f32], values: &[f32]| {
+        changed(name, words, |glb| {
+            let keys = [glb.floats("SCALAR", times), glb.floats("VEC3", values)];
+            glb.animate("move", "translation", "LINEAR", keys);
+        })
+    };
+    let output = "animations[0].samplers[0].output";
+    vec![
+        animated(
+            "keys that stand still",
+            &["samplers[0].input", "key 1"],
+            &[1.0, 1.0],
+            &[0.0; 6],
+        ),
+        animated(
+            "too few values",
+            &[output, "has 3 numbers, but 6"],
+            &[0.0, 1.0],
+            &[0.0; 3],
+        ),
+        animated(
+            "infinite value",
+            &[output, "not finite"],
+            &[0.0],
+            &[f32::INFINITY, 0.0, 0.0],
+        ),
+        changed(
+            "animated matrix",
+            &["animations[0].channels[0]", "by a matrix"],
+            |glb| {
+                glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+                let keys = [glb.floats("SCALAR", &[0.0]), glb.floats("VEC3", &[0.0; 3])];
+                glb.animate("move", "translation", "LINEAR", keys);
+            },
+        ),
+    ]
+}
+
+fn pictures() -> Vec<Refusal> {
+    let wide = png(9000);
+    let textured = |name, words: &[&'static str], picture: &[u8]| {
+        changed(name, words, |glb| {
+            let view = glb.view(picture);
+            glb.json["images"] = json!([{ "bufferView": view }]);
+            glb.json["textures"] = json!([{ "source": 0 }]);
+            let base_color = json!({ "baseColorTexture": { "index": 0 } });
+            glb.json["materials"] = json!([{ "pbrMetallicRoughness": base_color }]);
+            glb.json["meshes"][0]["primitives"][0]["material"] = 0.into();
+        })
+    };
+    vec![
+        textured("wide picture", &["images[0]", "9000 pixels on one side"], &wide),
+        textured(
+            "cut picture",
+            &["images[0]", "cannot be decoded"],
+            &png(100)[..60],
+        ),
+    ]
+}
+
+fn png(width_px: u32) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let picture = image::RgbImage::new(width_px, 1);
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
