@@ -26,8 +26,12 @@ const KEEP_NONE: f32 = 0.15;
 const RESIDUAL_HALF: f32 = 0.5;
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
 const MAX_TURN: f32 = 3.0;
-// Cosine to the camera, in the physical pose, under which a surface is too grazing for its pixels to be carried.
-const GRAZING_COSINE: f32 = 0.15;
+// Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
+// a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
+const STRETCH_ALL: f32 = 0.3;
+const STRETCH_NONE: f32 = 0.1;
+// Weight of colours carried past the outline, against those of the surface itself.
+const CARRIED_WEIGHT: f32 = 1e-3;
 
 fn pooled_residual(region_px: vec2f) -> vec3f {
   let at = region_px / f32(grid.cell_px) - 0.5;
@@ -106,20 +110,38 @@ fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
   return max(sum, vec3f(0.0));
 }
 
-// How far the camera sees this point of the physical toy, 0 to 1.
-fn physical_visibility_to_camera(clip: vec4f, region_px: vec2f, normal: vec3f, in_plane: vec3f) -> f32 {
-  if any(region_px < vec2f(0.0)) || any(region_px >= globals.region_size_px) { return 0.0; }
-  let last = vec2i(globals.region_size_px) - 1;
+// The camera's colour of a point of the physical toy, alpha 0 where something hides it.
+//
+// Of the four pixels around it only those count that show its own surface, or that lie beyond the toy's outline where
+// `appearance` carried its colours.
+fn camera_color(clip: vec4f, region_px: vec2f) -> vec4f {
   let depth = clip.z / clip.w;
-  let corner = vec2i(floor(region_px - 0.5));
-  var is_seen = false;
-  for (var k = 0; k < 4; k++) {
-    let texel = clamp(corner + vec2i(k & 1, k >> 1), vec2i(0), last);
+  let at = region_px - 0.5;
+  let low = floor(at);
+  let t = at - low;
+  let last = globals.region_size_px - 1.0;
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < 4u; k++) {
+    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
+    let tap = low + corner;
+    if any(tap < vec2f(0.0)) || any(tap > last) { continue; }
+    let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
-    if depth >= surface || is_same_surface(depth, surface) { is_seen = true; }
+    if surface > depth && !is_same_surface(surface, depth) { continue; }
+    let color = textureLoad(appearance, texel, 0);
+    let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
+    let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
+    sum += weight * vec4f(color.rgb, 1.0);
   }
-  let facing = dot(normal, normalize(globals.camera_in_plane - in_plane));
-  return select(0.0, smoothstep(0.0, GRAZING_COSINE, facing), is_seen);
+  if sum.a == 0.0 { return sum; }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
+fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
+  let across = cross(dpdx(in_plane), dpdy(in_plane));
+  let outward = unit_normal(across * sign(dot(across, normal)));
+  return dot(outward, normalize(globals.camera_in_plane - in_plane));
 }
 
 @fragment
@@ -127,13 +149,15 @@ fn fs_toy(in: Surface) -> @location(0) vec4f {
   let base = base_color(in.uv, in.color);
   let normal = unit_normal(in.normal);
   let physical_normal = unit_normal(in.physical_normal);
-  let lit = toy_radiance_over_base(normal, in.in_plane);
+  let physical_facing = facing(in.physical_in_plane, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_plane * vec4f(in.physical_in_plane, 1.0);
-  let uv = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
-  let seen = physical_visibility_to_camera(clip, uv * globals.region_size_px, physical_normal, in.physical_in_plane);
-  let pixel = textureSampleLevel(appearance, linear_sampler, uv, 0.0);
+  let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
+  let pixel = camera_color(clip, region_px);
+  let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
+  let lit = toy_radiance_over_base(normal, in.in_plane);
   let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);
   let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
   let carried = pixel.rgb * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
-  return vec4f(mix(base * lit, carried, seen * step(0.999, pixel.a)), 1.0);
+  return vec4f(mix(base * lit, carried, seen), 1.0);
 }

@@ -22,15 +22,17 @@ fn is_clear_of_toy(texel: vec2i) -> bool {
   return true;
 }
 
+// The depths on both sides of `here` lie on one line with it, or nearly: a fold passes, a step does not.
+fn is_straight(texel: vec2i, side: vec2i, here: f32) -> bool {
+  let before = depth_at(texel - side);
+  let after = depth_at(texel + side);
+  return min(before, after) > 0.0 && abs(before + after - 2.0 * here) <= DEPTH_BEND * here;
+}
+
 fn is_one_surface(texel: vec2i) -> bool {
   let here = depth_at(texel);
-  if here == 0.0 { return false; }
-  for (var y = -1; y <= 1; y++) {
-    for (var x = -1; x <= 1; x++) {
-      if !is_same_surface(here, depth_at(texel + vec2i(x, y))) { return false; }
-    }
-  }
-  return true;
+  return here > 0.0 && is_straight(texel, vec2i(1, 0), here) && is_straight(texel, vec2i(0, 1), here)
+    && is_straight(texel, vec2i(1, 1), here) && is_straight(texel, vec2i(1, -1), here);
 }
 
 @fragment

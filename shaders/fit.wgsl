@@ -94,11 +94,11 @@ fn cs_accumulate(
   @builtin(workgroup_id) group: vec3u,
   @builtin(local_invocation_index) lane: u32,
 ) {
-  let size = vec2u(globals.region_size_px);
+  let size = vec2u(globals.region_size_px) / step.stride_px;
   let channel = group.z;
   var sums: array<f32, N_SUMS>;
   for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
-    let texel = vec2u(index % size.x, index / size.x);
+    let texel = vec2u(index % size.x, index / size.x) * step.stride_px;
     var eq: Equation;
     if step.subject == SUBJECT_RECEIVER { eq = receiver_equation(texel, channel); } else { eq = toy_equation(texel, channel); }
     if eq.weight == 0.0 { continue; }

@@ -10,6 +10,8 @@
 const N_SUMS: u32 = 27u;
 // Weight of the priors against the energy of the first column.
 const PRIOR_WEIGHT: f32 = 1e-4;
+// Weight of the three channels' common solution, for the toy, against their common energy.
+const WHITE_WEIGHT: f32 = 0.003;
 // A toy of middle grey throws back this fraction of the ambient light it takes away.
 const PRIOR_BOUNCE: f32 = 0.2;
 // All lights together, half of the plate's radiance.
@@ -22,26 +24,33 @@ var<workgroup> sums: array<f32, 81>;
 var<private> matrix: array<f32, 36>;
 var<private> unknowns: array<f32, N_COLUMNS>;
 
-fn prior(column: u32) -> f32 {
-  if step.subject == SUBJECT_TOY { return 0.0; }
+fn receiver_prior(column: u32) -> f32 {
   if column == 0u { return 1.0; }
   if column == 1u { return PRIOR_BOUNCE; }
   return PRIOR_SHARE / f32(step.n_columns - 2u);
 }
 
-fn load_equations(channel: u32) {
-  let energy = sums[channel * N_SUMS];
-  var k = 0u;
+fn load_equations(first_channel: u32, n_channels: u32) {
   for (var i = 0u; i < N_COLUMNS; i++) {
-    for (var j = i; j < N_COLUMNS; j++) {
-      matrix[i * N_COLUMNS + j] = sums[channel * N_SUMS + k];
-      matrix[j * N_COLUMNS + i] = matrix[i * N_COLUMNS + j];
-      k++;
-    }
-    let weight = PRIOR_WEIGHT * energy;
-    matrix[i * N_COLUMNS + i] += weight;
-    unknowns[i] = sums[channel * N_SUMS + 21u + i] + weight * prior(i);
+    unknowns[i] = 0.0;
+    for (var j = 0u; j < N_COLUMNS; j++) { matrix[i * N_COLUMNS + j] = 0.0; }
   }
+  for (var channel = first_channel; channel < first_channel + n_channels; channel++) {
+    var k = channel * N_SUMS;
+    for (var i = 0u; i < N_COLUMNS; i++) {
+      unknowns[i] += sums[channel * N_SUMS + 21u + i];
+      for (var j = i; j < N_COLUMNS; j++) {
+        matrix[i * N_COLUMNS + j] += sums[k];
+        if j > i { matrix[j * N_COLUMNS + i] += sums[k]; }
+        k++;
+      }
+    }
+  }
+}
+
+fn add_prior(column: u32, weight: f32, value: f32) {
+  matrix[column * N_COLUMNS + column] += weight;
+  unknowns[column] += weight * value;
 }
 
 // Gauss-Jordan without pivoting: the matrix is symmetric positive definite by its priors.
@@ -78,6 +87,29 @@ fn store_toy(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
 }
 
+fn solve_receiver(channel: u32) {
+  load_equations(channel, 1u);
+  let energy = matrix[0];
+  var light_energy = 0.0;
+  for (var i = 2u; i < step.n_columns; i++) { light_energy += matrix[i * N_COLUMNS + i]; }
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, receiver_prior(i)); }
+  solve();
+  if unknowns[0] > 0.0 { store_receiver(channel, light_energy / energy); }
+}
+
+// A channel in which the toy is dark follows the others: light is nearly white, base colours are not.
+fn solve_toy(channel: u32) {
+  load_equations(0u, 3u);
+  let energy = matrix[0];
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, 0.0); }
+  solve();
+  let white = unknowns;
+  load_equations(channel, 1u);
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, WHITE_WEIGHT * energy, white[i]); }
+  solve();
+  store_toy(channel);
+}
+
 @compute @workgroup_size(96)
 fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   if lane < 81u {
@@ -88,14 +120,5 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   workgroupBarrier();
   // Without any evidence the starting values stay.
   if lane >= 3u || sums[lane * N_SUMS] <= 0.0 { return; }
-  load_equations(lane);
-  var light_energy = 0.0;
-  for (var i = 2u; i < step.n_columns; i++) { light_energy += matrix[i * N_COLUMNS + i]; }
-  let contrast = light_energy / matrix[0];
-  solve();
-  if step.subject == SUBJECT_RECEIVER {
-    if unknowns[0] > 0.0 { store_receiver(lane, contrast); }
-  } else {
-    store_toy(lane);
-  }
+  if step.subject == SUBJECT_RECEIVER { solve_receiver(lane); } else { solve_toy(lane); }
 }

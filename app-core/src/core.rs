@@ -9,6 +9,8 @@ use crate::frame::{FrameInput, FrameReport};
 use crate::gpu::encoder::{Encoder, PassTime, Stamps};
 use crate::gpu::layout::Fit;
 use crate::gpu::{AdapterChoice, Gpu, GpuError};
+use crate::maps::{FloatMap, Map};
+use crate::plan::Plan;
 use crate::preset::Preset;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
@@ -167,6 +169,21 @@ impl Core {
         let mut fit = Fit::zeroed();
         bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
         Ok(Some(fit))
+    }
+
+    /// Waits for the device and returns a map of the latest retargeted frame, once there was one.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
+        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else { return Ok(None) };
+        Ok(Some(capture.read_map(&self.gpu, map)?))
+    }
+
+    /// The plan of the latest retargeted frame, once there was one.
+    #[must_use]
+    pub fn plan(&self) -> Option<&Plan> {
+        self.stage.as_ref().and_then(Stage::capture).map(|capture| &capture.plan)
     }
 
     /// The device, for reports.

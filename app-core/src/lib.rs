@@ -4,6 +4,7 @@ pub mod core;
 pub mod frame;
 pub mod gpu;
 pub mod light_points;
+pub mod maps;
 pub mod plan;
 pub mod preset;
 pub mod region;

@@ -20,6 +20,8 @@ const N_HARD_POINTS: usize = 4;
 const N_FIT_STEPS: u32 = 5;
 /// Workgroups of one sum, enough to fill a phone's cores.
 const MAX_FIT_ROWS: u32 = 64;
+/// Pixels enough to tell the fit's few unknowns; more only cost time.
+const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
@@ -76,6 +78,8 @@ pub struct Plan {
     pub grid: Grid,
     /// Steps of the fit.
     pub n_fit_steps: u32,
+    /// Every how many region pixels, along each side, the fit takes one.
+    pub fit_stride_px: u32,
     /// Workgroups of one sum of the fit.
     pub n_fit_rows: u32,
     /// The passes in the order they run.
@@ -132,7 +136,8 @@ impl Plan {
             })
             .collect();
         let cell_px = size_px.max_element().div_ceil(MAX_GRID_CELLS).max(1);
-        let n_pixels = size_px.x * size_px.y;
+        let fit_stride_px = fit_stride_px(size_px);
+        let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
             visibility_format: match lights.len() {
@@ -150,10 +155,17 @@ impl Plan {
                 _pad: 0,
             },
             n_fit_steps: N_FIT_STEPS,
-            n_fit_rows: n_pixels.div_ceil(FIT_WORKGROUP).min(MAX_FIT_ROWS),
+            fit_stride_px,
+            n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
             passes: PASSES.to_vec(),
         }
     }
+}
+
+/// The smallest stride that leaves no more than [`MAX_FIT_PIXELS`], and at least one pixel along each side.
+fn fit_stride_px(size_px: UVec2) -> u32 {
+    let largest = size_px.min_element().max(1);
+    (1..=largest).find(|stride| (size_px / *stride).element_product() <= MAX_FIT_PIXELS).unwrap_or(largest)
 }
 
 fn left_out(lights: &[LightPlan]) -> Vec<LeftOut> {

@@ -12,7 +12,7 @@ use crate::scene::{Intrinsics, Light, Receiver};
 /// Nearest depth that the camera can show, in metres.
 const NEAR_M: f64 = 0.01;
 /// The ambient light that the toy takes away counts out to this many toy heights from its footprint.
-const AMBIENT_REACH_HEIGHTS: f64 = 1.0;
+const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
 /// Width of the fade into untouched pixels at an inner border of the region.
 const BORDER_PX: f32 = 24.0;
 /// Light points whose shadows bound those of all others: the outermost of a few.

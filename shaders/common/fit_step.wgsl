@@ -11,4 +11,6 @@ struct FitStep {
   // Unknowns: two, and one a light.
   n_columns: u32,
   subject: u32,
+  // Every how many pixels, along each side, one is taken.
+  stride_px: u32,
 }

@@ -51,6 +51,7 @@ pub struct FitStep {
     pub n_rows: u32,
     pub n_columns: u32,
     pub subject: u32,
+    pub stride_px: u32,
 }
 
 /// `Grid` in `common/grid.wgsl`.

@@ -121,11 +121,7 @@ impl Composite {
     fn toy_inputs(&self, gpu: &Gpu, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
         gpu.bind(
             &self.toy.get_bind_group_layout(GROUP_PASS),
-            &[
-                (9, wgpu::BindingResource::Sampler(&self.linear)),
-                (10, view(inputs.appearance)),
-                (11, view(inputs.object_depth)),
-            ],
+            &[(10, view(inputs.appearance)), (11, view(inputs.object_depth))],
         )
     }
 }

@@ -138,5 +138,11 @@ pub(crate) struct FitShared<'a> {
 fn fit_step(plan: &Plan, subject: Subject, step: u32) -> FitStep {
     #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
     let n_columns = 2 + plan.lights.len() as u32;
-    FitStep { is_reweighted: u32::from(step > 0), n_rows: plan.n_fit_rows, n_columns, subject: subject as u32 }
+    FitStep {
+        is_reweighted: u32::from(step > 0),
+        n_rows: plan.n_fit_rows,
+        n_columns,
+        subject: subject as u32,
+        stride_px: plan.fit_stride_px,
+    }
 }

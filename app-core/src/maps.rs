@@ -1,0 +1,126 @@
+//! The maps between input and picture, read back for reports and tests.
+
+use wgpu::TextureFormat;
+
+use crate::capture::Capture;
+use crate::gpu::texture::Texture;
+use crate::gpu::{Gpu, GpuError};
+
+/// A map that the pipeline makes on its way to a picture, all of the work region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Map {
+    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy.
+    Evidence,
+    /// Base colour of the physical toy, linear; alpha is its coverage.
+    ObjectBase,
+    /// The toy's own colours, linear, carried past its outline; alpha is 1 where there is one.
+    Appearance,
+    /// Visibility of each light with the physical toy, light 0 in r.
+    PhysicalVisibility,
+    /// Visibility of the ambient light with the physical toy, in r, at a fraction of the region's size.
+    PhysicalAmbient,
+    /// Visibility of each light with the shown toy, light 0 in r.
+    Visibility,
+    /// Visibility of the ambient light with the shown toy, in r, at a fraction of the region's size.
+    Ambient,
+    /// The filled grid of residuals in rgb, in plates; alpha is 1.
+    Residual,
+}
+
+impl Map {
+    /// Every map there is.
+    pub const ALL: &[Self] = &[
+        Self::Evidence,
+        Self::ObjectBase,
+        Self::Appearance,
+        Self::PhysicalVisibility,
+        Self::PhysicalAmbient,
+        Self::Visibility,
+        Self::Ambient,
+        Self::Residual,
+    ];
+}
+
+/// Numbers over a rectangle, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloatMap {
+    /// Texels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height` texels; channels that the map does not have are 0, alpha 1.
+    pub texels: Vec<[f32; 4]>,
+}
+
+impl Capture {
+    /// Waits for the device and returns a map.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<FloatMap, GpuError> {
+        match map {
+            Map::Evidence => read_texture(gpu, &self.evidence),
+            Map::ObjectBase => read_texture(gpu, &self.object_base),
+            Map::Appearance => read_texture(gpu, &self.appearance),
+            Map::PhysicalVisibility => read_texture(gpu, &self.physical.lights),
+            Map::PhysicalAmbient => read_texture(gpu, &self.physical.ambient),
+            Map::Visibility => read_texture(gpu, &self.shown.lights),
+            Map::Ambient => read_texture(gpu, &self.shown.ambient),
+            Map::Residual => self.read_cells(gpu),
+        }
+    }
+
+    fn read_cells(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let [width, height] = self.plan.grid.size;
+        let mut texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);
+        // The coarser levels of the pyramid follow the finest.
+        texels.truncate((width * height) as usize);
+        Ok(FloatMap { width, height, texels })
+    }
+}
+
+fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
+    let bytes = gpu.read_texture(&texture.raw)?;
+    let format = texture.raw.format();
+    let n_channels = usize::from(format.components());
+    let values: Vec<f32> = match format {
+        TextureFormat::R16Float | TextureFormat::Rg16Float | TextureFormat::Rgba16Float => {
+            bytes.chunks_exact(2).map(|b| f32_from_f16(u16::from_le_bytes([b[0], b[1]]))).collect()
+        }
+        TextureFormat::Rgba8UnormSrgb => bytes
+            .iter()
+            .enumerate()
+            .map(|(i, code)| {
+                let encoded = f32::from(*code) / 255.0;
+                if i % 4 == 3 { encoded } else { linear_from_srgb(encoded) }
+            })
+            .collect(),
+        _ => bytes.iter().map(|code| f32::from(*code) / 255.0).collect(),
+    };
+    let texels = values
+        .chunks_exact(n_channels)
+        .map(|channels| {
+            let mut texel = [0.0, 0.0, 0.0, 1.0];
+            texel[..n_channels].copy_from_slice(channels);
+            texel
+        })
+        .collect();
+    Ok(FloatMap { width: texture.raw.width(), height: texture.raw.height(), texels })
+}
+
+/// Decodes an sRGB value in [0, 1]. Source: IEC 61966-2-1.
+#[must_use]
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Widens an IEEE 754 half.
+fn f32_from_f16(bits: u16) -> f32 {
+    let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
+    let exponent = i32::from((bits >> 10) & 0x1f);
+    let fraction = f32::from(bits & 0x3ff) / 1024.0;
+    sign * match exponent {
+        0 => fraction * 2f32.powi(-14),
+        31 if fraction == 0.0 => f32::INFINITY,
+        31 => f32::NAN,
+        _ => (1.0 + fraction) * 2f32.powi(exponent - 15),
+    }
+}
