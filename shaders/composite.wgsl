@@ -18,6 +18,7 @@
 @group(1) @binding(9) var linear_sampler: sampler;
 @group(1) @binding(10) var appearance: texture_2d<f32>;
 @group(1) @binding(11) var object_depth: texture_depth_2d;
+@group(1) @binding(12) var object_base: texture_2d<f32>;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -25,11 +26,13 @@ const KEEP_NONE: f32 = 0.15;
 // Change of the model from which the pooled residual no longer holds at half its size.
 const RESIDUAL_HALF: f32 = 0.5;
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
-const MAX_TURN: f32 = 3.0;
+const MAX_TURN: f32 = 4.0;
 // Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
 // a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
 const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
+// Difference of base colours, against the lighter one, from which two points of the model are of two materials.
+const OTHER_MATERIAL: f32 = 0.25;
 // Weight of colours carried past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
@@ -69,7 +72,7 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let after = receiver_model(point.in_plane, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
     textureLoad(visibility, texel, 0));
   let change = abs(after - before);
-  let most = max(change.r, max(change.g, change.b));
+  let most = largest(change);
   let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let seen = textureLoad(evidence, texel, 0).r;
   let keep = seen * (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most));
@@ -110,11 +113,19 @@ fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
   return max(sum, vec3f(0.0));
 }
 
+fn largest(c: vec3f) -> f32 {
+  return max(c.r, max(c.g, c.b));
+}
+
+fn is_other_material(a: vec3f, b: vec3f) -> bool {
+  return largest(abs(a - b)) > OTHER_MATERIAL * max(largest(a), largest(b));
+}
+
 // The camera's colour of a point of the physical toy, alpha 0 where something hides it.
 //
-// Of the four pixels around it only those count that show its own surface, or that lie beyond the toy's outline where
-// `appearance` carried its colours.
-fn camera_color(clip: vec4f, region_px: vec2f) -> vec4f {
+// Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
+// outline where `appearance` carried its colours.
+fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f) -> vec4f {
   let depth = clip.z / clip.w;
   let at = region_px - 0.5;
   let low = floor(at);
@@ -128,6 +139,8 @@ fn camera_color(clip: vec4f, region_px: vec2f) -> vec4f {
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
+    let tap_base = textureLoad(object_base, texel, 0);
+    if tap_base.a > 0.0 && is_other_material(tap_base.rgb, base) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
@@ -153,7 +166,7 @@ fn fs_toy(in: Surface) -> @location(0) vec4f {
   let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_plane * vec4f(in.physical_in_plane, 1.0);
   let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
-  let pixel = camera_color(clip, region_px);
+  let pixel = camera_color(clip, region_px, base);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   let lit = toy_radiance_over_base(normal, in.in_plane);
   let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);

@@ -79,7 +79,12 @@ impl Capture {
             evidence: target("evidence", EVIDENCE_FORMAT),
             appearance: target("appearance", APPEARANCE_FORMAT),
             samples: texture(gpu, "composite samples", region_px, (PICTURE_FORMAT, N_SAMPLES)),
-            samples_depth: texture(gpu, "composite depth", region_px, (TextureFormat::Depth32Float, N_SAMPLES)),
+            samples_depth: texture(
+                gpu,
+                "composite depth",
+                region_px,
+                (TextureFormat::Depth32Float, N_SAMPLES),
+            ),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
                 .lights
@@ -107,9 +112,25 @@ impl Capture {
             depth: &self.object_depth.view,
         };
         passes.object.encode(gpu, encoder, &self.globals, toy, &outputs);
-        passes.evidence.encode(gpu, encoder, &self.globals, &self.object_depth.view, &self.evidence.view);
-        self.encode_visibilities(gpu, encoder, passes, (toy, &toy.physical.positions), &self.physical);
-        let shared = FitShared { plan: &self.plan, globals: &self.globals, solution: &self.solution };
+        passes.evidence.encode(
+            gpu,
+            encoder,
+            &self.globals,
+            &self.object_depth.view,
+            &self.evidence.view,
+        );
+        self.encode_visibilities(
+            gpu,
+            encoder,
+            passes,
+            (toy, &toy.physical.positions),
+            &self.physical,
+        );
+        let shared = FitShared {
+            plan: &self.plan,
+            globals: &self.globals,
+            solution: &self.solution,
+        };
         let inputs = FitInputs {
             frame: pictures.frame,
             plate: pictures.plate,
@@ -119,7 +140,9 @@ impl Capture {
             object_base: &self.object_base.view,
             object_normal: &self.object_normal.view,
         };
-        passes.fit.encode(gpu, encoder, &shared, &inputs, Subject::Receiver);
+        passes
+            .fit
+            .encode(gpu, encoder, &shared, &inputs, Subject::Receiver);
         passes.fit.encode(gpu, encoder, &shared, &inputs, Subject::Toy);
         let inputs = ResidualInputs {
             globals: &self.globals,
@@ -131,7 +154,9 @@ impl Capture {
             visibility: &self.physical.lights.view,
             ambient: &self.physical.ambient.view,
         };
-        passes.residual.encode(gpu, encoder, &inputs, self.plan.grid.size, &self.cells);
+        passes
+            .residual
+            .encode(gpu, encoder, &inputs, self.plan.grid.size, &self.cells);
         passes.fill.encode(gpu, encoder, &self.grid, &self.cells);
     }
 
@@ -148,7 +173,9 @@ impl Capture {
             evidence: &self.evidence.view,
             object_depth: &self.object_depth.view,
         };
-        passes.appearance.encode(gpu, encoder, &self.globals, &inputs, &self.appearance.view);
+        passes
+            .appearance
+            .encode(gpu, encoder, &self.globals, &inputs, &self.appearance.view);
     }
 
     /// Encodes visibility and ambient visibility of the toy at `positions`.
@@ -161,17 +188,34 @@ impl Capture {
         outputs: &Visibilities,
     ) {
         for (index, points) in self.light_points.iter().enumerate() {
-            let (Some(targets), Some(pass)) = (self.light_targets.get(index), passes.lights.get(index)) else {
+            let (Some(targets), Some(pass)) = (self.light_targets.get(index), passes.lights.get(index))
+            else {
                 continue;
             };
-            let caster = Caster { toy, positions, points };
-            pass.occlusion.encode(gpu, encoder, &self.globals, &caster, targets);
-            pass.visibility.encode(gpu, encoder, targets, &outputs.lights.view);
+            let caster = Caster {
+                toy,
+                positions,
+                points,
+            };
+            pass.occlusion
+                .encode(gpu, encoder, &self.globals, &caster, targets);
+            pass.visibility
+                .encode(gpu, encoder, targets, &outputs.lights.view);
         }
         let directions = ambient_directions(self.plan.n_ambient_directions);
-        let caster = Caster { toy, positions, points: &directions };
-        passes.ambient.occlusion.encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
-        passes.ambient.visibility.encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
+        let caster = Caster {
+            toy,
+            positions,
+            points: &directions,
+        };
+        passes
+            .ambient
+            .occlusion
+            .encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
+        passes
+            .ambient
+            .visibility
+            .encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
     }
 }
 
@@ -181,19 +225,26 @@ pub(crate) struct Pictures<'a> {
     pub(crate) plate: &'a wgpu::TextureView,
 }
 
-fn texture(
-    gpu: &Gpu,
-    label: &str,
-    size_px: UVec2,
-    (format, n_samples): (TextureFormat, u32),
-) -> Texture {
-    Texture::target(gpu, label, TextureShape { size_px: size_px.to_array(), format, n_samples })
+fn texture(gpu: &Gpu, label: &str, size_px: UVec2, (format, n_samples): (TextureFormat, u32)) -> Texture {
+    Texture::target(
+        gpu,
+        label,
+        TextureShape {
+            size_px: size_px.to_array(),
+            format,
+            n_samples,
+        },
+    )
 }
 
 fn visibilities(gpu: &Gpu, plan: &Plan) -> Visibilities {
     Visibilities {
-        lights: texture(gpu, "visibility", plan.region.size_px, (plan.visibility_format, 1)),
+        lights: texture(
+            gpu,
+            "visibility",
+            plan.region.size_px,
+            (plan.visibility_format, 1),
+        ),
         ambient: texture(gpu, "ambient", plan.ambient_px, (AMBIENT_FORMAT, 1)),
     }
 }
-

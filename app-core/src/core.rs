@@ -66,7 +66,12 @@ impl Core {
     /// When there is no adapter of that choice, or it falls short of a phone's limits.
     pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
         let gpu = Gpu::open(instance, adapter, None).await?;
-        Ok(Self { gpu, window: None, stage: None, stamps: None })
+        Ok(Self {
+            gpu,
+            window: None,
+            stage: None,
+            stamps: None,
+        })
     }
 
     /// A core that presents on `surface`, of `size_px` physical pixels.
@@ -80,7 +85,12 @@ impl Core {
     ) -> Result<Self, CoreError> {
         let gpu = Gpu::open(instance, &AdapterChoice::Fastest, Some(&surface)).await?;
         let window = Window::new(&gpu, surface, size_px)?;
-        Ok(Self { gpu, window: Some(window), stage: None, stamps: None })
+        Ok(Self {
+            gpu,
+            window: Some(window),
+            stage: None,
+            stamps: None,
+        })
     }
 
     /// Drops the surface; device, pipelines and what was learned stay.
@@ -109,7 +119,9 @@ impl Core {
     /// # Errors
     /// When the surface is lost for good; one that is only out of date is set up anew.
     pub fn present(&mut self) -> Result<(), CoreError> {
-        let Some(window) = &mut self.window else { return Ok(()) };
+        let Some(window) = &mut self.window else {
+            return Ok(());
+        };
         window.present(&self.gpu, self.stage.as_ref().map(|stage| &stage.output.view))
     }
 
@@ -148,7 +160,11 @@ impl Core {
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
         let rgba8 = self.gpu.read_texture(&stage.output.raw)?;
-        Ok(Image { width_px: stage.output.raw.width(), height_px: stage.output.raw.height(), rgba8 })
+        Ok(Image {
+            width_px: stage.output.raw.width(),
+            height_px: stage.output.raw.height(),
+            rgba8,
+        })
     }
 
     /// Waits for the device and returns the latest frame's time per pass; empty where the device cannot tell.
@@ -156,7 +172,12 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn take_pass_times(&mut self) -> Result<Vec<PassTime>, CoreError> {
-        Ok(self.stamps.take().map(|stamps| stamps.read(&self.gpu)).transpose()?.unwrap_or_default())
+        Ok(self
+            .stamps
+            .take()
+            .map(|stamps| stamps.read(&self.gpu))
+            .transpose()?
+            .unwrap_or_default())
     }
 
     /// Waits for the device and returns what was learned from the real shadow, once anything was.
@@ -164,7 +185,9 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
-        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else { return Ok(None) };
+        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else {
+            return Ok(None);
+        };
         let bytes = self.gpu.read_buffer(&capture.solution)?;
         let mut fit = Fit::zeroed();
         bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
@@ -176,14 +199,19 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
-        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else { return Ok(None) };
+        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else {
+            return Ok(None);
+        };
         Ok(Some(capture.read_map(&self.gpu, map)?))
     }
 
     /// The plan of the latest retargeted frame, once there was one.
     #[must_use]
     pub fn plan(&self) -> Option<&Plan> {
-        self.stage.as_ref().and_then(Stage::capture).map(|capture| &capture.plan)
+        self.stage
+            .as_ref()
+            .and_then(Stage::capture)
+            .map(|capture| &capture.plan)
     }
 
     /// The device, for reports.
@@ -196,5 +224,13 @@ impl Core {
 fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
     let expected_px = [scene.width_px, scene.height_px];
     let actual_px = [image.width_px, image.height_px];
-    if expected_px == actual_px { Ok(()) } else { Err(CoreError::SizeDiffers { what, expected_px, actual_px }) }
+    if expected_px == actual_px {
+        Ok(())
+    } else {
+        Err(CoreError::SizeDiffers {
+            what,
+            expected_px,
+            actual_px,
+        })
+    }
 }

@@ -81,10 +81,17 @@ impl fmt::Display for Warning {
                 f.write_str("no plate was taken from this camera: the camera frame passes through")
             }
             Self::ReceiversLeftOut { names } => {
-                write!(f, "the shadow on {} stays as photographed: one receiver is handled", names.join(", "))
+                write!(
+                    f,
+                    "the shadow on {} stays as photographed: one receiver is handled",
+                    names.join(", ")
+                )
             }
             Self::LightsLeftOut { n_lights } => {
-                write!(f, "the shadows of {n_lights} lights stay as photographed: four are handled")
+                write!(
+                    f,
+                    "the shadows of {n_lights} lights stay as photographed: four are handled"
+                )
             }
             Self::LightBelowReceiver { light } => {
                 write!(f, "light {light} is not above the receiver and is left out")

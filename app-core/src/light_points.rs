@@ -8,12 +8,15 @@ use crate::scene::Light;
 #[must_use]
 pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
     match *light {
-        Light::Sphere { position_in_world, .. } => {
-            plane_from_world.transform_point3(position_in_world).extend(1.0)
-        }
-        Light::Directional { direction_to_light_in_world, .. } => {
-            plane_from_world.transform_vector3(direction_to_light_in_world).extend(0.0)
-        }
+        Light::Sphere {
+            position_in_world, ..
+        } => plane_from_world.transform_point3(position_in_world).extend(1.0),
+        Light::Directional {
+            direction_to_light_in_world,
+            ..
+        } => plane_from_world
+            .transform_vector3(direction_to_light_in_world)
+            .extend(0.0),
     }
 }
 
@@ -29,20 +32,57 @@ pub fn light_points(
     target_in_plane: DVec3,
     n_points: usize,
 ) -> Vec<Vec4> {
-    let centre = light_in_plane(light, plane_from_world);
-    let (axis, radius) = match *light {
-        Light::Sphere { radius_m, .. } => (centre.truncate() - target_in_plane, radius_m),
-        Light::Directional { angular_radius_rad, .. } => (centre.truncate(), angular_radius_rad.tan()),
-    };
-    // A light inside the toy has no side that faces it; any disc will do.
-    let (across, along) = axis.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
-    vogel_disc(n_points)
-        .map(|at| {
-            let moved = centre.truncate() + radius * (at.x * across + at.y * along);
-            let point = if centre.w == 0.0 { moved.normalize() } else { moved };
-            point.extend(centre.w).as_vec4()
-        })
-        .collect()
+    let disc = Disc::of(light, plane_from_world, target_in_plane);
+    vogel_disc(n_points).map(|at| disc.point(at).as_vec4()).collect()
+}
+
+/// The corners of the square around the light's disc, homogeneous as [`light_points`].
+pub(crate) fn light_corners(
+    light: &Light,
+    plane_from_world: &DMat4,
+    target_in_plane: DVec3,
+) -> impl Iterator<Item = DVec4> {
+    let disc = Disc::of(light, plane_from_world, target_in_plane);
+    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]
+        .into_iter()
+        .map(move |(x, y)| disc.point(DVec2::new(x, y)))
+}
+
+/// A light's disc, facing the toy.
+struct Disc {
+    centre: DVec4,
+    across: DVec3,
+    along: DVec3,
+}
+
+impl Disc {
+    fn of(light: &Light, plane_from_world: &DMat4, target_in_plane: DVec3) -> Self {
+        let centre = light_in_plane(light, plane_from_world);
+        let (axis, radius) = match *light {
+            Light::Sphere { radius_m, .. } => (centre.truncate() - target_in_plane, radius_m),
+            Light::Directional {
+                angular_radius_rad, ..
+            } => (centre.truncate(), angular_radius_rad.tan()),
+        };
+        // A light inside the toy has no side that faces it; any disc will do.
+        let (across, along) = axis.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
+        Self {
+            centre,
+            across: radius * across,
+            along: radius * along,
+        }
+    }
+
+    /// `at` is on the unit disc.
+    fn point(&self, at: DVec2) -> DVec4 {
+        let moved = self.centre.truncate() + at.x * self.across + at.y * self.along;
+        let point = if self.centre.w == 0.0 {
+            moved.normalize()
+        } else {
+            moved
+        };
+        point.extend(self.centre.w)
+    }
 }
 
 /// `n_directions` directions over the hemisphere, cosine-weighted: each stands for an equal share of ambient light.

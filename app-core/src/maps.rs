@@ -73,7 +73,11 @@ impl Capture {
         let mut texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);
         // The coarser levels of the pyramid follow the finest.
         texels.truncate((width * height) as usize);
-        Ok(FloatMap { width, height, texels })
+        Ok(FloatMap {
+            width,
+            height,
+            texels,
+        })
     }
 }
 
@@ -82,15 +86,20 @@ fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
     let format = texture.raw.format();
     let n_channels = usize::from(format.components());
     let values: Vec<f32> = match format {
-        TextureFormat::R16Float | TextureFormat::Rg16Float | TextureFormat::Rgba16Float => {
-            bytes.chunks_exact(2).map(|b| f32_from_f16(u16::from_le_bytes([b[0], b[1]]))).collect()
-        }
+        TextureFormat::R16Float | TextureFormat::Rg16Float | TextureFormat::Rgba16Float => bytes
+            .chunks_exact(2)
+            .map(|b| f32_from_f16(u16::from_le_bytes([b[0], b[1]])))
+            .collect(),
         TextureFormat::Rgba8UnormSrgb => bytes
             .iter()
             .enumerate()
             .map(|(i, code)| {
                 let encoded = f32::from(*code) / 255.0;
-                if i % 4 == 3 { encoded } else { linear_from_srgb(encoded) }
+                if i % 4 == 3 {
+                    encoded
+                } else {
+                    linear_from_srgb(encoded)
+                }
             })
             .collect(),
         _ => bytes.iter().map(|code| f32::from(*code) / 255.0).collect(),
@@ -103,13 +112,21 @@ fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
             texel
         })
         .collect();
-    Ok(FloatMap { width: texture.raw.width(), height: texture.raw.height(), texels })
+    Ok(FloatMap {
+        width: texture.raw.width(),
+        height: texture.raw.height(),
+        texels,
+    })
 }
 
 /// Decodes an sRGB value in [0, 1]. Source: IEC 61966-2-1.
 #[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// Widens an IEEE 754 half.

@@ -84,6 +84,7 @@ impl Passes {
             ambient: &capture.shown.ambient.view,
             appearance: &capture.appearance.view,
             object_depth: &capture.object_depth.view,
+            object_base: &capture.object_base.view,
         };
         let targets = CompositeTargets {
             samples: &capture.samples.view,
@@ -103,11 +104,20 @@ pub(crate) fn encode_present(
     output: &wgpu::TextureView,
 ) {
     let region_codes = capture.map(|capture| capture.picture.codes());
-    let placement = capture.map_or(Placement { origin_px: [0; 2], size_px: [0; 2] }, |capture| Placement {
-        origin_px: capture.plan.region.origin_px.to_array(),
-        size_px: capture.plan.region.size_px.to_array(),
-    });
-    let inputs =
-        PresentInputs { frame_codes, region_codes: region_codes.as_ref().unwrap_or(frame_codes), placement };
+    let placement = capture.map_or(
+        Placement {
+            origin_px: [0; 2],
+            size_px: [0; 2],
+        },
+        |capture| Placement {
+            origin_px: capture.plan.region.origin_px.to_array(),
+            size_px: capture.plan.region.size_px.to_array(),
+        },
+    );
+    let inputs = PresentInputs {
+        frame_codes,
+        region_codes: region_codes.as_ref().unwrap_or(frame_codes),
+        placement,
+    };
     present.encode(gpu, encoder, &inputs, output);
 }

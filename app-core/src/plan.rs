@@ -107,19 +107,58 @@ pub struct LeftOut {
 }
 
 const PASSES: &[PlannedPass] = &[
-    PlannedPass { name: "object", path: Path::Capture },
-    PlannedPass { name: "evidence", path: Path::Capture },
-    PlannedPass { name: "appearance", path: Path::Capture },
-    PlannedPass { name: "occlusion", path: Path::Capture },
-    PlannedPass { name: "visibility", path: Path::Capture },
-    PlannedPass { name: "fit", path: Path::Capture },
-    PlannedPass { name: "fit_solve", path: Path::Capture },
-    PlannedPass { name: "residual", path: Path::Capture },
-    PlannedPass { name: "fill", path: Path::Capture },
-    PlannedPass { name: "occlusion", path: Path::Frame },
-    PlannedPass { name: "visibility", path: Path::Frame },
-    PlannedPass { name: "composite", path: Path::Frame },
-    PlannedPass { name: "present", path: Path::Frame },
+    PlannedPass {
+        name: "object",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "evidence",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "appearance",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "occlusion",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "visibility",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "fit",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "fit_solve",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "residual",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "fill",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "occlusion",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "visibility",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "composite",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "present",
+        path: Path::Frame,
+    },
 ];
 
 impl Plan {
@@ -132,7 +171,11 @@ impl Plan {
             .iter()
             .take(MAX_LIGHTS)
             .map(|px| LightPlan {
-                n_points: if *px < HARD_PENUMBRA_PX { N_HARD_POINTS } else { settings.n_light_points },
+                n_points: if *px < HARD_PENUMBRA_PX {
+                    N_HARD_POINTS
+                } else {
+                    settings.n_light_points
+                },
             })
             .collect();
         let cell_px = size_px.max_element().div_ceil(MAX_GRID_CELLS).max(1);
@@ -165,16 +208,24 @@ impl Plan {
 /// The smallest stride that leaves no more than [`MAX_FIT_PIXELS`], and at least one pixel along each side.
 fn fit_stride_px(size_px: UVec2) -> u32 {
     let largest = size_px.min_element().max(1);
-    (1..=largest).find(|stride| (size_px / *stride).element_product() <= MAX_FIT_PIXELS).unwrap_or(largest)
+    (1..=largest)
+        .find(|stride| (size_px / *stride).element_product() <= MAX_FIT_PIXELS)
+        .unwrap_or(largest)
 }
 
 fn left_out(lights: &[LightPlan]) -> Vec<LeftOut> {
     let mut left_out = Vec::new();
     if lights.len() < 2 {
-        left_out.push(LeftOut { what: "overlap of shadows", why: "one light is listed" });
+        left_out.push(LeftOut {
+            what: "overlap of shadows",
+            why: "one light is listed",
+        });
     }
     if lights.iter().all(|light| light.n_points == N_HARD_POINTS) {
-        left_out.push(LeftOut { what: "penumbra", why: "every light's penumbra is narrower than a pixel" });
+        left_out.push(LeftOut {
+            what: "penumbra",
+            why: "every light's penumbra is narrower than a pixel",
+        });
     }
     left_out
 }

@@ -30,7 +30,11 @@ impl Preset {
     #[must_use]
     pub fn settings(self) -> Settings {
         match self {
-            Self::Balanced => Settings { n_light_points: 64, n_ambient_directions: 64, ambient_divisor: 4 },
+            Self::Balanced => Settings {
+                n_light_points: 64,
+                n_ambient_directions: 64,
+                ambient_divisor: 4,
+            },
         }
     }
 }
@@ -60,10 +64,18 @@ impl FromStr for Preset {
     type Err = UnknownPreset;
 
     fn from_str(name: &str) -> Result<Self, UnknownPreset> {
-        Self::ALL.iter().copied().find(|preset| preset.name() == name).ok_or_else(|| UnknownPreset {
-            asked: name.to_owned(),
-            known: Self::ALL.iter().map(|preset| preset.name()).collect::<Vec<_>>().join(", "),
-        })
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|preset| preset.name() == name)
+            .ok_or_else(|| UnknownPreset {
+                asked: name.to_owned(),
+                known: Self::ALL
+                    .iter()
+                    .map(|preset| preset.name())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            })
     }
 }
 

@@ -6,7 +6,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use crate::gpu::layout::{Globals, MAX_LIGHTS};
-use crate::light_points::{light_in_plane, light_points};
+use crate::light_points::{light_corners, light_in_plane};
 use crate::scene::{Intrinsics, Light, Receiver};
 
 /// Nearest depth that the camera can show, in metres.
@@ -15,8 +15,6 @@ const NEAR_M: f64 = 0.01;
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
 /// Width of the fade into untouched pixels at an inner border of the region.
 const BORDER_PX: f32 = 24.0;
-/// Light points whose shadows bound those of all others: the outermost of a few.
-const N_BOUNDING_POINTS: usize = 16;
 
 /// A rectangle of the camera image, in pixels from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +71,11 @@ impl View {
         world_from_camera: &DMat4,
         receiver: &Receiver,
     ) -> Self {
-        Self { image_px, intrinsics, camera_from_plane: world_from_camera.inverse() * receiver.world_from_plane }
+        Self {
+            image_px,
+            intrinsics,
+            camera_from_plane: world_from_camera.inverse() * receiver.world_from_plane,
+        }
     }
 
     /// Image position of a homogeneous point in plane space, as (u w, v w, w) with w its depth in metres.
@@ -81,7 +83,11 @@ impl View {
         let at = self.camera_from_plane * in_plane;
         let depth = -at.z;
         let k = &self.intrinsics;
-        DVec3::new(k.fx_px * at.x + k.cx_px * depth, -k.fy_px * at.y + k.cy_px * depth, depth)
+        DVec3::new(
+            k.fx_px * at.x + k.cx_px * depth,
+            -k.fy_px * at.y + k.cy_px * depth,
+            depth,
+        )
     }
 
     /// Clip space of `rect` from plane space; depth is reversed and endless.
@@ -93,7 +99,12 @@ impl View {
         let clip_from_camera = DMat4::from_cols(
             DVec4::new(2.0 * k.fx_px / size.x, 0.0, 0.0, 0.0),
             DVec4::new(0.0, 2.0 * k.fy_px / size.y, 0.0, 0.0),
-            DVec4::new(1.0 - 2.0 * centre.x / size.x, 2.0 * centre.y / size.y - 1.0, 0.0, -1.0),
+            DVec4::new(
+                1.0 - 2.0 * centre.x / size.x,
+                2.0 * centre.y / size.y - 1.0,
+                0.0,
+                -1.0,
+            ),
             DVec4::new(0.0, 0.0, NEAR_M, 0.0),
         );
         clip_from_camera * self.camera_from_plane
@@ -118,31 +129,12 @@ impl View {
         self.camera_from_plane.inverse().w_axis.truncate()
     }
 
-    /// The rectangle that the toy within `toy` and its shadows can reach, or `None` when it is out of the picture.
+    /// The rectangle that a toy within `toy` and its shadows can reach, or `None` when it is out of the picture.
     #[must_use]
     pub fn region(&self, toy: &Bounds, lights: &[Light], plane_from_world: &DMat4) -> Option<PixelRect> {
-        let mut points: Vec<DVec4> = toy.corners().map(|p| p.extend(1.0)).collect();
-        points.extend(ambient_footprint(toy));
-        for light in lights {
-            for source in light_points(light, plane_from_world, toy.centre(), N_BOUNDING_POINTS) {
-                points.extend(toy.corners().map(|p| shadow_of(p, source.as_dvec4())));
-            }
-        }
-        let mut min = DVec2::INFINITY;
-        let mut max = DVec2::NEG_INFINITY;
-        for point in points {
-            let at = self.image_px_from_plane(point);
-            if point.w <= 0.0 || at.z <= NEAR_M * point.w {
-                // A shadow without end, or a point behind the camera: the rectangle has no bound on that side.
-                return Some(PixelRect { origin_px: UVec2::ZERO, size_px: self.image_px });
-            }
-            min = min.min(at.truncate() / at.z);
-            max = max.max(at.truncate() / at.z);
-        }
-        let min = min.floor().clamp(DVec2::ZERO, self.image_px.as_dvec2()).as_uvec2();
-        let max = max.ceil().clamp(DVec2::ZERO, self.image_px.as_dvec2()).as_uvec2();
-        let size_px = max - min;
-        (size_px.min_element() > 0).then_some(PixelRect { origin_px: min, size_px })
+        let mut reach = Reach::new(self, toy, lights, plane_from_world);
+        toy.corners().for_each(|corner| reach.include(corner));
+        reach.region()
     }
 
     /// What the shaders know of the scene.
@@ -183,6 +175,79 @@ impl View {
     }
 }
 
+/// Grows around what a toy and its shadows reach in the picture, point by point.
+#[derive(Clone, Debug)]
+pub struct Reach<'a> {
+    view: &'a View,
+    /// Corners of each light's disc, boxed: their shadows bound those of the whole light.
+    sources: Vec<DVec4>,
+    /// How far around its footprint the toy takes ambient light away.
+    ambient_reach_m: f64,
+    min_px: DVec2,
+    max_px: DVec2,
+    /// A shadow without end, or a point behind the camera: the rectangle has no bound.
+    is_endless: bool,
+}
+
+impl<'a> Reach<'a> {
+    /// Starts empty, for a toy within `toy`.
+    #[must_use]
+    pub fn new(view: &'a View, toy: &Bounds, lights: &[Light], plane_from_world: &DMat4) -> Self {
+        let sources = lights
+            .iter()
+            .flat_map(|light| light_corners(light, plane_from_world, toy.centre()));
+        Self {
+            view,
+            sources: sources.collect(),
+            ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
+            min_px: DVec2::INFINITY,
+            max_px: DVec2::NEG_INFINITY,
+            is_endless: false,
+        }
+    }
+
+    /// Takes in a point of the toy, in plane space, its shadows and the ground near it.
+    pub fn include(&mut self, in_plane: DVec3) {
+        self.include_homogeneous(in_plane.extend(1.0));
+        for side in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
+            let near = in_plane + self.ambient_reach_m * side;
+            self.include_homogeneous(DVec4::new(near.x, 0.0, near.z, 1.0));
+        }
+        for k in 0..self.sources.len() {
+            self.include_homogeneous(shadow_of(in_plane, self.sources[k]));
+        }
+    }
+
+    /// The rectangle around all points, within the image; `None` when they are out of the picture.
+    #[must_use]
+    pub fn region(&self) -> Option<PixelRect> {
+        let image_px = self.view.image_px;
+        if self.is_endless {
+            return Some(PixelRect {
+                origin_px: UVec2::ZERO,
+                size_px: image_px,
+            });
+        }
+        let within = |px: DVec2| px.clamp(DVec2::ZERO, image_px.as_dvec2()).as_uvec2();
+        let (min_px, max_px) = (within(self.min_px.floor()), within(self.max_px.ceil()));
+        let size_px = max_px - min_px;
+        (size_px.min_element() > 0).then_some(PixelRect {
+            origin_px: min_px,
+            size_px,
+        })
+    }
+
+    fn include_homogeneous(&mut self, in_plane: DVec4) {
+        let at = self.view.image_px_from_plane(in_plane);
+        if in_plane.w <= 0.0 || at.z <= NEAR_M * in_plane.w {
+            self.is_endless = true;
+            return;
+        }
+        self.min_px = self.min_px.min(at.truncate() / at.z);
+        self.max_px = self.max_px.max(at.truncate() / at.z);
+    }
+}
+
 /// Receiver, lights and where the lights' shares are stated.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
@@ -206,21 +271,25 @@ fn shadow_of(p: DVec3, light: DVec4) -> DVec4 {
     DVec4::new(at.x, 0.0, at.z, light.y - light.w * p.y)
 }
 
-/// Corners of the ground that the toy darkens by standing near it.
-fn ambient_footprint(toy: &Bounds) -> impl Iterator<Item = DVec4> {
-    let reach_m = AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0);
-    let (min, max) = (toy.min - reach_m, toy.max + reach_m);
-    [(min.x, min.z), (max.x, min.z), (min.x, max.z), (max.x, max.z)]
-        .into_iter()
-        .map(|(x, z)| DVec4::new(x, 0.0, z, 1.0))
-}
-
 impl PixelRect {
+    /// Grown by `margin_px` on each side, as far as the image goes.
+    #[must_use]
+    pub fn grown(&self, margin_px: u32, image_px: UVec2) -> Self {
+        let origin_px = self.origin_px.saturating_sub(UVec2::splat(margin_px));
+        let end_px = (self.origin_px + self.size_px + margin_px).min(image_px);
+        Self {
+            origin_px,
+            size_px: end_px - origin_px,
+        }
+    }
+
     /// Whether all of `other` lies within.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
         self.origin_px.cmple(other.origin_px).all()
-            && (self.origin_px + self.size_px).cmpge(other.origin_px + other.size_px).all()
+            && (self.origin_px + self.size_px)
+                .cmpge(other.origin_px + other.size_px)
+                .all()
     }
 }
 
@@ -240,7 +309,9 @@ impl View {
                 }
                 2.0 * radius_m * height_m / above_toy_m
             }
-            Light::Directional { angular_radius_rad, .. } => {
+            Light::Directional {
+                angular_radius_rad, ..
+            } => {
                 let sine = light_in_plane(light, plane_from_world).y;
                 2.0 * height_m * angular_radius_rad.tan() / (sine * sine)
             }

@@ -16,12 +16,16 @@ use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::{Passes, encode_present};
 use crate::plan::{LeftOut, Path, Plan, SceneFacts};
 use crate::preset::Preset;
-use crate::region::{Bounds, PixelRect, Place, View};
+use crate::region::{Bounds, PixelRect, Place, Reach, View};
 use crate::scene::{Image, Light, PoseTime, Scene};
 use crate::toy::{ClipId, PosedMesh, ToyError};
 
 /// Cameras closer than this, in matrix elements, are one camera.
 const SAME_CAMERA: f64 = 1e-6;
+/// Moments of a clip that its region is taken from.
+const N_REGION_MOMENTS: u32 = 64;
+/// What the toy may reach beyond its region between two such moments, and the width of the fade at its border.
+const REGION_MARGIN_PX: u32 = 32;
 /// Format of the finished picture: codes, as a screen takes them.
 pub(crate) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -33,8 +37,8 @@ pub(crate) struct Stage {
     plane_from_world: DMat4,
     lights: Vec<Light>,
     physical_bounds: Bounds,
-    /// Where the toy can be over the clip shown last.
-    clip_reach: Option<(ClipId, Bounds)>,
+    /// The region of the clip shown last, from the camera it was shown from.
+    known_region: Option<(ClipId, DMat4, Option<PixelRect>)>,
     toy: ToyMesh,
     posed: PosedMesh,
     frame: Texture,
@@ -59,10 +63,16 @@ impl Stage {
         let plane_from_world = receiver.world_from_plane.inverse();
         let plane_from_object = plane_from_world * scene.world_from_object;
         let mut posed = PosedMesh::default();
-        scene.toy.pose(clip_time(&scene.physical_pose), &plane_from_object, &mut posed)?;
+        scene
+            .toy
+            .pose(clip_time(&scene.physical_pose), &plane_from_object, &mut posed)?;
         let size_px = [scene.width_px, scene.height_px];
         let (lights, standing_warnings) = usable_lights(&scene, &plane_from_world);
-        let output = TextureShape { size_px, format: OUTPUT_FORMAT, n_samples: 1 };
+        let output = TextureShape {
+            size_px,
+            format: OUTPUT_FORMAT,
+            n_samples: 1,
+        };
         Ok(Self {
             physical_bounds: bounds_of(posed.positions.iter().map(|p| p.as_dvec3())),
             toy: ToyMesh::new(gpu, &scene.toy, &posed),
@@ -79,7 +89,7 @@ impl Stage {
             plane_from_world,
             lights,
             scene,
-            clip_reach: None,
+            known_region: None,
         })
     }
 
@@ -94,7 +104,12 @@ impl Stage {
     }
 
     /// Encodes one frame into `output`.
-    pub(crate) fn encode(&mut self, gpu: &Gpu, encoder: &mut Encoder, input: &FrameInput) -> Result<FrameReport, ToyError> {
+    pub(crate) fn encode(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        input: &FrameInput,
+    ) -> Result<FrameReport, ToyError> {
         let is_new_image = self.take_image(gpu, &input.image);
         let mut report = FrameReport {
             ran: Vec::new(),
@@ -102,8 +117,7 @@ impl Stage {
             region: None,
             warnings: self.standing_warnings.clone(),
         };
-        let reach = self.reach(&input.shown_pose)?;
-        let worked = match self.region_of(input, &reach) {
+        let worked = match self.region_of(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
                 None
@@ -129,14 +143,26 @@ impl Stage {
         report: &mut FrameReport,
     ) -> Result<(), ToyError> {
         let is_fresh = self.ensure_learned(gpu, input, region);
-        self.scene.toy.pose(clip_time(&input.shown_pose), &self.plane_from_object, &mut self.posed)?;
+        self.scene.toy.pose(
+            clip_time(&input.shown_pose),
+            &self.plane_from_object,
+            &mut self.posed,
+        )?;
         self.toy.shown.write(gpu, &self.posed);
-        let Some(Learned { capture, passes, .. }) = &self.learned else { return Ok(()) };
-        let pictures = Pictures { frame: &self.frame.view, plate: &self.plate.view };
+        let Some(Learned { capture, passes, .. }) = &self.learned else {
+            return Ok(());
+        };
+        let pictures = Pictures {
+            frame: &self.frame.view,
+            plate: &self.plate.view,
+        };
         if is_fresh {
             capture.encode(gpu, encoder, passes, &self.toy, &pictures);
         } else {
-            report.skipped.push(LeftOut { what: "capture path", why: "place, pose and camera are known" });
+            report.skipped.push(LeftOut {
+                what: "capture path",
+                why: "place, pose and camera are known",
+            });
         }
         if is_fresh || is_new_image {
             capture.encode_appearance(gpu, encoder, passes, &self.frame.view);
@@ -146,7 +172,14 @@ impl Stage {
             pass.name != "present"
                 && (pass.path == Path::Frame || is_fresh || (is_new_image && pass.name == "appearance"))
         };
-        report.ran.extend(capture.plan.passes.iter().filter(ran).map(|pass| (pass.path, pass.name)));
+        report.ran.extend(
+            capture
+                .plan
+                .passes
+                .iter()
+                .filter(ran)
+                .map(|pass| (pass.path, pass.name)),
+        );
         report.skipped.extend_from_slice(&capture.plan.left_out);
         report.region = Some(capture.plan.region);
         Ok(())
@@ -154,7 +187,11 @@ impl Stage {
 
     /// Uploads the camera's picture unless it is the one that is there already.
     fn take_image(&mut self, gpu: &Gpu, image: &Arc<Image>) -> bool {
-        if self.frame_image.as_ref().is_some_and(|known| Arc::ptr_eq(known, image)) {
+        if self
+            .frame_image
+            .as_ref()
+            .is_some_and(|known| Arc::ptr_eq(known, image))
+        {
             return false;
         }
         self.frame.write(gpu, &image.rgba8);
@@ -162,30 +199,75 @@ impl Stage {
         true
     }
 
-    fn region_of(&self, input: &FrameInput, reach: &Bounds) -> Result<PixelRect, PassThrough> {
-        if input.shown_pose == self.scene.physical_pose
-            || (input.shown_pose.clip.is_none() && self.scene.physical_pose.clip.is_none())
-        {
-            return Err(PassThrough::PhysicalPose);
-        }
+    fn region_of(&mut self, input: &FrameInput) -> Result<Result<PixelRect, PassThrough>, ToyError> {
+        let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
+        let physical_pose = &self.scene.physical_pose;
+        let Some(clip) = input
+            .shown_pose
+            .clip
+            .filter(|_| input.shown_pose != *physical_pose)
+        else {
+            return Ok(Err(PassThrough::PhysicalPose));
+        };
         if self.lights.is_empty() {
-            return Err(PassThrough::Warned(Warning::NoLight));
+            return warned(Warning::NoLight);
         }
         if self.plate_image(&input.world_from_camera).is_none() {
-            return Err(PassThrough::Warned(Warning::NoPlate));
+            return warned(Warning::NoPlate);
         }
-        let view = self.view(&input.world_from_camera);
-        if view.camera_in_plane().y == 0.0 {
-            return Err(PassThrough::Warned(Warning::CameraInPlane));
+        if self.view(&input.world_from_camera).camera_in_plane().y == 0.0 {
+            return warned(Warning::CameraInPlane);
         }
-        view.region(reach, &self.lights, &self.plane_from_world)
-            .ok_or(PassThrough::Warned(Warning::OutOfPicture))
+        let region = match self.known_region {
+            Some((known, camera, region)) if known == clip && camera == input.world_from_camera => region,
+            _ => self.region_over_clip(clip, &input.world_from_camera)?,
+        };
+        self.known_region = Some((clip, input.world_from_camera, region));
+        Ok(region.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
+    }
+
+    /// What toy and shadows reach in the physical pose and over all of `clip`.
+    fn region_over_clip(
+        &mut self,
+        clip: ClipId,
+        world_from_camera: &DMat4,
+    ) -> Result<Option<PixelRect>, ToyError> {
+        let over_clip = self.scene.toy.bounds_over_clip(clip)?;
+        let in_object = Bounds {
+            min: over_clip.min.as_dvec3(),
+            max: over_clip.max.as_dvec3(),
+        };
+        let corners = in_object
+            .corners()
+            .map(|p| self.plane_from_object.transform_point3(p));
+        let bounds = bounds_of(corners.chain([self.physical_bounds.min, self.physical_bounds.max]));
+        let view = self.view(world_from_camera);
+        let mut reach = Reach::new(&view, &bounds, &self.lights, &self.plane_from_world);
+        let duration_secs = self.scene.toy.clips()[clip.index()].duration_secs;
+        let moments = (0..N_REGION_MOMENTS).map(|k| f64::from(k) / f64::from(N_REGION_MOMENTS - 1));
+        let poses = moments
+            .map(|at| Some((clip, at * duration_secs)))
+            .chain([clip_time(&self.scene.physical_pose)]);
+        for pose in poses {
+            self.scene
+                .toy
+                .pose(pose, &self.plane_from_object, &mut self.posed)?;
+            self.posed
+                .positions
+                .iter()
+                .for_each(|p| reach.include(p.as_dvec3()));
+        }
+        Ok(reach
+            .region()
+            .map(|region| region.grown(REGION_MARGIN_PX, view.image_px)))
     }
 
     /// Makes what was learned cover `region` from this camera; true when it must be learned anew.
     fn ensure_learned(&mut self, gpu: &Gpu, input: &FrameInput, region: PixelRect) -> bool {
         if let Some(learned) = &self.learned
-            && learned.world_from_camera.abs_diff_eq(input.world_from_camera, SAME_CAMERA)
+            && learned
+                .world_from_camera
+                .abs_diff_eq(input.world_from_camera, SAME_CAMERA)
             && learned.capture.plan.region.contains(&region)
         {
             return false;
@@ -201,9 +283,14 @@ impl Stage {
             plane_from_world: &self.plane_from_world,
             reference_in_plane: DVec2::new(centre.x, centre.z),
         };
-        let penumbra_px =
-            self.lights.iter().map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
-        let facts = SceneFacts { region, penumbra_px: penumbra_px.collect() };
+        let penumbra_px = self
+            .lights
+            .iter()
+            .map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
+        let facts = SceneFacts {
+            region,
+            penumbra_px: penumbra_px.collect(),
+        };
         let plan = Plan::new(&facts, &self.preset.settings());
         let points = self
             .lights
@@ -222,32 +309,22 @@ impl Stage {
 
     fn view(&self, world_from_camera: &DMat4) -> View {
         let image_px = UVec2::new(self.scene.width_px, self.scene.height_px);
-        View::new(image_px, self.scene.intrinsics, world_from_camera, &self.scene.receivers[0])
+        View::new(
+            image_px,
+            self.scene.intrinsics,
+            world_from_camera,
+            &self.scene.receivers[0],
+        )
     }
 
     fn plate_image(&self, world_from_camera: &DMat4) -> Option<&Image> {
         let plates = &self.scene.plates;
-        let same = plates.iter().find(|plate| plate.world_from_camera.abs_diff_eq(*world_from_camera, SAME_CAMERA));
+        let same = plates.iter().find(|plate| {
+            plate
+                .world_from_camera
+                .abs_diff_eq(*world_from_camera, SAME_CAMERA)
+        });
         same.map(|plate| plate.image.as_ref())
-    }
-
-    /// Where the toy can be, in its physical pose and over the whole clip that is shown, in plane space.
-    fn reach(&mut self, shown: &PoseTime) -> Result<Bounds, ToyError> {
-        let Some(clip) = shown.clip else { return Ok(self.physical_bounds) };
-        if let Some((known, bounds)) = self.clip_reach
-            && known == clip
-        {
-            return Ok(bounds);
-        }
-        let over_clip = self.scene.toy.bounds_over_clip(clip)?;
-        let in_object = Bounds { min: over_clip.min.as_dvec3(), max: over_clip.max.as_dvec3() };
-        let over_clip = bounds_of(in_object.corners().map(|p| self.plane_from_object.transform_point3(p)));
-        let bounds = Bounds {
-            min: self.physical_bounds.min.min(over_clip.min),
-            max: self.physical_bounds.max.max(over_clip.max),
-        };
-        self.clip_reach = Some((clip, bounds));
-        Ok(bounds)
     }
 }
 
@@ -266,7 +343,10 @@ impl PassThrough {
                 "see the warnings"
             }
         };
-        report.skipped.push(LeftOut { what: "every pass but present", why });
+        report.skipped.push(LeftOut {
+            what: "every pass but present",
+            why,
+        });
     }
 }
 
@@ -275,10 +355,16 @@ fn clip_time(pose: &PoseTime) -> Option<(ClipId, f64)> {
 }
 
 fn bounds_of(points: impl Iterator<Item = DVec3>) -> Bounds {
-    points.fold(Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, |bounds, p| Bounds {
-        min: bounds.min.min(p),
-        max: bounds.max.max(p),
-    })
+    points.fold(
+        Bounds {
+            min: DVec3::INFINITY,
+            max: DVec3::NEG_INFINITY,
+        },
+        |bounds, p| Bounds {
+            min: bounds.min.min(p),
+            max: bounds.max.max(p),
+        },
+    )
 }
 
 fn usable_lights(scene: &Scene, plane_from_world: &DMat4) -> (Vec<Light>, Vec<Warning>) {
@@ -292,11 +378,16 @@ fn usable_lights(scene: &Scene, plane_from_world: &DMat4) -> (Vec<Light>, Vec<Wa
         }
     }
     if lights.len() > MAX_LIGHTS {
-        warnings.push(Warning::LightsLeftOut { n_lights: lights.len() - MAX_LIGHTS });
+        warnings.push(Warning::LightsLeftOut {
+            n_lights: lights.len() - MAX_LIGHTS,
+        });
         lights.truncate(MAX_LIGHTS);
     }
     if scene.receivers.len() > 1 {
-        let names = scene.receivers[1..].iter().map(|receiver| receiver.name.clone()).collect();
+        let names = scene.receivers[1..]
+            .iter()
+            .map(|receiver| receiver.name.clone())
+            .collect();
         warnings.push(Warning::ReceiversLeftOut { names });
     }
     (lights, warnings)

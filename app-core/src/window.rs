@@ -19,14 +19,20 @@ impl Window {
         surface: wgpu::Surface<'static>,
         [width, height]: [u32; 2],
     ) -> Result<Self, CoreError> {
-        let failed = |reason: &str| CoreError::Surface { reason: reason.to_owned() };
+        let failed = |reason: &str| CoreError::Surface {
+            reason: reason.to_owned(),
+        };
         let mut config = surface
             .get_default_config(&gpu.adapter, width.max(1), height.max(1))
             .ok_or_else(|| failed("the adapter offers no configuration for it"))?;
         // The picture holds codes; a surface that encodes once more would show them too bright.
         config.format = config.format.remove_srgb_suffix();
         surface.configure(&gpu.device, &config);
-        Ok(Self { blitter: TextureBlitter::new(&gpu.device, config.format), surface, config })
+        Ok(Self {
+            blitter: TextureBlitter::new(&gpu.device, config.format),
+            surface,
+            config,
+        })
     }
 
     pub(crate) fn resize(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) {
@@ -48,10 +54,18 @@ impl Window {
                 self.surface.configure(&gpu.device, &self.config);
                 return Ok(());
             }
-            other => return Err(CoreError::Surface { reason: format!("{other:?}") }),
+            other => {
+                return Err(CoreError::Surface {
+                    reason: format!("{other:?}"),
+                });
+            }
         };
-        let target = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let target = texture
+            .texture
+            .create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         match picture {
             Some(picture) => self.blitter.copy(&gpu.device, &mut encoder, picture, &target),
             None => {

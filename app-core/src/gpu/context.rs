@@ -17,7 +17,9 @@ pub enum AdapterChoice {
 #[non_exhaustive]
 pub enum GpuError {
     /// There is no driver, or none that can draw on the surface.
-    #[error("no graphics adapter: {reason}; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one")]
+    #[error(
+        "no graphics adapter: {reason}; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one"
+    )]
     NoAdapter {
         /// What was found.
         reason: String,
@@ -50,9 +52,12 @@ pub struct Gpu {
 
 /// The limits that every phone we aim at has; tests run under them too.
 #[must_use]
-pub(crate) fn phone_limits() -> wgpu::Limits {
+pub fn phone_limits() -> wgpu::Limits {
     // Camera images are wider than the 2048 texels that the oldest devices offer.
-    wgpu::Limits { max_texture_dimension_2d: 8192, ..wgpu::Limits::downlevel_defaults() }
+    wgpu::Limits {
+        max_texture_dimension_2d: 8192,
+        ..wgpu::Limits::downlevel_defaults()
+    }
 }
 
 impl Gpu {
@@ -68,8 +73,11 @@ impl Gpu {
         let adapter = find_adapter(instance, choice, surface).await?;
         let info = adapter.get_info();
         let has_timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let required_features =
-            if has_timestamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() };
+        let required_features = if has_timestamps {
+            wgpu::Features::TIMESTAMP_QUERY
+        } else {
+            wgpu::Features::empty()
+        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("app-core"),
             required_features,
@@ -79,8 +87,17 @@ impl Gpu {
         let (device, queue) = adapter
             .request_device(&descriptor)
             .await
-            .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
-        Ok(Self { adapter, device, queue, info, has_timestamps })
+            .map_err(|e| GpuError::NoDevice {
+                adapter: info.name.clone(),
+                reason: e.to_string(),
+            })?;
+        Ok(Self {
+            adapter,
+            device,
+            queue,
+            info,
+            has_timestamps,
+        })
     }
 
     /// Name of the adapter and of its driver, for reports.
@@ -115,17 +132,26 @@ async fn find_adapter(
                 ..Default::default()
             })
             .await
-            .map_err(|e| GpuError::NoAdapter { reason: e.to_string() }),
+            .map_err(|e| GpuError::NoAdapter {
+                reason: e.to_string(),
+            }),
         AdapterChoice::Named(wanted) => {
             let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
             let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
             let fits = |adapter: &wgpu::Adapter| {
-                adapter.get_info().name.to_lowercase().contains(&wanted.to_lowercase())
+                adapter
+                    .get_info()
+                    .name
+                    .to_lowercase()
+                    .contains(&wanted.to_lowercase())
                     && surface.is_none_or(|s| adapter.is_surface_supported(s))
             };
-            adapters.into_iter().find(fits).ok_or_else(|| GpuError::NoAdapter {
-                reason: format!("none is named \"{wanted}\", there are {names:?}"),
-            })
+            adapters
+                .into_iter()
+                .find(fits)
+                .ok_or_else(|| GpuError::NoAdapter {
+                    reason: format!("none is named \"{wanted}\", there are {names:?}"),
+                })
         }
     }
 }

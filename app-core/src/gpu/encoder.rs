@@ -35,7 +35,9 @@ pub(crate) struct Stamps {
 
 impl Encoder {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let raw = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let raw = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let timer = gpu.has_timestamps().then(|| Timer {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("pass times"),
@@ -56,17 +58,24 @@ impl Encoder {
         keep_depth: wgpu::StoreOp,
     ) -> wgpu::RenderPass<'a> {
         let timed = self.timer.as_mut().and_then(|timer| timer.next(pass));
-        let stamps = self.timer.as_ref().zip(timed).map(|(timer, first)| wgpu::RenderPassTimestampWrites {
-            query_set: &timer.queries,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
-        });
+        let stamps = self
+            .timer
+            .as_ref()
+            .zip(timed)
+            .map(|(timer, first)| wgpu::RenderPassTimestampWrites {
+                query_set: &timer.queries,
+                beginning_of_pass_write_index: Some(first),
+                end_of_pass_write_index: Some(first + 1),
+            });
         self.raw.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(pass),
             color_attachments: colors,
             depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
                 view,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: keep_depth }),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: keep_depth,
+                }),
                 stencil_ops: None,
             }),
             timestamp_writes: stamps,
@@ -100,14 +109,19 @@ impl Encoder {
         workgroups: [u32; 3],
     ) {
         let timed = self.timer.as_mut().and_then(|timer| timer.next(pass));
-        let stamps = self.timer.as_ref().zip(timed).map(|(timer, first)| wgpu::ComputePassTimestampWrites {
-            query_set: &timer.queries,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
+        let stamps = self
+            .timer
+            .as_ref()
+            .zip(timed)
+            .map(|(timer, first)| wgpu::ComputePassTimestampWrites {
+                query_set: &timer.queries,
+                beginning_of_pass_write_index: Some(first),
+                end_of_pass_write_index: Some(first + 1),
+            });
+        let mut compute = self.raw.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(pass),
+            timestamp_writes: stamps,
         });
-        let mut compute = self
-            .raw
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(pass), timestamp_writes: stamps });
         compute.set_pipeline(pipeline);
         for (index, group) in groups {
             compute.set_bind_group(*index, *group, &[]);
@@ -117,18 +131,26 @@ impl Encoder {
 
     /// Hands the commands to the device.
     pub(crate) fn submit(mut self, gpu: &Gpu) -> Option<Stamps> {
-        let stamps = self.timer.take().filter(|timer| !timer.passes.is_empty()).map(|timer| {
-            let n_stamps = 2 * timer.passes.len() as u64;
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pass times"),
-                size: n_stamps * STAMP_BYTES,
-                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
+        let stamps = self
+            .timer
+            .take()
+            .filter(|timer| !timer.passes.is_empty())
+            .map(|timer| {
+                let n_stamps = 2 * timer.passes.len() as u64;
+                let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("pass times"),
+                    size: n_stamps * STAMP_BYTES,
+                    usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                    mapped_at_creation: false,
+                });
+                let n_queries = 2 * u32::try_from(timer.passes.len()).unwrap_or(MAX_TIMED);
+                self.raw
+                    .resolve_query_set(&timer.queries, 0..n_queries, &buffer, 0);
+                Stamps {
+                    buffer,
+                    passes: timer.passes,
+                }
             });
-            let n_queries = 2 * u32::try_from(timer.passes.len()).unwrap_or(MAX_TIMED);
-            self.raw.resolve_query_set(&timer.queries, 0..n_queries, &buffer, 0);
-            Stamps { buffer, passes: timer.passes }
-        });
         gpu.queue.submit([self.raw.finish()]);
         stamps
     }
@@ -136,7 +158,9 @@ impl Encoder {
 
 impl Timer {
     fn next(&mut self, pass: &'static str) -> Option<u32> {
-        let index = u32::try_from(self.passes.len()).ok().filter(|index| *index < MAX_TIMED)?;
+        let index = u32::try_from(self.passes.len())
+            .ok()
+            .filter(|index| *index < MAX_TIMED)?;
         self.passes.push(pass);
         Some(2 * index)
     }
@@ -150,7 +174,10 @@ impl Stamps {
         let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
         let mut times: Vec<PassTime> = Vec::new();
         for (pass, stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
-            #[allow(clippy::cast_precision_loss, reason = "a difference of ticks within one frame is far below 2^52")]
+            #[allow(
+                clippy::cast_precision_loss,
+                reason = "a difference of ticks within one frame is far below 2^52"
+            )]
             let gpu_ms = stamp[1].saturating_sub(stamp[0]) as f64 * ms_per_tick;
             match times.iter_mut().find(|time| time.pass == *pass) {
                 Some(time) => time.gpu_ms += gpu_ms,

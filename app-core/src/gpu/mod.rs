@@ -8,5 +8,5 @@ pub(crate) mod readback;
 pub mod shaders;
 pub(crate) mod texture;
 
-pub use context::{AdapterChoice, Gpu, GpuError};
+pub use context::{AdapterChoice, Gpu, GpuError, phone_limits};
 pub use encoder::PassTime;

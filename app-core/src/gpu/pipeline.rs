@@ -40,29 +40,35 @@ impl Gpu {
         stages: &Stages<'_>,
         shape: &RenderShape<'_>,
     ) -> wgpu::RenderPipeline {
-        let options =
-            wgpu::PipelineCompilationOptions { constants: shape.constants, ..Default::default() };
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(shader.name),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some(stages.vertex),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: stages.buffers,
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: shape.depth.clone(),
-            multisample: wgpu::MultisampleState { count: shape.n_samples, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(stages.fragment),
-                compilation_options: options,
-                targets: shape.targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let options = wgpu::PipelineCompilationOptions {
+            constants: shape.constants,
+            ..Default::default()
+        };
+        self.device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(shader.name),
+                layout: None,
+                vertex: wgpu::VertexState {
+                    module,
+                    entry_point: Some(stages.vertex),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: stages.buffers,
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: shape.depth.clone(),
+                multisample: wgpu::MultisampleState {
+                    count: shape.n_samples,
+                    ..Default::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module,
+                    entry_point: Some(stages.fragment),
+                    compilation_options: options,
+                    targets: shape.targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
     }
 
     /// A pipeline that runs a fragment shader over a whole target.
@@ -73,20 +79,30 @@ impl Gpu {
         format: wgpu::TextureFormat,
         constants: &[(&str, f64)],
     ) -> wgpu::RenderPipeline {
-        let stages = Stages { vertex: "vs_fullscreen", fragment, buffers: &[] };
-        let shape = RenderShape { targets: &[Some(format.into())], n_samples: 1, depth: None, constants };
+        let stages = Stages {
+            vertex: "vs_fullscreen",
+            fragment,
+            buffers: &[],
+        };
+        let shape = RenderShape {
+            targets: &[Some(format.into())],
+            n_samples: 1,
+            depth: None,
+            constants,
+        };
         self.render_pipeline(shader, &self.module(shader), &stages, &shape)
     }
 
     pub(crate) fn compute_pipeline(&self, shader: &Shader, entry_point: &str) -> wgpu::ComputePipeline {
-        self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(shader.name),
-            layout: None,
-            module: &self.module(shader),
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        })
+        self.device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(shader.name),
+                layout: None,
+                module: &self.module(shader),
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
     }
 
     /// Binds resources in order to the given binding numbers.
@@ -97,9 +113,16 @@ impl Gpu {
     ) -> wgpu::BindGroup {
         let entries: Vec<_> = resources
             .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .map(|(binding, resource)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: resource.clone(),
+            })
             .collect();
-        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout,
+            entries: &entries,
+        })
     }
 
     pub(crate) fn linear_sampler(&self) -> wgpu::Sampler {

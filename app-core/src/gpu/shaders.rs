@@ -75,11 +75,24 @@ pub(crate) const RESIDUAL: Shader = Shader {
     parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, wgsl!("residual")],
     entry_points: &["cs_pool"],
 };
-pub(crate) const FILL: Shader =
-    Shader { name: "fill", parts: &[GRID, wgsl!("fill")], entry_points: &["cs_pull_push"] };
+pub(crate) const FILL: Shader = Shader {
+    name: "fill",
+    parts: &[GRID, wgsl!("fill")],
+    entry_points: &["cs_pull_push"],
+};
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
-    parts: &[GLOBALS, FIT, MODEL, TOY, GRID, MATERIAL, DEPTH, FULLSCREEN, wgsl!("composite")],
+    parts: &[
+        GLOBALS,
+        FIT,
+        MODEL,
+        TOY,
+        GRID,
+        MATERIAL,
+        DEPTH,
+        FULLSCREEN,
+        wgsl!("composite"),
+    ],
     entry_points: &["vs_fullscreen", "fs_receiver", "vs_toy", "fs_toy"],
 };
 pub(crate) const PRESENT: Shader = Shader {
@@ -90,5 +103,6 @@ pub(crate) const PRESENT: Shader = Shader {
 
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
-    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE, PRESENT,
+    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE,
+    PRESENT,
 ];

@@ -32,7 +32,11 @@ impl Texture {
 
     /// A picture to read from, sRGB-encoded.
     pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: [u32; 2]) -> Self {
-        let shape = TextureShape { size_px, format: wgpu::TextureFormat::Rgba8UnormSrgb, n_samples: 1 };
+        let shape = TextureShape {
+            size_px,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            n_samples: 1,
+        };
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         Self::create(gpu, label, shape, usage)
     }
@@ -45,7 +49,11 @@ impl Texture {
         };
         let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
-            size: wgpu::Extent3d { width: shape.size_px[0], height: shape.size_px[1], depth_or_array_layers: 1 },
+            size: wgpu::Extent3d {
+                width: shape.size_px[0],
+                height: shape.size_px[1],
+                depth_or_array_layers: 1,
+            },
             mip_level_count: 1,
             sample_count: shape.n_samples,
             dimension: wgpu::TextureDimension::D2,

@@ -22,7 +22,9 @@ pub(crate) struct AppearanceInputs<'a> {
 
 impl Appearance {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: gpu.fullscreen_pipeline(&APPEARANCE, "fs_clean", APPEARANCE_FORMAT, &[]) }
+        Self {
+            pipeline: gpu.fullscreen_pipeline(&APPEARANCE, "fs_clean", APPEARANCE_FORMAT, &[]),
+        }
     }
 
     pub(crate) fn encode(
@@ -37,7 +39,11 @@ impl Appearance {
         let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
         let own = gpu.bind(
             &layout(GROUP_PASS),
-            &[(0, view(inputs.frame)), (1, view(inputs.evidence)), (2, view(inputs.object_depth))],
+            &[
+                (0, view(inputs.frame)),
+                (1, view(inputs.evidence)),
+                (2, view(inputs.object_depth)),
+            ],
         );
         encoder.fullscreen(
             APPEARANCE.name,

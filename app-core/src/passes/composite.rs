@@ -34,6 +34,7 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) appearance: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
+    pub(crate) object_base: &'a wgpu::TextureView,
 }
 
 /// Textures of the region's size: two multisampled ones that stay on the chip, and the picture.
@@ -70,8 +71,16 @@ impl Composite {
             depth_compare: Some(CompareFunction::Always),
             ..nearest_surface()
         };
-        let receiver = Stages { vertex: "vs_fullscreen", fragment: "fs_receiver", buffers: &[] };
-        let toy = Stages { vertex: "vs_toy", fragment: "fs_toy", buffers: &buffers };
+        let receiver = Stages {
+            vertex: "vs_fullscreen",
+            fragment: "fs_receiver",
+            buffers: &[],
+        };
+        let toy = Stages {
+            vertex: "vs_toy",
+            fragment: "fs_toy",
+            buffers: &buffers,
+        };
         Self {
             receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &shape(behind_all)),
             toy: gpu.render_pipeline(&COMPOSITE, &module, &toy, &shape(nearest_surface())),
@@ -87,7 +96,10 @@ impl Composite {
         inputs: &CompositeInputs<'_>,
         targets: &CompositeTargets<'_>,
     ) {
-        let receiver_groups = [shared(gpu, &self.receiver, inputs), self.receiver_inputs(gpu, inputs)];
+        let receiver_groups = [
+            shared(gpu, &self.receiver, inputs),
+            self.receiver_inputs(gpu, inputs),
+        ];
         let toy_groups = [shared(gpu, &self.toy, inputs), self.toy_inputs(gpu, inputs)];
         let materials = toy.material_groups(gpu, &self.toy);
         let colors = [Some(resolved(targets.samples, targets.picture))];
@@ -121,7 +133,11 @@ impl Composite {
     fn toy_inputs(&self, gpu: &Gpu, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
         gpu.bind(
             &self.toy.get_bind_group_layout(GROUP_PASS),
-            &[(10, view(inputs.appearance)), (11, view(inputs.object_depth))],
+            &[
+                (10, view(inputs.appearance)),
+                (11, view(inputs.object_depth)),
+                (12, view(inputs.object_base)),
+            ],
         )
     }
 }
@@ -129,7 +145,10 @@ impl Composite {
 fn shared(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
     gpu.bind(
         &pipeline.get_bind_group_layout(GROUP_GLOBALS),
-        &[(0, inputs.globals.as_entire_binding()), (1, inputs.solution.as_entire_binding())],
+        &[
+            (0, inputs.globals.as_entire_binding()),
+            (1, inputs.solution.as_entire_binding()),
+        ],
     )
 }
 

@@ -16,7 +16,9 @@ pub(crate) struct Evidence {
 
 impl Evidence {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: gpu.fullscreen_pipeline(&EVIDENCE, "fs_mark", EVIDENCE_FORMAT, &[]) }
+        Self {
+            pipeline: gpu.fullscreen_pipeline(&EVIDENCE, "fs_mark", EVIDENCE_FORMAT, &[]),
+        }
     }
 
     pub(crate) fn encode(

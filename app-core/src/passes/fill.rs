@@ -16,17 +16,13 @@ pub(crate) struct Fill {
 
 impl Fill {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: gpu.compute_pipeline(&FILL, "cs_pull_push") }
+        Self {
+            pipeline: gpu.compute_pipeline(&FILL, "cs_pull_push"),
+        }
     }
 
     /// Fills the finest level of `cells` in place.
-    pub(crate) fn encode(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
-        grid: &wgpu::Buffer,
-        cells: &wgpu::Buffer,
-    ) {
+    pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, grid: &wgpu::Buffer, cells: &wgpu::Buffer) {
         let own = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_PASS),
             &[(0, grid.as_entire_binding()), (1, cells.as_entire_binding())],

@@ -80,7 +80,10 @@ impl Fit {
         });
         let group_0 = gpu.bind(
             &self.sums.get_bind_group_layout(GROUP_GLOBALS),
-            &[(0, shared.globals.as_entire_binding()), (1, shared.solution.as_entire_binding())],
+            &[
+                (0, shared.globals.as_entire_binding()),
+                (1, shared.solution.as_entire_binding()),
+            ],
         );
         for step in 0..plan.n_fit_steps {
             let uniform = gpu.uniform("fit step", &fit_step(plan, subject, step));

@@ -34,14 +34,20 @@ impl Object {
             Stream::new(1, VertexFormat::Float32x3),
         ];
         let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
-        let stages = Stages { vertex: "vs_project", fragment: "fs_describe", buffers: &buffers };
+        let stages = Stages {
+            vertex: "vs_project",
+            fragment: "fs_describe",
+            buffers: &buffers,
+        };
         let shape = RenderShape {
             targets: &[Some(BASE_FORMAT.into()), Some(NORMAL_FORMAT.into())],
             n_samples: 1,
             depth: Some(nearest_surface()),
             constants: &[],
         };
-        Self { pipeline: gpu.render_pipeline(&OBJECT, &gpu.module(&OBJECT), &stages, &shape) }
+        Self {
+            pipeline: gpu.render_pipeline(&OBJECT, &gpu.module(&OBJECT), &stages, &shape),
+        }
     }
 
     pub(crate) fn encode(

@@ -32,11 +32,20 @@ pub(crate) struct OcclusionTargets {
 impl OcclusionTargets {
     pub(crate) fn new(gpu: &Gpu, size_px: UVec2, n_points: usize) -> Self {
         let n_targets = n_points.div_ceil(POINTS_PER_TARGET);
-        let shape = |n_samples| TextureShape { size_px: size_px.to_array(), format: FORMAT, n_samples };
-        let textures = |label, n_samples| {
-            (0..n_targets).map(|_| Texture::target(gpu, label, shape(n_samples))).collect()
+        let shape = |n_samples| TextureShape {
+            size_px: size_px.to_array(),
+            format: FORMAT,
+            n_samples,
         };
-        Self { samples: textures("occlusion samples", N_SAMPLES), hidden: textures("occlusion", 1) }
+        let textures = |label, n_samples| {
+            (0..n_targets)
+                .map(|_| Texture::target(gpu, label, shape(n_samples)))
+                .collect()
+        };
+        Self {
+            samples: textures("occlusion samples", N_SAMPLES),
+            hidden: textures("occlusion", 1),
+        }
     }
 }
 
@@ -51,14 +60,25 @@ impl Occlusion {
         };
         let target = wgpu::ColorTargetState {
             format: FORMAT,
-            blend: Some(BlendState { color: keep_largest, alpha: keep_largest }),
+            blend: Some(BlendState {
+                color: keep_largest,
+                alpha: keep_largest,
+            }),
             write_mask: wgpu::ColorWrites::ALL,
         };
         let targets = vec![Some(target); n_points.div_ceil(POINTS_PER_TARGET)];
         let stream = Stream::new(0, VertexFormat::Float32x3);
-        let stages =
-            Stages { vertex: "vs_flatten", fragment: "fs_cover", buffers: &[stream.layout()] };
-        let shape = RenderShape { targets: &targets, n_samples: N_SAMPLES, depth: None, constants: &[] };
+        let stages = Stages {
+            vertex: "vs_flatten",
+            fragment: "fs_cover",
+            buffers: &[stream.layout()],
+        };
+        let shape = RenderShape {
+            targets: &targets,
+            n_samples: N_SAMPLES,
+            depth: None,
+            constants: &[],
+        };
         let pipeline = gpu.render_pipeline(&OCCLUSION, &gpu.module(&OCCLUSION), &stages, &shape);
         Self { pipeline, n_points }
     }
@@ -87,7 +107,9 @@ impl Occlusion {
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
         render.set_bind_group(GROUP_PASS, &own, &[]);
         let n_instances = u32::try_from(self.n_points).unwrap_or(0);
-        caster.toy.draw_positions(&mut render, caster.positions, n_instances);
+        caster
+            .toy
+            .draw_positions(&mut render, caster.positions, n_instances);
     }
 }
 
@@ -99,7 +121,9 @@ pub(crate) struct Caster<'a> {
 }
 
 fn light_points_uniform(points: &[Vec4]) -> LightPoints {
-    let mut uniform = LightPoints { points: [[0.0; 4]; MAX_LIGHT_POINTS] };
+    let mut uniform = LightPoints {
+        points: [[0.0; 4]; MAX_LIGHT_POINTS],
+    };
     for (slot, point) in uniform.points.iter_mut().zip(points) {
         *slot = point.to_array();
     }

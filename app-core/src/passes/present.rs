@@ -22,7 +22,9 @@ pub(crate) struct PresentInputs<'a> {
 impl Present {
     /// For a target of `format`, which takes codes as they are.
     pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
-        Self { pipeline: gpu.fullscreen_pipeline(&PRESENT, "fs_place", format, &[]) }
+        Self {
+            pipeline: gpu.fullscreen_pipeline(&PRESENT, "fs_place", format, &[]),
+        }
     }
 
     pub(crate) fn encode(

@@ -26,7 +26,10 @@ pub(crate) struct ResidualInputs<'a> {
 
 impl Residual {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: gpu.compute_pipeline(&RESIDUAL, "cs_pool"), linear: gpu.linear_sampler() }
+        Self {
+            pipeline: gpu.compute_pipeline(&RESIDUAL, "cs_pool"),
+            linear: gpu.linear_sampler(),
+        }
     }
 
     /// Fills the finest level of `cells`, of `size` cells.
@@ -41,7 +44,10 @@ impl Residual {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(
             &layout(GROUP_GLOBALS),
-            &[(0, inputs.globals.as_entire_binding()), (1, inputs.solution.as_entire_binding())],
+            &[
+                (0, inputs.globals.as_entire_binding()),
+                (1, inputs.solution.as_entire_binding()),
+            ],
         );
         let own = gpu.bind(
             &layout(GROUP_PASS),

@@ -20,15 +20,25 @@ pub(crate) struct PoseBuffers {
 impl PoseBuffers {
     fn new(gpu: &Gpu, mesh: &PosedMesh) -> Self {
         Self {
-            positions: gpu.buffer("positions", bytemuck::cast_slice(&mesh.positions), BufferUsages::VERTEX),
-            normals: gpu.buffer("normals", bytemuck::cast_slice(&mesh.normals), BufferUsages::VERTEX),
+            positions: gpu.buffer(
+                "positions",
+                bytemuck::cast_slice(&mesh.positions),
+                BufferUsages::VERTEX,
+            ),
+            normals: gpu.buffer(
+                "normals",
+                bytemuck::cast_slice(&mesh.normals),
+                BufferUsages::VERTEX,
+            ),
         }
     }
 
     /// Replaces the pose by another of the same toy.
     pub(crate) fn write(&self, gpu: &Gpu, mesh: &PosedMesh) {
-        gpu.queue.write_buffer(&self.positions, 0, bytemuck::cast_slice(&mesh.positions));
-        gpu.queue.write_buffer(&self.normals, 0, bytemuck::cast_slice(&mesh.normals));
+        gpu.queue
+            .write_buffer(&self.positions, 0, bytemuck::cast_slice(&mesh.positions));
+        gpu.queue
+            .write_buffer(&self.normals, 0, bytemuck::cast_slice(&mesh.normals));
     }
 }
 
@@ -61,7 +71,11 @@ pub(crate) struct ToyMesh {
 impl ToyMesh {
     pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh) -> Self {
         Self {
-            indices: gpu.buffer("indices", bytemuck::cast_slice(toy.indices()), BufferUsages::INDEX),
+            indices: gpu.buffer(
+                "indices",
+                bytemuck::cast_slice(toy.indices()),
+                BufferUsages::INDEX,
+            ),
             n_indices: u32::try_from(toy.indices().len()).unwrap_or(u32::MAX),
             uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
             colors: gpu.buffer(
@@ -72,9 +86,16 @@ impl ToyMesh {
             parts: toy
                 .parts()
                 .iter()
-                .map(|part| Part { indices: part.indices.clone(), material: part.material })
+                .map(|part| Part {
+                    indices: part.indices.clone(),
+                    material: part.material,
+                })
                 .collect(),
-            materials: toy.materials().iter().map(|m| MaterialBinding::new(gpu, toy, m)).collect(),
+            materials: toy
+                .materials()
+                .iter()
+                .map(|m| MaterialBinding::new(gpu, toy, m))
+                .collect(),
             physical: PoseBuffers::new(gpu, physical),
             shown: PoseBuffers::new(gpu, physical),
         }
@@ -133,15 +154,25 @@ impl ToyMesh {
 
 impl MaterialBinding {
     fn new(gpu: &Gpu, toy: &Toy, material: &crate::toy::Material) -> Self {
-        let image = material.base_color_texture.as_ref().and_then(|used| toy.textures().get(used.texture));
-        let texture = Texture::picture(gpu, "base colour", image.map_or([1, 1], |image| [image.width_px, image.height_px]));
+        let image = material
+            .base_color_texture
+            .as_ref()
+            .and_then(|used| toy.textures().get(used.texture));
+        let texture = Texture::picture(
+            gpu,
+            "base colour",
+            image.map_or([1, 1], |image| [image.width_px, image.height_px]),
+        );
         texture.write(gpu, image.map_or(&WHITE, |image| &image.rgba8_srgb));
         let mode = |wrap: Wrap| match wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,
             Wrap::MirroredRepeat => wgpu::AddressMode::MirrorRepeat,
             Wrap::ClampToEdge => wgpu::AddressMode::ClampToEdge,
         };
-        let wrap = material.base_color_texture.as_ref().map_or([Wrap::Repeat; 2], |used| [used.wrap_u, used.wrap_v]);
+        let wrap = material
+            .base_color_texture
+            .as_ref()
+            .map_or([Wrap::Repeat; 2], |used| [used.wrap_u, used.wrap_v]);
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("base colour"),
             address_mode_u: mode(wrap[0]),
@@ -150,8 +181,14 @@ impl MaterialBinding {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        let uniform = Material { base_color_linear: material.base_color_linear };
-        Self { uniform: gpu.uniform("material", &uniform), texture, sampler }
+        let uniform = Material {
+            base_color_linear: material.base_color_linear,
+        };
+        Self {
+            uniform: gpu.uniform("material", &uniform),
+            texture,
+            sampler,
+        }
     }
 }
 
@@ -161,7 +198,11 @@ pub(crate) struct Stream([VertexAttribute; 1]);
 impl Stream {
     /// `format` at shader location `location`.
     pub(crate) fn new(location: u32, format: VertexFormat) -> Self {
-        Self([VertexAttribute { format, offset: 0, shader_location: location }])
+        Self([VertexAttribute {
+            format,
+            offset: 0,
+            shader_location: location,
+        }])
     }
 
     /// The stream's layout.

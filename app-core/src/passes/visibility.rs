@@ -18,13 +18,30 @@ pub(crate) struct Visibility {
 impl Visibility {
     /// Writes channel `channel` of a map of `format`.
     pub(crate) fn new(gpu: &Gpu, n_points: usize, channel: usize, format: TextureFormat) -> Self {
-        let masks = [ColorWrites::RED, ColorWrites::GREEN, ColorWrites::BLUE, ColorWrites::ALPHA];
-        let target = ColorTargetState { format, blend: None, write_mask: masks[channel.min(masks.len() - 1)] };
-        let stages = Stages { vertex: "vs_fullscreen", fragment: "fs_average", buffers: &[] };
+        let masks = [
+            ColorWrites::RED,
+            ColorWrites::GREEN,
+            ColorWrites::BLUE,
+            ColorWrites::ALPHA,
+        ];
+        let target = ColorTargetState {
+            format,
+            blend: None,
+            write_mask: masks[channel.min(masks.len() - 1)],
+        };
+        let stages = Stages {
+            vertex: "vs_fullscreen",
+            fragment: "fs_average",
+            buffers: &[],
+        };
         #[allow(clippy::cast_precision_loss, reason = "at most 64")]
         let constants = [("N_POINTS", n_points as f64)];
-        let shape =
-            RenderShape { targets: &[Some(target)], n_samples: 1, depth: None, constants: &constants };
+        let shape = RenderShape {
+            targets: &[Some(target)],
+            n_samples: 1,
+            depth: None,
+            constants: &constants,
+        };
         let pipeline = gpu.render_pipeline(&VISIBILITY, &gpu.module(&VISIBILITY), &stages, &shape);
         Self { pipeline, channel }
     }
