@@ -1,4 +1,12 @@
-//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow.
+//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made from samples of it.
+//!
+//! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
+//! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with a model of our own in its place where that
+//! is more accurate: see the architecture below.
+#![doc = include_str!("../doc/architecture.md")]
+#![doc = include_str!("../doc/spaces.md")]
+#![doc = include_str!("../doc/passes.md")]
+#![forbid(unsafe_code)]
 
 pub mod core;
 pub mod frame;
