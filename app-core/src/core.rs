@@ -15,6 +15,7 @@ use crate::preset::Preset;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::toy::ToyError;
+use crate::work::Work;
 use crate::window::Window;
 
 /// Why the core cannot go on.
@@ -185,7 +186,7 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
-        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else {
+        let Some(capture) = self.stage.as_ref().and_then(Stage::work).and_then(Work::capture) else {
             return Ok(None);
         };
         let bytes = self.gpu.read_buffer(&capture.solution)?;
@@ -199,10 +200,8 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
-        let Some(capture) = self.stage.as_ref().and_then(Stage::capture) else {
-            return Ok(None);
-        };
-        Ok(Some(capture.read_map(&self.gpu, map)?))
+        let Some(work) = self.stage.as_ref().and_then(Stage::work) else { return Ok(None) };
+        Ok(work.read_map(&self.gpu, map)?)
     }
 
     /// The plan of the latest retargeted frame, once there was one.
@@ -210,7 +209,7 @@ impl Core {
     pub fn plan(&self) -> Option<&Plan> {
         self.stage
             .as_ref()
-            .and_then(Stage::capture)
+            .and_then(Stage::work).and_then(Work::capture)
             .map(|capture| &capture.plan)
     }
 

@@ -23,7 +23,9 @@ pub mod toy;
 mod capture;
 mod passes;
 mod pipeline;
+mod published;
 mod stage;
 mod window;
+mod work;
 
 pub use wgpu;

@@ -5,6 +5,7 @@ use wgpu::TextureFormat;
 use crate::capture::Capture;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
+use crate::published::Published;
 
 /// A map that the pipeline makes on its way to a picture, all of the work region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +27,12 @@ pub enum Map {
     Ambient,
     /// The filled grid of residuals in rgb, in plates; alpha is 1.
     Residual,
+    /// The paper's mask 3a, the physical toy, in r.
+    Masks,
+    /// The paper's masks: r is the shadow to sample from (3c), g the real shadow (3b).
+    Eligible,
+    /// Candidates that the ring search looked at, in r; 0 where it was not needed.
+    SearchTaps,
 }
 
 impl Map {
@@ -39,6 +46,9 @@ impl Map {
         Self::Visibility,
         Self::Ambient,
         Self::Residual,
+        Self::Masks,
+        Self::Eligible,
+        Self::SearchTaps,
     ];
 }
 
@@ -55,8 +65,8 @@ pub struct FloatMap {
 
 impl Capture {
     /// Waits for the device and returns a map.
-    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<FloatMap, GpuError> {
-        match map {
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        let map = match map {
             Map::Evidence => read_texture(gpu, &self.evidence),
             Map::ObjectBase => read_texture(gpu, &self.object_base),
             Map::Appearance => read_texture(gpu, &self.appearance),
@@ -65,7 +75,9 @@ impl Capture {
             Map::Visibility => read_texture(gpu, &self.shown.lights),
             Map::Ambient => read_texture(gpu, &self.shown.ambient),
             Map::Residual => self.read_cells(gpu),
-        }
+            Map::Masks | Map::Eligible | Map::SearchTaps => return Ok(None),
+        };
+        map.map(Some)
     }
 
     fn read_cells(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
@@ -78,6 +90,20 @@ impl Capture {
             height,
             texels,
         })
+    }
+}
+
+impl Published {
+    /// Waits for the device and returns a map, if the published method makes it.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        let texture = match map {
+            Map::Masks => &self.masks,
+            Map::Eligible => &self.eligible,
+            Map::SearchTaps => &self.taps,
+            Map::Visibility => &self.visibility,
+            _ => return Ok(None),
+        };
+        read_texture(gpu, texture).map(Some)
     }
 }
 

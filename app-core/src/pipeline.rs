@@ -16,6 +16,7 @@ use crate::passes::residual::Residual;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
 use crate::plan::Plan;
+use crate::work::Work;
 
 /// Flattening and averaging for one map.
 pub(crate) struct VisibilityPasses {
@@ -95,29 +96,21 @@ impl Passes {
     }
 }
 
-/// Lays the region over the camera frame, or passes the frame through where there is no region.
+/// Lays the region over the camera frame, or passes the frame through where nothing was worked on.
 pub(crate) fn encode_present(
     gpu: &Gpu,
     encoder: &mut Encoder,
     present: &Present,
-    (frame_codes, capture): (&wgpu::TextureView, Option<&Capture>),
+    (frame_codes, work): (&wgpu::TextureView, Option<&Work>),
     output: &wgpu::TextureView,
 ) {
-    let region_codes = capture.map(|capture| capture.picture.codes());
-    let placement = capture.map_or(
-        Placement {
-            origin_px: [0; 2],
-            size_px: [0; 2],
-        },
-        |capture| Placement {
-            origin_px: capture.plan.region.origin_px.to_array(),
-            size_px: capture.plan.region.size_px.to_array(),
-        },
-    );
-    let inputs = PresentInputs {
-        frame_codes,
-        region_codes: region_codes.as_ref().unwrap_or(frame_codes),
-        placement,
-    };
+    let region_codes = work.map(|work| work.picture().codes());
+    let nowhere = Placement { origin_px: [0; 2], size_px: [0; 2] };
+    let placement = work.map(Work::region).map_or(nowhere, |region| Placement {
+        origin_px: region.origin_px.to_array(),
+        size_px: region.size_px.to_array(),
+    });
+    let inputs =
+        PresentInputs { frame_codes, region_codes: region_codes.as_ref().unwrap_or(frame_codes), placement };
     present.encode(gpu, encoder, &inputs, output);
 }

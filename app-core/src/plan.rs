@@ -7,7 +7,7 @@ use glam::UVec2;
 use wgpu::TextureFormat;
 
 use crate::gpu::layout::{Grid, MAX_LIGHTS};
-use crate::preset::Settings;
+use crate::preset::{PublishedSettings, Settings};
 use crate::region::PixelRect;
 
 /// Most cells of the residual's grid along a side.
@@ -161,6 +161,22 @@ const PASSES: &[PlannedPass] = &[
     },
 ];
 
+/// The published method, in order.
+const PUBLISHED_PASSES: &[PlannedPass] = &[
+    PlannedPass { name: "masks", path: Path::Capture },
+    PlannedPass { name: "warp", path: Path::Capture },
+    PlannedPass { name: "pcss", path: Path::Capture },
+    PlannedPass { name: "eligible", path: Path::Capture },
+    PlannedPass { name: "warp", path: Path::Frame },
+    PlannedPass { name: "pcss", path: Path::Frame },
+    PlannedPass { name: "search", path: Path::Frame },
+    PlannedPass { name: "box_filter", path: Path::Frame },
+    PlannedPass { name: "retarget", path: Path::Frame },
+    PlannedPass { name: "present", path: Path::Frame },
+];
+/// What a shadow of constant strength does without.
+const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
+
 impl Plan {
     /// Plans a scene. Lights beyond the fourth are left out.
     #[must_use]
@@ -201,6 +217,38 @@ impl Plan {
             fit_stride_px,
             n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
             passes: PASSES.to_vec(),
+        }
+    }
+}
+
+/// A plan of the published method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PublishedPlan {
+    /// The work region.
+    pub region: PixelRect,
+    /// The passes in the order they run.
+    pub passes: Vec<PlannedPass>,
+    /// What the scene does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl PublishedPlan {
+    /// Plans a scene.
+    #[must_use]
+    pub fn new(facts: &SceneFacts, settings: &PublishedSettings) -> Self {
+        let is_constant = settings.constant_ratio.is_some();
+        let mut left_out = Vec::new();
+        if is_constant {
+            left_out.push(LeftOut { what: "samples of the real shadow", why: "the preset's shadow is constant" });
+        }
+        Self {
+            region: facts.region,
+            passes: PUBLISHED_PASSES
+                .iter()
+                .filter(|pass| !(is_constant && SAMPLING_PASSES.contains(&pass.name)))
+                .copied()
+                .collect(),
+            left_out,
         }
     }
 }

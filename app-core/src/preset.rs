@@ -9,6 +9,10 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Preset {
+    /// A shadow of constant strength, as AR products ship it.
+    Flat,
+    /// The published method: warp, ring search, box filter, PCSS.
+    Paper,
     /// The default.
     #[default]
     Balanced,
@@ -16,30 +20,56 @@ pub enum Preset {
 
 impl Preset {
     /// Every preset there is.
-    pub const ALL: &[Self] = &[Self::Balanced];
+    pub const ALL: &[Self] = &[Self::Flat, Self::Paper, Self::Balanced];
 
     /// The name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Flat => "flat",
+            Self::Paper => "paper",
             Self::Balanced => "balanced",
         }
     }
 
-    /// What the preset spends.
+    /// How the preset makes a picture.
     #[must_use]
-    pub fn settings(self) -> Settings {
+    pub fn method(self) -> Method {
         match self {
-            Self::Balanced => Settings {
-                n_light_points: 64,
-                n_ambient_directions: 64,
-                ambient_divisor: 4,
-            },
+            Self::Flat => Method::Published(PublishedSettings { constant_ratio: Some(0.45), ..PUBLISHED }),
+            Self::Paper => Method::Published(PUBLISHED),
+            Self::Balanced => Method::Model(BALANCED),
         }
     }
 }
 
-/// What a preset spends.
+/// What `balanced` spends.
+const BALANCED: Settings = Settings { n_light_points: 64, n_ambient_directions: 64, ambient_divisor: 4 };
+
+/// The constants that the papers leave open.
+const PUBLISHED: PublishedSettings = PublishedSettings {
+    constant_ratio: None,
+    eligible_margin_px: 3,
+    ring_step_px: 2.0,
+    n_ring_directions: 16,
+    n_rings: 200,
+    box_radius_px: 10,
+    seam_px: 4,
+    n_blocker_taps: 32,
+    n_filter_taps: 64,
+};
+
+/// The two ways to a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Method {
+    /// The additive model of the receiver: see the architecture.
+    Model(Settings),
+    /// The published method, or its simplest stand-in.
+    Published(PublishedSettings),
+}
+
+/// What the model spends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Points over each light, a multiple of 16 up to 64, of a light whose penumbra is wider than a pixel.
@@ -48,6 +78,29 @@ pub struct Settings {
     pub n_ambient_directions: usize,
     /// Region pixels per texel of the ambient map, along each side.
     pub ambient_divisor: u32,
+}
+
+/// The constants that the papers leave open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PublishedSettings {
+    /// Shadow over plate, for a shadow of constant strength; without it the real shadow is sampled.
+    pub constant_ratio: Option<f32>,
+    /// Distance kept from the edges of the eligible shadow.
+    pub eligible_margin_px: i32,
+    /// Distance between rings.
+    pub ring_step_px: f32,
+    /// Candidates of a ring.
+    pub n_ring_directions: u32,
+    /// Rings until the search gives up.
+    pub n_rings: u32,
+    /// Half the side of the box filter, without its middle.
+    pub box_radius_px: i32,
+    /// Width of the linear interpolation around the cropped masks.
+    pub seam_px: i32,
+    /// Taps of the blocker search.
+    pub n_blocker_taps: u32,
+    /// Taps of the filter.
+    pub n_filter_taps: u32,
 }
 
 /// A preset asked for by a name that it does not have.

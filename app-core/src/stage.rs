@@ -8,17 +8,19 @@ use crate::capture::{Capture, Pictures};
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::MAX_LIGHTS;
+use crate::gpu::layout::{Globals, MAX_LIGHTS, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::light_points::{light_in_plane, light_points};
 use crate::passes::present::Present;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::{Passes, encode_present};
-use crate::plan::{LeftOut, Path, Plan, SceneFacts};
-use crate::preset::Preset;
+use crate::plan::{LeftOut, Path, Plan, PublishedPlan, SceneFacts};
+use crate::preset::{Method, Preset, PublishedSettings};
+use crate::published::Published;
 use crate::region::{Bounds, PixelRect, Place, Reach, View};
-use crate::scene::{Image, Light, PoseTime, Scene};
+use crate::scene::{Image, Light, PoseTime, Scene, Surface};
 use crate::toy::{ClipId, PosedMesh, ToyError};
+use crate::work::{News, Work};
 
 /// Cameras closer than this, in matrix elements, are one camera.
 const SAME_CAMERA: f64 = 1e-6;
@@ -53,8 +55,7 @@ pub(crate) struct Stage {
 /// What was learned, and of which camera.
 struct Learned {
     world_from_camera: DMat4,
-    capture: Capture,
-    passes: Passes,
+    work: Work,
 }
 
 impl Stage {
@@ -99,8 +100,8 @@ impl Stage {
     }
 
     /// What was learned so far.
-    pub(crate) fn capture(&self) -> Option<&Capture> {
-        self.learned.as_ref().map(|learned| &learned.capture)
+    pub(crate) fn work(&self) -> Option<&Work> {
+        self.learned.as_ref().map(|learned| &learned.work)
     }
 
     /// Encodes one frame into `output`.
@@ -127,9 +128,9 @@ impl Stage {
                 self.learned.as_ref()
             }
         };
-        let capture = worked.map(|learned| &learned.capture);
+        let work = worked.map(|learned| &learned.work);
         let codes = self.frame.codes();
-        encode_present(gpu, encoder, &self.present, (&codes, capture), &self.output.view);
+        encode_present(gpu, encoder, &self.present, (&codes, work), &self.output.view);
         report.ran.push((Path::Frame, "present"));
         Ok(report)
     }
@@ -139,49 +140,27 @@ impl Stage {
         gpu: &Gpu,
         encoder: &mut Encoder,
         input: &FrameInput,
-        (region, is_new_image): (PixelRect, bool),
+        (region, is_image_new): (PixelRect, bool),
         report: &mut FrameReport,
     ) -> Result<(), ToyError> {
-        let is_fresh = self.ensure_learned(gpu, input, region);
+        let is_place_new = self.ensure_learned(gpu, input, region);
         self.scene.toy.pose(
             clip_time(&input.shown_pose),
             &self.plane_from_object,
             &mut self.posed,
         )?;
         self.toy.shown.write(gpu, &self.posed);
-        let Some(Learned { capture, passes, .. }) = &self.learned else {
-            return Ok(());
-        };
-        let pictures = Pictures {
-            frame: &self.frame.view,
-            plate: &self.plate.view,
-        };
-        if is_fresh {
-            capture.encode(gpu, encoder, passes, &self.toy, &pictures);
-        } else {
-            report.skipped.push(LeftOut {
-                what: "capture path",
-                why: "place, pose and camera are known",
-            });
+        let Some(Learned { work, .. }) = &self.learned else { return Ok(()) };
+        let pictures = Pictures { frame: &self.frame.view, plate: &self.plate.view };
+        let news = News { is_place_new, is_image_new };
+        work.encode(gpu, encoder, &self.toy, &pictures, news);
+        if !is_place_new {
+            report.skipped.push(LeftOut { what: "capture path", why: "place, pose and camera are known" });
         }
-        if is_fresh || is_new_image {
-            capture.encode_appearance(gpu, encoder, passes, &self.frame.view);
-        }
-        passes.encode_frame(gpu, encoder, capture, &self.toy, &pictures);
-        let ran = |pass: &&crate::plan::PlannedPass| {
-            pass.name != "present"
-                && (pass.path == Path::Frame || is_fresh || (is_new_image && pass.name == "appearance"))
-        };
-        report.ran.extend(
-            capture
-                .plan
-                .passes
-                .iter()
-                .filter(ran)
-                .map(|pass| (pass.path, pass.name)),
-        );
-        report.skipped.extend_from_slice(&capture.plan.left_out);
-        report.region = Some(capture.plan.region);
+        let ran = work.passes().iter().filter(|pass| pass.name != "present" && news.runs(pass));
+        report.ran.extend(ran.map(|pass| (pass.path, pass.name)));
+        report.skipped.extend_from_slice(work.left_out());
+        report.region = Some(work.region());
         Ok(())
     }
 
@@ -268,7 +247,7 @@ impl Stage {
             && learned
                 .world_from_camera
                 .abs_diff_eq(input.world_from_camera, SAME_CAMERA)
-            && learned.capture.plan.region.contains(&region)
+            && learned.work.region().contains(&region)
         {
             return false;
         }
@@ -283,28 +262,52 @@ impl Stage {
             plane_from_world: &self.plane_from_world,
             reference_in_plane: DVec2::new(centre.x, centre.z),
         };
-        let penumbra_px = self
-            .lights
-            .iter()
-            .map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
-        let facts = SceneFacts {
-            region,
-            penumbra_px: penumbra_px.collect(),
+        let penumbra_px =
+            self.lights.iter().map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
+        let facts = SceneFacts { region, penumbra_px: penumbra_px.collect() };
+        let globals = view.globals(&region, &place);
+        let work = match self.preset.method() {
+            Method::Model(settings) => self.model(gpu, Plan::new(&facts, &settings), &globals),
+            Method::Published(settings) => self.published(gpu, PublishedPlan::new(&facts, &settings), &globals, &settings),
         };
-        let plan = Plan::new(&facts, &self.preset.settings());
+        self.learned = Some(Learned { world_from_camera: input.world_from_camera, work });
+        true
+    }
+
+    fn model(&self, gpu: &Gpu, plan: Plan, globals: &Globals) -> Work {
+        let centre = self.physical_bounds.centre();
         let points = self
             .lights
             .iter()
             .zip(&plan.lights)
             .map(|(light, planned)| light_points(light, &self.plane_from_world, centre, planned.n_points))
             .collect();
-        let globals = view.globals(&region, &place);
-        self.learned = Some(Learned {
-            world_from_camera: input.world_from_camera,
-            passes: Passes::new(gpu, &plan),
-            capture: Capture::new(gpu, plan, &globals, points),
-        });
-        true
+        let passes = Passes::new(gpu, &plan);
+        Work::Model(Box::new((Capture::new(gpu, plan, globals, points), passes)))
+    }
+
+    fn published(&self, gpu: &Gpu, plan: PublishedPlan, globals: &Globals, settings: &PublishedSettings) -> Work {
+        let light = &self.lights[0];
+        let uniform = PublishedLayout {
+            light: light_in_plane(light, &self.plane_from_world).as_vec4().to_array(),
+            #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
+            light_radius: match *light {
+                Light::Sphere { radius_m, .. } => radius_m,
+                Light::Directional { angular_radius_rad, .. } => angular_radius_rad.tan(),
+            } as f32,
+            is_textured: u32::from(self.scene.receivers[0].surface == Surface::Textured),
+            is_constant: u32::from(settings.constant_ratio.is_some()),
+            constant_ratio: settings.constant_ratio.unwrap_or_default(),
+            eligible_margin_px: settings.eligible_margin_px,
+            ring_step_px: settings.ring_step_px,
+            n_ring_directions: settings.n_ring_directions,
+            n_rings: settings.n_rings,
+            box_radius_px: settings.box_radius_px,
+            seam_px: settings.seam_px,
+            n_blocker_taps: settings.n_blocker_taps,
+            n_filter_taps: settings.n_filter_taps,
+        };
+        Work::Published(Box::new(Published::new(gpu, plan, globals, &uniform, self.physical_bounds.max.y)))
     }
 
     fn view(&self, world_from_camera: &DMat4) -> View {

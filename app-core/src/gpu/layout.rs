@@ -88,3 +88,23 @@ pub struct Placement {
     pub origin_px: [u32; 2],
     pub size_px: [u32; 2],
 }
+
+/// `Published` in `common/published.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Published {
+    pub light: [f32; 4],
+    pub light_radius: f32,
+    pub is_textured: u32,
+    pub is_constant: u32,
+    pub constant_ratio: f32,
+    pub eligible_margin_px: i32,
+    pub ring_step_px: f32,
+    pub n_ring_directions: u32,
+    pub n_rings: u32,
+    pub box_radius_px: i32,
+    pub seam_px: i32,
+    pub n_blocker_taps: u32,
+    pub n_filter_taps: u32,
+}

@@ -33,6 +33,7 @@ const GRID: &str = wgsl!("common/grid");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const PIXEL: &str = wgsl!("common/pixel");
+const PUBLISHED: &str = wgsl!("common/published");
 const TOY: &str = wgsl!("common/toy");
 
 pub(crate) const OBJECT: Shader = Shader {
@@ -101,8 +102,44 @@ pub(crate) const PRESENT: Shader = Shader {
     entry_points: &["vs_fullscreen", "fs_place"],
 };
 
+pub(crate) const MASKS: Shader = Shader {
+    name: "masks",
+    parts: &[GLOBALS, wgsl!("masks")],
+    entry_points: &["vs_object", "fs_set"],
+};
+pub(crate) const ELIGIBLE: Shader = Shader {
+    name: "eligible",
+    parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("eligible")],
+    entry_points: &["vs_fullscreen", "fs_mark"],
+};
+pub(crate) const WARP: Shader = Shader {
+    name: "warp",
+    parts: &[GLOBALS, PUBLISHED, wgsl!("warp")],
+    entry_points: &["vs_warp", "fs_source"],
+};
+pub(crate) const SEARCH: Shader = Shader {
+    name: "search",
+    parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("search")],
+    entry_points: &["vs_fullscreen", "fs_search"],
+};
+pub(crate) const BOX_FILTER: Shader = Shader {
+    name: "box_filter",
+    parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("box_filter")],
+    entry_points: &["vs_fullscreen", "fs_sum"],
+};
+pub(crate) const PCSS: Shader = Shader {
+    name: "pcss",
+    parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("pcss")],
+    entry_points: &["vs_fullscreen", "fs_soften"],
+};
+pub(crate) const RETARGET: Shader = Shader {
+    name: "retarget",
+    parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("retarget")],
+    entry_points: &["vs_fullscreen", "fs_receiver", "vs_toy", "fs_toy"],
+};
+
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
-    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE,
-    PRESENT,
+    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE, PRESENT, MASKS,
+    ELIGIBLE, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
 ];

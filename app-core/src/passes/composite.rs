@@ -66,11 +66,6 @@ impl Composite {
             depth: Some(depth),
             constants: &[],
         };
-        let behind_all = DepthStencilState {
-            depth_write_enabled: Some(false),
-            depth_compare: Some(CompareFunction::Always),
-            ..nearest_surface()
-        };
         let receiver = Stages {
             vertex: "vs_fullscreen",
             fragment: "fs_receiver",
@@ -82,7 +77,7 @@ impl Composite {
             buffers: &buffers,
         };
         Self {
-            receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &shape(behind_all)),
+            receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &shape(behind_all())),
             toy: gpu.render_pipeline(&COMPOSITE, &module, &toy, &shape(nearest_surface())),
             linear: gpu.linear_sampler(),
         }
@@ -155,4 +150,13 @@ fn shared(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, inputs: &CompositeInputs<'
 fn set_groups(render: &mut wgpu::RenderPass<'_>, [shared, own]: &[wgpu::BindGroup; 2]) {
     render.set_bind_group(GROUP_GLOBALS, shared, &[]);
     render.set_bind_group(GROUP_PASS, own, &[]);
+}
+
+/// For what is drawn before all else and hides nothing.
+pub(crate) fn behind_all() -> DepthStencilState {
+    DepthStencilState {
+        depth_write_enabled: Some(false),
+        depth_compare: Some(CompareFunction::Always),
+        ..nearest_surface()
+    }
 }

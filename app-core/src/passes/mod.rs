@@ -3,13 +3,20 @@
 //! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
 
 pub(crate) mod appearance;
+pub(crate) mod box_filter;
 pub(crate) mod composite;
+pub(crate) mod eligible;
 pub(crate) mod evidence;
 pub(crate) mod fill;
 pub(crate) mod fit;
+pub(crate) mod masks;
 pub(crate) mod object;
 pub(crate) mod occlusion;
+pub(crate) mod pcss;
 pub(crate) mod present;
 pub(crate) mod residual;
+pub(crate) mod retarget;
+pub(crate) mod search;
 pub(crate) mod toy_mesh;
 pub(crate) mod visibility;
+pub(crate) mod warp;

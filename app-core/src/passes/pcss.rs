@@ -1,0 +1,45 @@
+//! `pcss`: percentage-closer soft shadows of the animated toy, in the edge region.
+
+use wgpu::TextureFormat;
+
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
+use crate::gpu::shaders::PCSS;
+
+/// Format of the visibility.
+pub(crate) const PCSS_FORMAT: TextureFormat = TextureFormat::R16Float;
+
+pub(crate) struct Pcss {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Pcss {
+    /// For a toy no taller than `tallest_m`.
+    pub(crate) fn new(gpu: &Gpu, tallest_m: f64) -> Self {
+        let constants = [("TALLEST_M", tallest_m)];
+        Self { pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", PCSS_FORMAT, &constants) }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        (globals, published): (&wgpu::Buffer, &wgpu::Buffer),
+        warp: &wgpu::TextureView,
+        visibility: &wgpu::TextureView,
+    ) {
+        let layout = |group| self.pipeline.get_bind_group_layout(group);
+        let shared = gpu.bind(
+            &layout(GROUP_GLOBALS),
+            &[(0, globals.as_entire_binding()), (2, published.as_entire_binding())],
+        );
+        let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(warp))]);
+        encoder.fullscreen(
+            PCSS.name,
+            &self.pipeline,
+            &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
+            visibility,
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! `retarget`: the published picture: plate in the masks, the new shadow over it, the toy by projective texturing.
+
+use wgpu::{StoreOp, VertexFormat};
+
+use crate::gpu::Gpu;
+use crate::gpu::encoder::{Encoder, resolved};
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface, view};
+use crate::gpu::shaders::RETARGET;
+
+use super::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT, behind_all};
+use super::toy_mesh::{Stream, ToyMesh};
+
+pub(crate) struct Retarget {
+    receiver: wgpu::RenderPipeline,
+    toy: wgpu::RenderPipeline,
+    linear: wgpu::Sampler,
+}
+
+pub(crate) struct RetargetInputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) published: &'a wgpu::Buffer,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) masks: &'a wgpu::TextureView,
+    pub(crate) eligible: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) terms: &'a wgpu::TextureView,
+}
+
+impl Retarget {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let module = gpu.module(&RETARGET);
+        let streams = [Stream::new(0, VertexFormat::Float32x3), Stream::new(1, VertexFormat::Float32x3)];
+        let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
+        let shape = |depth| RenderShape {
+            targets: &[Some(wgpu::ColorTargetState {
+                format: PICTURE_FORMAT,
+                blend: None,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+            n_samples: N_SAMPLES,
+            depth: Some(depth),
+            constants: &[],
+        };
+        let receiver = Stages { vertex: "vs_fullscreen", fragment: "fs_receiver", buffers: &[] };
+        let toy = Stages { vertex: "vs_toy", fragment: "fs_toy", buffers: &buffers };
+        Self {
+            receiver: gpu.render_pipeline(&RETARGET, &module, &receiver, &shape(behind_all())),
+            toy: gpu.render_pipeline(&RETARGET, &module, &toy, &shape(nearest_surface())),
+            linear: gpu.linear_sampler(),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        inputs: &RetargetInputs<'_>,
+        targets: &CompositeTargets<'_>,
+    ) {
+        let globals = (0, inputs.globals.as_entire_binding());
+        let published = (2, inputs.published.as_entire_binding());
+        let receiver_shared =
+            gpu.bind(&self.receiver.get_bind_group_layout(GROUP_GLOBALS), &[globals.clone(), published]);
+        let toy_shared = gpu.bind(&self.toy.get_bind_group_layout(GROUP_GLOBALS), &[globals]);
+        let receiver_own = gpu.bind(
+            &self.receiver.get_bind_group_layout(GROUP_PASS),
+            &[
+                (0, view(inputs.frame)),
+                (1, view(inputs.plate)),
+                (2, view(inputs.masks)),
+                (3, view(inputs.visibility)),
+                (4, view(inputs.terms)),
+                (6, view(inputs.eligible)),
+            ],
+        );
+        let toy_own = gpu.bind(
+            &self.toy.get_bind_group_layout(GROUP_PASS),
+            &[(0, view(inputs.frame)), (5, wgpu::BindingResource::Sampler(&self.linear))],
+        );
+        let colors = [Some(resolved(targets.samples, targets.picture))];
+        let mut render = encoder.render(RETARGET.name, &colors, Some(targets.depth), StoreOp::Discard);
+        render.set_pipeline(&self.receiver);
+        render.set_bind_group(GROUP_GLOBALS, &receiver_shared, &[]);
+        render.set_bind_group(GROUP_PASS, &receiver_own, &[]);
+        render.draw(0..3, 0..1);
+        render.set_pipeline(&self.toy);
+        render.set_bind_group(GROUP_GLOBALS, &toy_shared, &[]);
+        render.set_bind_group(GROUP_PASS, &toy_own, &[]);
+        render.set_vertex_buffer(1, toy.physical.positions.slice(..));
+        toy.draw_positions(&mut render, &toy.shown.positions, 1);
+    }
+}

@@ -1,0 +1,151 @@
+//! The published method on one scene: its textures, its passes and the order they run in.
+
+use wgpu::TextureFormat;
+
+use crate::capture::Pictures;
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::{Globals, Published as PublishedLayout};
+use crate::gpu::texture::{Texture, TextureShape};
+use crate::passes::box_filter::BoxFilter;
+use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
+use crate::passes::masks::{MASKS_FORMAT, Masks};
+use crate::passes::pcss::{PCSS_FORMAT, Pcss};
+use crate::passes::retarget::{Retarget, RetargetInputs};
+use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
+use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::warp::{WARP_FORMAT, Warp};
+use crate::plan::PublishedPlan;
+
+/// Everything of the region's size, and the passes.
+pub(crate) struct Published {
+    pub(crate) plan: PublishedPlan,
+    pub(crate) picture: Texture,
+    pub(crate) masks: Texture,
+    pub(crate) eligible: Texture,
+    pub(crate) taps: Texture,
+    pub(crate) visibility: Texture,
+    globals: wgpu::Buffer,
+    published: wgpu::Buffer,
+    warp: Texture,
+    warp_depth: Texture,
+    terms: Texture,
+    terms_between: Texture,
+    samples: Texture,
+    samples_depth: Texture,
+    is_constant: bool,
+    passes: Passes,
+}
+
+struct Passes {
+    masks: Masks,
+    eligible: Eligible,
+    warp: Warp,
+    search: Search,
+    box_filter: BoxFilter,
+    pcss: Pcss,
+    retarget: Retarget,
+}
+
+impl Published {
+    /// Allocates what `plan` asks for. `tallest_m` bounds the height of the toy in any pose.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        plan: PublishedPlan,
+        globals: &Globals,
+        published: &PublishedLayout,
+        tallest_m: f64,
+    ) -> Self {
+        let target = |label, format, n_samples| {
+            let size_px = plan.region.size_px.to_array();
+            Texture::target(gpu, label, TextureShape { size_px, format, n_samples })
+        };
+        Self {
+            globals: gpu.uniform("globals", globals),
+            published: gpu.uniform("published", published),
+            is_constant: published.is_constant == 1,
+            masks: target("masks", MASKS_FORMAT, 1),
+            eligible: target("eligible", ELIGIBLE_FORMAT, 1),
+            warp: target("warp", WARP_FORMAT, 1),
+            warp_depth: target("warp depth", TextureFormat::Depth32Float, 1),
+            terms: target("terms", TERM_FORMAT, 1),
+            terms_between: target("terms between", TERM_FORMAT, 1),
+            taps: target("taps", TAPS_FORMAT, 1),
+            visibility: target("visibility", PCSS_FORMAT, 1),
+            samples: target("retarget samples", PICTURE_FORMAT, N_SAMPLES),
+            samples_depth: target("retarget depth", TextureFormat::Depth32Float, N_SAMPLES),
+            picture: target("retarget", PICTURE_FORMAT, 1),
+            passes: Passes {
+                masks: Masks::new(gpu),
+                eligible: Eligible::new(gpu),
+                warp: Warp::new(gpu),
+                search: Search::new(gpu),
+                box_filter: BoxFilter::new(gpu),
+                pcss: Pcss::new(gpu, tallest_m),
+                retarget: Retarget::new(gpu),
+            },
+            plan,
+        }
+    }
+
+    /// Encodes the masks of the physical pose.
+    pub(crate) fn encode_masks(&self, gpu: &Gpu, encoder: &mut Encoder, toy: &ToyMesh) {
+        self.passes.masks.encode(gpu, encoder, &self.globals, toy, &self.masks.view);
+        self.encode_visibility(gpu, encoder, (toy, &toy.physical.positions));
+        let sources = (&self.masks.view, &self.visibility.view);
+        self.passes.eligible.encode(gpu, encoder, &self.published, sources, &self.eligible.view);
+    }
+
+    /// Encodes warp and visibility of the pose at `shown`.
+    fn encode_visibility(&self, gpu: &Gpu, encoder: &mut Encoder, shown: (&ToyMesh, &wgpu::Buffer)) {
+        let shared = (&self.globals, &self.published);
+        self.passes.warp.encode(gpu, encoder, shared, shown, (&self.warp.view, &self.warp_depth.view));
+        self.passes.pcss.encode(gpu, encoder, shared, &self.warp.view, &self.visibility.view);
+    }
+
+    /// Encodes the shadow of the shown pose and the picture of the region.
+    pub(crate) fn encode_frame(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+    ) {
+        self.encode_visibility(gpu, encoder, (toy, &toy.shown.positions));
+        if !self.is_constant {
+            let inputs = SearchInputs {
+                globals: &self.globals,
+                published: &self.published,
+                warp: &self.warp.view,
+                eligible: &self.eligible.view,
+                frame: pictures.frame,
+                plate: pictures.plate,
+            };
+            self.passes.search.encode(gpu, encoder, &inputs, (&self.terms.view, &self.taps.view));
+            self.passes.box_filter.encode(
+                gpu,
+                encoder,
+                &self.published,
+                &self.terms.view,
+                &self.terms_between.view,
+            );
+        }
+        let inputs = RetargetInputs {
+            globals: &self.globals,
+            published: &self.published,
+            frame: pictures.frame,
+            plate: pictures.plate,
+            masks: &self.masks.view,
+            eligible: &self.eligible.view,
+            visibility: &self.visibility.view,
+            terms: &self.terms.view,
+        };
+        let targets = CompositeTargets {
+            samples: &self.samples.view,
+            depth: &self.samples_depth.view,
+            picture: &self.picture.view,
+        };
+        self.passes.retarget.encode(gpu, encoder, toy, &inputs, &targets);
+    }
+}

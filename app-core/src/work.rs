@@ -1,0 +1,112 @@
+//! The two ways to a picture behind one face: the model, and the published method.
+
+use crate::capture::{Capture, Pictures};
+use crate::gpu::encoder::Encoder;
+use crate::gpu::texture::Texture;
+use crate::gpu::{Gpu, GpuError};
+use crate::maps::{FloatMap, Map};
+use crate::passes::toy_mesh::ToyMesh;
+use crate::pipeline::Passes;
+use crate::plan::{LeftOut, Path, PlannedPass};
+use crate::published::Published;
+use crate::region::PixelRect;
+
+/// A scene's textures and passes, and what was learned.
+pub(crate) enum Work {
+    /// The additive model of the receiver.
+    Model(Box<(Capture, Passes)>),
+    /// The published method.
+    Published(Box<Published>),
+}
+
+impl Work {
+    pub(crate) fn region(&self) -> PixelRect {
+        match self {
+            Self::Model(model) => model.0.plan.region,
+            Self::Published(published) => published.plan.region,
+        }
+    }
+
+    pub(crate) fn passes(&self) -> &[PlannedPass] {
+        match self {
+            Self::Model(model) => &model.0.plan.passes,
+            Self::Published(published) => &published.plan.passes,
+        }
+    }
+
+    pub(crate) fn left_out(&self) -> &[LeftOut] {
+        match self {
+            Self::Model(model) => &model.0.plan.left_out,
+            Self::Published(published) => &published.plan.left_out,
+        }
+    }
+
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> &Texture {
+        match self {
+            Self::Model(model) => &model.0.picture,
+            Self::Published(published) => &published.picture,
+        }
+    }
+
+    /// The model's capture, where the model is at work.
+    pub(crate) fn capture(&self) -> Option<&Capture> {
+        match self {
+            Self::Model(model) => Some(&model.0),
+            Self::Published(_) => None,
+        }
+    }
+
+    /// Encodes the passes of `path`; of the capture path only what follows a new camera picture unless `is_fresh`.
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        news: News,
+    ) {
+        match self {
+            Self::Model(model) => {
+                let (capture, passes) = model.as_ref();
+                if news.is_place_new {
+                    capture.encode(gpu, encoder, passes, toy, pictures);
+                }
+                if news.is_place_new || news.is_image_new {
+                    capture.encode_appearance(gpu, encoder, passes, pictures.frame);
+                }
+                passes.encode_frame(gpu, encoder, capture, toy, pictures);
+            }
+            Self::Published(published) => {
+                if news.is_place_new {
+                    published.encode_masks(gpu, encoder, toy);
+                }
+                published.encode_frame(gpu, encoder, toy, pictures);
+            }
+        }
+    }
+
+    /// Waits for the device and returns a map, where this way to a picture makes it.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        match self {
+            Self::Model(model) => model.0.read_map(gpu, map),
+            Self::Published(published) => published.read_map(gpu, map),
+        }
+    }
+}
+
+/// What is new with a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct News {
+    /// Place, camera or clip: the capture path runs.
+    pub(crate) is_place_new: bool,
+    /// The camera's picture.
+    pub(crate) is_image_new: bool,
+}
+
+impl News {
+    /// Whether a planned pass runs.
+    pub(crate) fn runs(self, pass: &PlannedPass) -> bool {
+        pass.path == Path::Frame || self.is_place_new || (self.is_image_new && pass.name == "appearance")
+    }
+}

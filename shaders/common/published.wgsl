@@ -1,0 +1,25 @@
+// Constants that the papers leave open, tuned as `preset.rs` says, and what the scene decides.
+
+struct Published {
+  // The light's centre, homogeneous, in plane space.
+  light: vec4f,
+  // Radius of the light's disc: metres for a sphere, slope for a directional light.
+  light_radius: f32,
+  // 1: the receiver is textured, shadow terms are ratios to the plate. 0: uniform, they are colours.
+  is_textured: u32,
+  // 0: search for real shadow. 1: a constant ratio.
+  is_constant: u32,
+  constant_ratio: f32,
+  // Distance kept from the edges of the eligible shadow.
+  eligible_margin_px: i32,
+  ring_step_px: f32,
+  n_ring_directions: u32,
+  n_rings: u32,
+  box_radius_px: i32,
+  // Width of the linear interpolation around the cropped masks.
+  seam_px: i32,
+  n_blocker_taps: u32,
+  n_filter_taps: u32,
+}
+
+@group(0) @binding(2) var<uniform> published: Published;

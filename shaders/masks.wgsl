@@ -1,0 +1,14 @@
+// The paper's mask 3a: where the camera sees the physical toy.
+//
+// Reads: physical positions in plane space. Writes: 0 or 1.
+// Source: Casas et al. 2018, section 4.2.
+
+@vertex
+fn vs_object(@location(0) in_plane: vec3f) -> @builtin(position) vec4f {
+  return globals.clip_from_plane * vec4f(in_plane, 1.0);
+}
+
+@fragment
+fn fs_set() -> @location(0) vec4f {
+  return vec4f(1.0);
+}
