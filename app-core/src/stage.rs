@@ -16,7 +16,7 @@ use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::{Passes, encode_present};
 use crate::plan::{LeftOut, Path, Plan, SceneFacts};
 use crate::preset::Preset;
-use crate::region::{Bounds, PixelRect, Place, Reach, View};
+use crate::region::{BORDER_PX, Bounds, PixelRect, Place, Reach, View};
 use crate::scene::{Image, Light, PoseTime, Scene};
 use crate::toy::{ClipId, PosedMesh, ToyError};
 
@@ -24,8 +24,8 @@ use crate::toy::{ClipId, PosedMesh, ToyError};
 const SAME_CAMERA: f64 = 1e-6;
 /// Moments of a clip that its region is taken from.
 const N_REGION_MOMENTS: u32 = 64;
-/// What the toy may reach beyond its region between two such moments, and the width of the fade at its border.
-const REGION_MARGIN_PX: u32 = 32;
+/// The fade at the region's border, and what the toy may reach beyond its region between two such moments.
+const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
 /// Format of the finished picture: codes, as a screen takes them.
 pub(crate) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 

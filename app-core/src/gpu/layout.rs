@@ -88,3 +88,13 @@ pub struct Placement {
     pub origin_px: [u32; 2],
     pub size_px: [u32; 2],
 }
+
+/// What is fitted: `SUBJECT_RECEIVER` and `SUBJECT_TOY` in `common/fit_step.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Subject {
+    /// The receiver: gain, bounce and each light's share.
+    Receiver = 0,
+    /// The toy: ambient light, its gradient and each light's strength.
+    Toy = 1,
+}

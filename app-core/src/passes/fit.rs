@@ -2,7 +2,7 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{Fit as FitLayout, FitStep, MAX_LIGHTS, N_COLUMNS};
+use crate::gpu::layout::{Fit as FitLayout, FitStep, MAX_LIGHTS, N_COLUMNS, Subject};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{FIT_SOLVE, FIT_SUMS};
 use crate::plan::Plan;
@@ -10,16 +10,6 @@ use crate::plan::Plan;
 /// Sums of one row: the upper triangle of the normal equations and their right-hand side.
 const N_SUMS: u64 = 27;
 const N_CHANNELS: u64 = 3;
-
-/// What is fitted; the numbers are the shader's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub(crate) enum Subject {
-    /// The receiver: gain, bounce and each light's share.
-    Receiver = 0,
-    /// The toy: ambient light, its gradient and each light's strength.
-    Toy = 1,
-}
 
 pub(crate) struct Fit {
     sums: wgpu::ComputePipeline,
