@@ -2,8 +2,8 @@
 //! and names what is missing.
 
 mod command;
+mod harness;
 mod phone;
-mod replay;
 mod test;
 mod toolchain;
 mod vulkan;
@@ -25,7 +25,14 @@ enum Command {
     /// Replay a session: pictures, times, errors (`replay --help` tells more)
     #[command(disable_help_flag = true)]
     Replay {
-        /// Handed on to the replay harness
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Rewrite the golden pictures (`bless --help` tells more)
+    #[command(disable_help_flag = true)]
+    Bless {
+        /// Handed on to the harness
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
@@ -69,8 +76,9 @@ fn main() -> ExitCode {
 fn run(command: Command) -> anyhow::Result<ExitCode> {
     let toolchain = Toolchain::pinned()?;
     match command {
-        Command::Demo => return replay::demo(&toolchain),
-        Command::Replay { args } => return replay::replay(&toolchain, &args),
+        Command::Demo => return harness::demo(&toolchain),
+        Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
+        Command::Bless { args } => return harness::run(&toolchain, "bless", &args),
         Command::Test => test::run(&toolchain)?,
         Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
         Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,

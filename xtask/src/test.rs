@@ -45,7 +45,10 @@ fn steps(toolchain: &Toolchain) -> Vec<(&'static str, Command)> {
         ("android check", ANDROID.check(toolchain)),
         ("documentation", doc),
         // Licences and sources of all dependencies are among the tests.
-        ("tests", step("test", &["--locked", "--workspace"])),
+        (
+            "tests",
+            step("test", &["--locked", "--workspace", "--no-fail-fast"]),
+        ),
     ]
 }
 

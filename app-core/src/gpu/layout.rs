@@ -9,6 +9,11 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 /// Most light points of one occlusion pass: 16 a colour target, four targets.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
+/// What the fit takes a toy to throw back until it knows better.
+pub const PRIOR_BOUNCE: f32 = 0.2;
+/// What the fit takes all lights' shares to sum to until it knows better.
+pub const PRIOR_SHARE: f32 = 0.5;
+
 /// A 3 x 3 matrix in uniform layout: columns on 16 bytes.
 pub type Mat3Columns = [[f32; 4]; 3];
 

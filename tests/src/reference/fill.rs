@@ -17,8 +17,6 @@ pub fn n_levels_of_shader() -> Result<u32, ConstantError> {
 }
 
 /// Fills every cell as far as it is uncertain, over `n_levels`, the finest one included.
-///
-/// Where all cells together are less certain than one certain cell, values shrink towards zero.
 #[must_use]
 pub fn fill(cells: &Raster<Cell>, n_levels: u32) -> Raster<DVec3> {
     let finest = Raster::from_fn(cells.size(), |at| {
@@ -31,7 +29,7 @@ pub fn fill(cells: &Raster<Cell>, n_levels: u32) -> Raster<DVec3> {
 /// Values times certainties in, the same with every certainty made up from the coarser level out.
 fn push(level: Raster<DVec4>, n_coarser: u32) -> Raster<DVec4> {
     if n_coarser == 0 {
-        return level;
+        return level.map(|all| if all.w > 0.0 { all / all.w } else { all });
     }
     let coarse = push(pull(&level), n_coarser - 1);
     Raster::from_fn(level.size(), |at| {

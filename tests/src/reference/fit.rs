@@ -41,7 +41,7 @@ impl FitConstants {
         Ok(Self {
             evidence: EvidenceRange::from_shader("fit")?,
             cauchy_scale,
-            toy_cauchy_scale: 4.0 * cauchy_scale,
+            toy_cauchy_scale: shader_constant("fit", "TOY_CAUCHY_SCALE")?,
             prior_weight: shader_constant("fit_solve", "PRIOR_WEIGHT")?,
             white_weight: shader_constant("fit_solve", "WHITE_WEIGHT")?,
             prior_bounce: shader_constant("fit_solve", "PRIOR_BOUNCE")?,

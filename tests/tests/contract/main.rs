@@ -16,7 +16,8 @@ use naga::Module;
 use naga::valid::Capabilities;
 
 use check::{array_length, constant, parse, problems, shared_structs, validate};
-use mirrors::{SHARED_CONSTANTS, mirrors};
+use harness::reference::shader_constant;
+use mirrors::{SHARED_CONSTANTS, SHARED_FRACTIONS, mirrors};
 
 fn shader(name: &str) -> &'static Shader {
     ALL.iter().find(|shader| shader.name == name).unwrap()
@@ -63,6 +64,14 @@ fn every_mirror_and_shared_constant_is_in_a_shader() {
             modules.iter().any(|module| constant(module, name).is_some()),
             "no shader has {name}"
         );
+    }
+}
+
+#[test]
+fn the_fit_starts_from_its_priors() {
+    for (shader, name, host) in SHARED_FRACTIONS {
+        let value: f32 = shader_constant(shader, name).unwrap();
+        assert_eq!(value.to_bits(), host.to_bits(), "{name}");
     }
 }
 

@@ -104,4 +104,12 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
 pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_LIGHTS", layout::MAX_LIGHTS),
     ("N_COLUMNS", layout::N_COLUMNS),
+    ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
+    ("SUBJECT_TOY", layout::Subject::Toy as usize),
+];
+
+/// Fractional constants that go by one name on both sides, and the shader they are in.
+pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
+    ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
+    ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
 ];

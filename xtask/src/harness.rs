@@ -1,4 +1,4 @@
-//! The replay harness, and the demo on top of it.
+//! The programs of the harness, and the demo on top of them.
 
 use std::env;
 use std::ffi::{OsStr, OsString};
@@ -14,7 +14,11 @@ use crate::vulkan;
 /// Replays the bundled session and names what to look at.
 pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     let out = toolchain.root.join("target/demo");
-    let code = replay(toolchain, &["--out".into(), out.clone().into_os_string()])?;
+    let code = run(
+        toolchain,
+        "replay",
+        &["--out".into(), out.clone().into_os_string()],
+    )?;
     if code == ExitCode::SUCCESS {
         let page = out.join("index.html");
         let first = if page.exists() {
@@ -27,14 +31,14 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     Ok(code)
 }
 
-/// Runs the harness with `args` and hands on its exit code.
-pub(crate) fn replay(toolchain: &Toolchain, args: &[OsString]) -> Result<ExitCode> {
+/// Runs a program of the harness with `args` and hands on its exit code.
+pub(crate) fn run(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
     let asks_only = args.iter().any(|arg| arg == "--help" || arg == "-h");
     if !asks_only {
         vulkan::ensure()?;
     }
     let mut cargo = toolchain.cargo("run");
-    cargo.args(["--package", "tests", "--bin", "replay"]);
+    cargo.args(["--package", "tests", "--bin", program]);
     // A first build takes minutes, which must not look like a standstill.
     if asks_only || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
         cargo.arg("--quiet");
