@@ -3,7 +3,8 @@
 // Pull halves the grid and sums values times certainties; push fills each cell, as far as it is uncertain, from the
 // coarser level. One workgroup does it all: the grid has at most 64 x 64 cells.
 //
-// Reads and writes: cells, level after level in one buffer, finest first. Afterwards the finest holds (r, 1).
+// Reads and writes: cells, level after level in one buffer, finest first. Afterwards the finest holds (r, 1), or
+// 0 where nothing is known at all.
 // Twin: reference/fill.rs. Source: Gortler et al. 1996, section 3.4.
 
 @group(1) @binding(0) var<uniform> grid: Grid;
@@ -58,6 +59,12 @@ fn cs_pull_push(@builtin(local_invocation_index) lane: u32) {
     }
     storageBarrier();
   }
+  // The one cell left is all that is known; it fills what nothing nearer does.
+  if lane == 0u {
+    let top = level(N_LEVELS - 1u).first;
+    if cells[top].a > 0.0 { cells[top] /= cells[top].a; }
+  }
+  storageBarrier();
   for (var l = N_LEVELS - 1u; l > 0u; l--) {
     let coarse = level(l);
     let fine = level(l - 1u);

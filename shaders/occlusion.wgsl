@@ -20,7 +20,8 @@ const NEAR_M: f32 = 0.01;
 
 struct Flattened {
   @builtin(position) clip: vec4f,
-  @location(0) height_m: f32,
+  // Where the triangle covers the pixel: at its centre alone the height may be that of a point beyond the triangle.
+  @location(0) @interpolate(perspective, centroid) height_m: f32,
   @location(1) @interpolate(flat, either) point: u32,
 }
 

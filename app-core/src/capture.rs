@@ -5,14 +5,14 @@ use wgpu::{BufferUsages, TextureFormat};
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::Globals;
+use crate::gpu::layout::{Globals, Subject};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
 use crate::passes::composite::{N_SAMPLES, PICTURE_FORMAT};
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
-use crate::passes::fit::{Fit, FitInputs, FitShared, Subject};
+use crate::passes::fit::{Fit, FitInputs, FitShared};
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::residual::ResidualInputs;

@@ -67,6 +67,11 @@ pub enum Warning {
         /// Its place in the scene's list.
         light: usize,
     },
+    /// Too little real shadow is seen to tell how strong the lights are.
+    FaintShadow {
+        /// Energy of the lights' columns over that of the plate.
+        contrast: f32,
+    },
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
     /// The camera's centre lies in the receiver's plane.
@@ -96,6 +101,10 @@ impl fmt::Display for Warning {
             Self::LightBelowReceiver { light } => {
                 write!(f, "light {light} is not above the receiver and is left out")
             }
+            Self::FaintShadow { contrast } => write!(
+                f,
+                "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
+            ),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::CameraInPlane => {
                 f.write_str("the camera is in the receiver's plane: the camera frame passes through")

@@ -28,4 +28,5 @@ mod stage;
 mod window;
 mod work;
 
+pub use crate::core::{Core, CoreError};
 pub use wgpu;

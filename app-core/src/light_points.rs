@@ -23,8 +23,8 @@ pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
 /// `n_points` points over the light's disc as the toy at `target_in_plane` sees it, each standing for an equal area.
 ///
 /// The disc of a sphere faces the toy; seen from anywhere near the toy it is the sphere's outline.
-/// Source: Vogel 1979 (sunflower spiral), of which every fourth point is a spiral of its own, so that each
-/// multisample position gets points from all over the light.
+/// Source: Vogel 1979 (sunflower spiral). Of 64 points every fourth is spread over the whole light again, so that each
+/// multisample position of `occlusion` sees all of it.
 #[must_use]
 pub fn light_points(
     light: &Light,

@@ -105,12 +105,18 @@ pub(crate) fn encode_present(
     output: &wgpu::TextureView,
 ) {
     let region_codes = work.map(|work| work.picture().codes());
-    let nowhere = Placement { origin_px: [0; 2], size_px: [0; 2] };
+    let nowhere = Placement {
+        origin_px: [0; 2],
+        size_px: [0; 2],
+    };
     let placement = work.map(Work::region).map_or(nowhere, |region| Placement {
         origin_px: region.origin_px.to_array(),
         size_px: region.size_px.to_array(),
     });
-    let inputs =
-        PresentInputs { frame_codes, region_codes: region_codes.as_ref().unwrap_or(frame_codes), placement };
+    let inputs = PresentInputs {
+        frame_codes,
+        region_codes: region_codes.as_ref().unwrap_or(frame_codes),
+        placement,
+    };
     present.encode(gpu, encoder, &inputs, output);
 }

@@ -163,16 +163,46 @@ const PASSES: &[PlannedPass] = &[
 
 /// The published method, in order.
 const PUBLISHED_PASSES: &[PlannedPass] = &[
-    PlannedPass { name: "masks", path: Path::Capture },
-    PlannedPass { name: "warp", path: Path::Capture },
-    PlannedPass { name: "pcss", path: Path::Capture },
-    PlannedPass { name: "eligible", path: Path::Capture },
-    PlannedPass { name: "warp", path: Path::Frame },
-    PlannedPass { name: "pcss", path: Path::Frame },
-    PlannedPass { name: "search", path: Path::Frame },
-    PlannedPass { name: "box_filter", path: Path::Frame },
-    PlannedPass { name: "retarget", path: Path::Frame },
-    PlannedPass { name: "present", path: Path::Frame },
+    PlannedPass {
+        name: "masks",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "warp",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "pcss",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "eligible",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "warp",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "pcss",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "search",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "box_filter",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "retarget",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "present",
+        path: Path::Frame,
+    },
 ];
 /// What a shadow of constant strength does without.
 const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
@@ -239,7 +269,10 @@ impl PublishedPlan {
         let is_constant = settings.constant_ratio.is_some();
         let mut left_out = Vec::new();
         if is_constant {
-            left_out.push(LeftOut { what: "samples of the real shadow", why: "the preset's shadow is constant" });
+            left_out.push(LeftOut {
+                what: "samples of the real shadow",
+                why: "the preset's shadow is constant",
+            });
         }
         Self {
             region: facts.region,

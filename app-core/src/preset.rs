@@ -36,7 +36,10 @@ impl Preset {
     #[must_use]
     pub fn method(self) -> Method {
         match self {
-            Self::Flat => Method::Published(PublishedSettings { constant_ratio: Some(0.45), ..PUBLISHED }),
+            Self::Flat => Method::Published(PublishedSettings {
+                constant_ratio: Some(0.45),
+                ..PUBLISHED
+            }),
             Self::Paper => Method::Published(PUBLISHED),
             Self::Balanced => Method::Model(BALANCED),
         }
@@ -44,10 +47,14 @@ impl Preset {
 }
 
 /// What `balanced` spends.
-const BALANCED: Settings = Settings { n_light_points: 64, n_ambient_directions: 64, ambient_divisor: 4 };
+pub const BALANCED: Settings = Settings {
+    n_light_points: 64,
+    n_ambient_directions: 64,
+    ambient_divisor: 4,
+};
 
 /// The constants that the papers leave open.
-const PUBLISHED: PublishedSettings = PublishedSettings {
+pub const PUBLISHED: PublishedSettings = PublishedSettings {
     constant_ratio: None,
     eligible_margin_px: 3,
     ring_step_px: 2.0,

@@ -59,7 +59,15 @@ impl Published {
     ) -> Self {
         let target = |label, format, n_samples| {
             let size_px = plan.region.size_px.to_array();
-            Texture::target(gpu, label, TextureShape { size_px, format, n_samples })
+            Texture::target(
+                gpu,
+                label,
+                TextureShape {
+                    size_px,
+                    format,
+                    n_samples,
+                },
+            )
         };
         Self {
             globals: gpu.uniform("globals", globals),
@@ -91,17 +99,29 @@ impl Published {
 
     /// Encodes the masks of the physical pose.
     pub(crate) fn encode_masks(&self, gpu: &Gpu, encoder: &mut Encoder, toy: &ToyMesh) {
-        self.passes.masks.encode(gpu, encoder, &self.globals, toy, &self.masks.view);
+        self.passes
+            .masks
+            .encode(gpu, encoder, &self.globals, toy, &self.masks.view);
         self.encode_visibility(gpu, encoder, (toy, &toy.physical.positions));
         let sources = (&self.masks.view, &self.visibility.view);
-        self.passes.eligible.encode(gpu, encoder, &self.published, sources, &self.eligible.view);
+        self.passes
+            .eligible
+            .encode(gpu, encoder, &self.published, sources, &self.eligible.view);
     }
 
     /// Encodes warp and visibility of the pose at `shown`.
     fn encode_visibility(&self, gpu: &Gpu, encoder: &mut Encoder, shown: (&ToyMesh, &wgpu::Buffer)) {
         let shared = (&self.globals, &self.published);
-        self.passes.warp.encode(gpu, encoder, shared, shown, (&self.warp.view, &self.warp_depth.view));
-        self.passes.pcss.encode(gpu, encoder, shared, &self.warp.view, &self.visibility.view);
+        self.passes.warp.encode(
+            gpu,
+            encoder,
+            shared,
+            shown,
+            (&self.warp.view, &self.warp_depth.view),
+        );
+        self.passes
+            .pcss
+            .encode(gpu, encoder, shared, &self.warp.view, &self.visibility.view);
     }
 
     /// Encodes the shadow of the shown pose and the picture of the region.
@@ -122,7 +142,9 @@ impl Published {
                 frame: pictures.frame,
                 plate: pictures.plate,
             };
-            self.passes.search.encode(gpu, encoder, &inputs, (&self.terms.view, &self.taps.view));
+            self.passes
+                .search
+                .encode(gpu, encoder, &inputs, (&self.terms.view, &self.taps.view));
             self.passes.box_filter.encode(
                 gpu,
                 encoder,

@@ -14,7 +14,7 @@ const NEAR_M: f64 = 0.01;
 /// The ambient light that the toy takes away counts out to this many toy heights from its footprint.
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
 /// Width of the fade into untouched pixels at an inner border of the region.
-const BORDER_PX: f32 = 24.0;
+pub(crate) const BORDER_PX: u32 = 24;
 
 /// A rectangle of the camera image, in pixels from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,7 +148,8 @@ impl View {
         }
         let n_lights = place.lights.len().min(MAX_LIGHTS);
         let end_px = rect.origin_px + rect.size_px;
-        let fade = |is_inner: bool| if is_inner { BORDER_PX } else { 0.0 };
+        #[allow(clippy::cast_precision_loss, reason = "a few pixels")]
+        let fade = |is_inner: bool| if is_inner { BORDER_PX as f32 } else { 0.0 };
         Globals {
             clip_from_plane: clip_from_plane.as_mat4().to_cols_array_2d(),
             plane_from_region_px: columns(self.plane_from_region_px(rect)),
@@ -230,7 +231,7 @@ impl<'a> Reach<'a> {
         }
         let within = |px: DVec2| px.clamp(DVec2::ZERO, image_px.as_dvec2()).as_uvec2();
         let (min_px, max_px) = (within(self.min_px.floor()), within(self.max_px.ceil()));
-        let size_px = max_px - min_px;
+        let size_px = max_px.saturating_sub(min_px);
         (size_px.min_element() > 0).then_some(PixelRect {
             origin_px: min_px,
             size_px,
@@ -296,27 +297,31 @@ impl PixelRect {
 impl View {
     /// Widest penumbra that a toy within `toy` casts from `light`, in pixels at the toy's distance.
     ///
-    /// A disc of radius R at height d over the receiver makes 2 R h / (d - h) of an edge at height h.
+    /// An edge at height h, at distance D from a disc of radius R that is a height d over the receiver, makes a
+    /// penumbra of 2 R h D / (d - h)^2 along the light; a far disc of half-angle b at elevation e one of
+    /// 2 h tan b / sin^2 e.
     #[must_use]
     pub fn penumbra_px(&self, light: &Light, plane_from_world: &DMat4, toy: &Bounds) -> f64 {
+        let centre = toy.centre();
         let height_m = toy.max.y.max(0.0);
+        let light_at = light_in_plane(light, plane_from_world);
         let width_m = match *light {
             Light::Sphere { radius_m, .. } => {
-                let above_toy_m = light_in_plane(light, plane_from_world).y - height_m;
+                let above_toy_m = light_at.y - height_m;
                 // A light no higher than the toy has no end of its penumbra.
                 if above_toy_m <= 0.0 {
                     return if radius_m > 0.0 { f64::INFINITY } else { 0.0 };
                 }
-                2.0 * radius_m * height_m / above_toy_m
+                let distance_m = light_at
+                    .truncate()
+                    .distance(DVec3::new(centre.x, height_m, centre.z));
+                2.0 * radius_m * height_m * distance_m / (above_toy_m * above_toy_m)
             }
             Light::Directional {
                 angular_radius_rad, ..
-            } => {
-                let sine = light_in_plane(light, plane_from_world).y;
-                2.0 * height_m * angular_radius_rad.tan() / (sine * sine)
-            }
+            } => 2.0 * height_m * angular_radius_rad.tan() / (light_at.y * light_at.y),
         };
-        let depth_m = self.image_px_from_plane(toy.centre().extend(1.0)).z.max(NEAR_M);
+        let depth_m = self.image_px_from_plane(centre.extend(1.0)).z.max(NEAR_M);
         width_m * self.intrinsics.fx_px.max(self.intrinsics.fy_px) / depth_m
     }
 }

@@ -17,7 +17,7 @@ use crate::pipeline::{Passes, encode_present};
 use crate::plan::{LeftOut, Path, Plan, PublishedPlan, SceneFacts};
 use crate::preset::{Method, Preset, PublishedSettings};
 use crate::published::Published;
-use crate::region::{Bounds, PixelRect, Place, Reach, View};
+use crate::region::{BORDER_PX, Bounds, PixelRect, Place, Reach, View};
 use crate::scene::{Image, Light, PoseTime, Scene, Surface};
 use crate::toy::{ClipId, PosedMesh, ToyError};
 use crate::work::{News, Work};
@@ -26,8 +26,8 @@ use crate::work::{News, Work};
 const SAME_CAMERA: f64 = 1e-6;
 /// Moments of a clip that its region is taken from.
 const N_REGION_MOMENTS: u32 = 64;
-/// What the toy may reach beyond its region between two such moments, and the width of the fade at its border.
-const REGION_MARGIN_PX: u32 = 32;
+/// The fade at the region's border, and what the toy may reach beyond its region between two such moments.
+const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
 /// Format of the finished picture: codes, as a screen takes them.
 pub(crate) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -150,14 +150,28 @@ impl Stage {
             &mut self.posed,
         )?;
         self.toy.shown.write(gpu, &self.posed);
-        let Some(Learned { work, .. }) = &self.learned else { return Ok(()) };
-        let pictures = Pictures { frame: &self.frame.view, plate: &self.plate.view };
-        let news = News { is_place_new, is_image_new };
+        let Some(Learned { work, .. }) = &self.learned else {
+            return Ok(());
+        };
+        let pictures = Pictures {
+            frame: &self.frame.view,
+            plate: &self.plate.view,
+        };
+        let news = News {
+            is_place_new,
+            is_image_new,
+        };
         work.encode(gpu, encoder, &self.toy, &pictures, news);
         if !is_place_new {
-            report.skipped.push(LeftOut { what: "capture path", why: "place, pose and camera are known" });
+            report.skipped.push(LeftOut {
+                what: "capture path",
+                why: "place, pose and camera are known",
+            });
         }
-        let ran = work.passes().iter().filter(|pass| pass.name != "present" && news.runs(pass));
+        let ran = work
+            .passes()
+            .iter()
+            .filter(|pass| pass.name != "present" && news.runs(pass));
         report.ran.extend(ran.map(|pass| (pass.path, pass.name)));
         report.skipped.extend_from_slice(work.left_out());
         report.region = Some(work.region());
@@ -262,15 +276,25 @@ impl Stage {
             plane_from_world: &self.plane_from_world,
             reference_in_plane: DVec2::new(centre.x, centre.z),
         };
-        let penumbra_px =
-            self.lights.iter().map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
-        let facts = SceneFacts { region, penumbra_px: penumbra_px.collect() };
+        let penumbra_px = self
+            .lights
+            .iter()
+            .map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
+        let facts = SceneFacts {
+            region,
+            penumbra_px: penumbra_px.collect(),
+        };
         let globals = view.globals(&region, &place);
         let work = match self.preset.method() {
             Method::Model(settings) => self.model(gpu, Plan::new(&facts, &settings), &globals),
-            Method::Published(settings) => self.published(gpu, PublishedPlan::new(&facts, &settings), &globals, &settings),
+            Method::Published(settings) => {
+                self.published(gpu, PublishedPlan::new(&facts, &settings), &globals, &settings)
+            }
         };
-        self.learned = Some(Learned { world_from_camera: input.world_from_camera, work });
+        self.learned = Some(Learned {
+            world_from_camera: input.world_from_camera,
+            work,
+        });
         true
     }
 
@@ -286,14 +310,22 @@ impl Stage {
         Work::Model(Box::new((Capture::new(gpu, plan, globals, points), passes)))
     }
 
-    fn published(&self, gpu: &Gpu, plan: PublishedPlan, globals: &Globals, settings: &PublishedSettings) -> Work {
+    fn published(
+        &self,
+        gpu: &Gpu,
+        plan: PublishedPlan,
+        globals: &Globals,
+        settings: &PublishedSettings,
+    ) -> Work {
         let light = &self.lights[0];
         let uniform = PublishedLayout {
             light: light_in_plane(light, &self.plane_from_world).as_vec4().to_array(),
             #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
             light_radius: match *light {
                 Light::Sphere { radius_m, .. } => radius_m,
-                Light::Directional { angular_radius_rad, .. } => angular_radius_rad.tan(),
+                Light::Directional {
+                    angular_radius_rad, ..
+                } => angular_radius_rad.tan(),
             } as f32,
             is_textured: u32::from(self.scene.receivers[0].surface == Surface::Textured),
             is_constant: u32::from(settings.constant_ratio.is_some()),
@@ -307,7 +339,13 @@ impl Stage {
             n_blocker_taps: settings.n_blocker_taps,
             n_filter_taps: settings.n_filter_taps,
         };
-        Work::Published(Box::new(Published::new(gpu, plan, globals, &uniform, self.physical_bounds.max.y)))
+        Work::Published(Box::new(Published::new(
+            gpu,
+            plan,
+            globals,
+            &uniform,
+            self.physical_bounds.max.y,
+        )))
     }
 
     fn view(&self, world_from_camera: &DMat4) -> View {

@@ -69,18 +69,22 @@ impl Work {
         match self {
             Self::Model(model) => {
                 let (capture, passes) = model.as_ref();
+                encoder.path = Path::Capture;
                 if news.is_place_new {
                     capture.encode(gpu, encoder, passes, toy, pictures);
                 }
                 if news.is_place_new || news.is_image_new {
                     capture.encode_appearance(gpu, encoder, passes, pictures.frame);
                 }
+                encoder.path = Path::Frame;
                 passes.encode_frame(gpu, encoder, capture, toy, pictures);
             }
             Self::Published(published) => {
+                encoder.path = Path::Capture;
                 if news.is_place_new {
                     published.encode_masks(gpu, encoder, toy);
                 }
+                encoder.path = Path::Frame;
                 published.encode_frame(gpu, encoder, toy, pictures);
             }
         }

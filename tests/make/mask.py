@@ -23,11 +23,11 @@ def table_hits(origin, direction):
 
 
 def blocked(scene, origin, target):
-    """True where the scene lies strictly between two points."""
+    """True where the scene lies between two points."""
     way = target - origin
     length = np.linalg.norm(way, axis=1)
     ray = mi.Ray3f(mi.Point3f(origin.T.astype(np.float32)), mi.Vector3f((way / length[:, None]).T.astype(np.float32)))
-    ray.maxt = mi.Float((length * (1 - 1e-4)).astype(np.float32))
+    ray.maxt = mi.Float(length.astype(np.float32))
     return np.array(scene.ray_test(ray), bool)
 
 
@@ -58,13 +58,12 @@ def bulb_points(setup, receivers):
 def hidden_light(setup, scene, covered):
     """Share of the bulb that the toy hides from the table, zero where the toy covers the table."""
     points = table_hits(*camera_rays(setup, (0.5, 0.5)))
-    lifted = points + (0.0, 2e-6, 0.0)
-    hits = sum(blocked(scene, lifted, light).astype(np.float64) for light in bulb_points(setup, points))
+    hits = sum(blocked(scene, points, light).astype(np.float64) for light in bulb_points(setup, points))
     return np.where(covered, 0.0, hits / BULB_POINTS)
 
 
 def mask_png(setup, posed, physical, path):
-    """Writes R, G: coverage with the posed and the real toy; B, A: hidden light with the posed and the real toy."""
+    """Given the meshes of the posed and of the real toy, writes R, G: coverage with the posed and the real toy; B, A: hidden light with the posed and the real toy."""
     channels = []
     shown = [coverage(setup, scene) for scene in (posed, physical)]
     channels += [touched * 255.0 for touched, _ in shown]

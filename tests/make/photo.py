@@ -88,7 +88,15 @@ class Photographer:
 
     def scene(self, baked):
         """Scene with the given baked primitives on the table."""
-        parts = dict(self.parts)
+        return mi.load_dict(self.parts | self.meshes(baked))
+
+    def casters(self, baked):
+        """The baked primitives alone, for ray tests: neither table nor bulb can get in the way of a ray that ends on them."""
+        return mi.load_dict({"type": "scene"} | self.meshes(baked))
+
+    def meshes(self, baked):
+        """Matt meshes of the baked primitives in world space."""
+        parts = {}
         for k, primitive in enumerate(baked):
             path = Path(self.folder.name) / f"part_{k}.ply"
             write_ply(path, primitive, self.setup.world_from_object())
@@ -97,10 +105,10 @@ class Photographer:
                 colour = picture(linear(primitive.texture) * primitive.base_colour, "clamp")
             matt = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": colour}}
             parts[f"toy_{k}"] = {"type": "ply", "filename": str(path), "face_normals": True, "bsdf": matt}
-        return mi.load_dict(parts)
+        return parts
 
-    def shoot(self, scene, seed, path):
-        """Renders and develops one photograph; `seed` sets it apart from the others of the session."""
-        passes = range(self.passes)
+    def shoot(self, baked, seed, path):
+        """Renders and develops a photograph of the baked primitives; `seed` sets it apart from the others of the session."""
+        scene, passes = self.scene(baked), range(self.passes)
         image = sum(np.array(mi.render(scene, spp=SAMPLES_A_PASS, seed=seed * 1000 + k), np.float64) for k in passes) / self.passes
         Image.fromarray(srgb(image)).save(path, optimize=True)

@@ -120,14 +120,14 @@ def make(setup, out, spp):
     clips = list(setup.poses) + ([(None, 0.0)] if setup.ends_in_physical_pose else [])
     reflectance, surface = setup.reflectance()
     photographer = Photographer(setup, reflectance, spp)
-    plate, physical = photographer.scene([]), photographer.scene(toy.bake(None, 0.0))
-    photographer.shoot(plate, 1, out / "background_0000.png")
+    physical = toy.bake(None, 0.0)
+    photographer.shoot([], 1, out / "background_0000.png")
     photographer.shoot(physical, 2, out / "frame_0000.png")
     for k, (clip, time) in enumerate(clips):
-        posed = photographer.scene(toy.bake(clip, time)) if clip else physical
+        posed = toy.bake(clip, time)
         if clip:
             photographer.shoot(posed, 3 + k, out / f"truth_{k:04}.png")
-        mask_png(setup, posed, physical, out / f"mask_{k:04}.png")
+        mask_png(setup, photographer.casters(posed), photographer.casters(physical), out / f"mask_{k:04}.png")
     (out / "capture.json").write_text(json.dumps(capture_json(setup, surface, clips), indent=1) + "\n")
     print(f"{out}: {sum(f.stat().st_size for f in out.iterdir()) / 1e6:.2f} MB")
 

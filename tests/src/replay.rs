@@ -125,7 +125,7 @@ pub fn replay(
         adapter: core.gpu().adapter_name(),
         is_software: core.gpu().is_software(),
         size_px: [scene.width_px, scene.height_px],
-        warnings: session.warnings().iter().map(ToString::to_string).collect(),
+        warnings: warnings_of(session, core)?,
         mean: Mean::of(&frames),
         fit: core
             .read_fit()?
@@ -137,6 +137,13 @@ pub fn replay(
     }
     progress.finish();
     Ok(report)
+}
+
+fn warnings_of(session: &dyn Session, core: &Core) -> Result<Vec<String>, CoreError> {
+    let of_session = session.warnings().iter().map(ToString::to_string);
+    Ok(of_session
+        .chain(core.read_fit_warnings()?.iter().map(ToString::to_string))
+        .collect())
 }
 
 fn frames_of(session: &dyn Session, options: &Options) -> Result<Range<usize>, ReplayError> {

@@ -93,8 +93,7 @@ pub struct PassEntry {
     pub path: &'static str,
     /// Its name.
     pub name: &'static str,
-    /// Its device time. None where the device cannot tell, and where the pass ran on both paths: the two are timed
-    /// together.
+    /// Its device time; none where the device cannot tell.
     pub gpu_ms: Option<f64>,
 }
 
@@ -168,20 +167,15 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
 
 /// The passes of a frame with the times that can be told to be theirs.
 pub(crate) fn pass_entries(report: &FrameReport, times: &[PassTime]) -> Vec<PassEntry> {
-    let own_time = |name| {
-        let n_runs = report.ran.iter().filter(|(_, ran)| *ran == name).count();
-        let time = times.iter().find(|time| time.pass == name)?;
-        (n_runs == 1).then_some(time.gpu_ms)
-    };
-    report
-        .ran
-        .iter()
-        .map(|&(path, name)| PassEntry {
+    let entry = |&(path, name): &(Path, &'static str)| {
+        let time = times.iter().find(|time| (time.path, time.pass) == (path, name));
+        PassEntry {
             path: path.name(),
             name,
-            gpu_ms: own_time(name),
-        })
-        .collect()
+            gpu_ms: time.map(|time| time.gpu_ms),
+        }
+    };
+    report.ran.iter().map(entry).collect()
 }
 
 impl FitEntry {

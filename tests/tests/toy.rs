@@ -150,19 +150,22 @@ fn broken_files_are_refused_with_field_and_reason() {
 #[test]
 fn clips_are_found_and_times_brought_into_them() {
     let mut glb = triangle();
-    for (name, end_x) in [("walk", 4.0), ("run", 8.0)] {
-        let keys = [
-            glb.floats("SCALAR", &[0.0, 2.0]),
-            glb.floats("VEC3", &[0.0, 0.0, 0.0, end_x, 0.0, 0.0]),
-        ];
-        glb.animate(name, "translation", "LINEAR", keys);
-    }
+    let keys = [
+        glb.floats("SCALAR", &[0.0, 2.0]),
+        glb.floats("VEC3", &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]),
+    ];
+    glb.animate("walk", "translation", "LINEAR", keys);
+    // From x = 0 back to x = 0, by way of x = 1 half-way.
+    let mut arc = [0.0; 18];
+    [arc[6], arc[9]] = [4.0, -4.0];
+    let keys = [glb.floats("SCALAR", &[0.0, 1.0]), glb.floats("VEC3", &arc)];
+    glb.animate("nameless", "translation", "CUBICSPLINE", keys);
     glb.json["animations"][1].as_object_mut().unwrap().remove("name");
     let toy = Toy::from_glb(FILE, &glb.bytes()).unwrap();
     let [walk, run] = ["walk", "#1"].map(|name| toy.find_clip(name).unwrap());
     assert_eq!(
         (walk.index(), run.index(), toy.clips()[1].duration_secs),
-        (0, 1, 2.0)
+        (0, 1, 1.0)
     );
     assert_eq!(
         toy.find_clip("fly").unwrap_err().to_string(),
@@ -177,7 +180,7 @@ fn clips_are_found_and_times_brought_into_them() {
         ));
     }
     let bounds = toy.bounds_over_clip(run).unwrap();
-    assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(9.0, 1.0, 0.0)));
+    assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(2.0, 1.0, 0.0)));
 
     let still = Toy::from_glb("still.glb", &triangle().bytes()).unwrap();
     let error = still.pose(Some((run, 0.0)), &DMat4::IDENTITY, &mut PosedMesh::default());

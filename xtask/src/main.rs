@@ -1,2 +1,87 @@
-//! Commands.
-fn main() {}
+//! The project's commands, as `cargo xtask <command>`. Each checks what it needs before it starts, fetches what it may,
+//! and names what is missing.
+
+mod command;
+mod harness;
+mod phone;
+mod test;
+mod toolchain;
+mod vulkan;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::phone::{ANDROID, Action, IOS};
+use crate::toolchain::Toolchain;
+
+/// The project's commands
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Command {
+    /// Replay the bundled session into target/demo
+    Demo,
+    /// Replay a session: pictures, times, errors (`replay --help` tells more)
+    #[command(disable_help_flag = true)]
+    Replay {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Rewrite the golden pictures (`bless --help` tells more)
+    #[command(disable_help_flag = true)]
+    Bless {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Check everything that must hold before a change is taken
+    Test,
+    /// The iPhone shell
+    #[command(subcommand)]
+    Ios(PhoneCommand),
+    /// The Android shell
+    #[command(subcommand)]
+    Android(PhoneCommand),
+}
+
+#[derive(Clone, Copy, Subcommand)]
+enum PhoneCommand {
+    /// Type check and lint for the phone
+    Check,
+    /// Build the library
+    Build,
+    /// Make an app of it, or say what is missing
+    Package,
+}
+
+impl From<PhoneCommand> for Action {
+    fn from(command: PhoneCommand) -> Self {
+        match command {
+            PhoneCommand::Check => Self::Check,
+            PhoneCommand::Build => Self::Build,
+            PhoneCommand::Package => Self::Package,
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    run(Command::parse()).unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run(command: Command) -> anyhow::Result<ExitCode> {
+    let toolchain = Toolchain::pinned()?;
+    match command {
+        Command::Demo => return harness::demo(&toolchain),
+        Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
+        Command::Bless { args } => return harness::run(&toolchain, "bless", &args),
+        Command::Test => test::run(&toolchain)?,
+        Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
+        Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,
+    }
+    Ok(ExitCode::SUCCESS)
+}

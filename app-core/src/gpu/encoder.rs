@@ -1,5 +1,7 @@
 //! Encoding of one submission, each pass with its name and, where the device can, its time stamps.
 
+use crate::plan::Path;
+
 use super::{Gpu, GpuError};
 
 /// Most passes of one submission that are timed.
@@ -10,6 +12,8 @@ const STAMP_BYTES: u64 = 8;
 /// Device time of one pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
+    /// The path it ran on.
+    pub path: Path,
     /// The pass's name.
     pub pass: &'static str,
     /// Device time from its beginning to its end.
@@ -19,18 +23,20 @@ pub struct PassTime {
 /// Commands being recorded.
 pub(crate) struct Encoder {
     pub(crate) raw: wgpu::CommandEncoder,
+    /// The path that passes are put down to.
+    pub(crate) path: Path,
     timer: Option<Timer>,
 }
 
 struct Timer {
     queries: wgpu::QuerySet,
-    passes: Vec<&'static str>,
+    passes: Vec<(Path, &'static str)>,
 }
 
 /// Time stamps of a submission, still on the device.
 pub(crate) struct Stamps {
     buffer: wgpu::Buffer,
-    passes: Vec<&'static str>,
+    passes: Vec<(Path, &'static str)>,
 }
 
 impl Encoder {
@@ -46,7 +52,11 @@ impl Encoder {
             }),
             passes: Vec::new(),
         });
-        Self { raw, timer }
+        Self {
+            raw,
+            path: Path::Frame,
+            timer,
+        }
     }
 
     /// Begins a render pass under the name of its shader.
@@ -57,7 +67,8 @@ impl Encoder {
         depth: Option<&wgpu::TextureView>,
         keep_depth: wgpu::StoreOp,
     ) -> wgpu::RenderPass<'a> {
-        let timed = self.timer.as_mut().and_then(|timer| timer.next(pass));
+        let path = self.path;
+        let timed = self.timer.as_mut().and_then(|timer| timer.next(path, pass));
         let stamps = self
             .timer
             .as_ref()
@@ -108,7 +119,8 @@ impl Encoder {
         groups: &[(u32, &wgpu::BindGroup)],
         workgroups: [u32; 3],
     ) {
-        let timed = self.timer.as_mut().and_then(|timer| timer.next(pass));
+        let path = self.path;
+        let timed = self.timer.as_mut().and_then(|timer| timer.next(path, pass));
         let stamps = self
             .timer
             .as_ref()
@@ -157,31 +169,34 @@ impl Encoder {
 }
 
 impl Timer {
-    fn next(&mut self, pass: &'static str) -> Option<u32> {
+    fn next(&mut self, path: Path, pass: &'static str) -> Option<u32> {
         let index = u32::try_from(self.passes.len())
             .ok()
             .filter(|index| *index < MAX_TIMED)?;
-        self.passes.push(pass);
+        self.passes.push((path, pass));
         Some(2 * index)
     }
 }
 
 impl Stamps {
-    /// Waits for the device and returns each pass's time, passes of one name summed, in order of their first run.
+    /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first run.
     pub(crate) fn read(self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
         let bytes = gpu.read_buffer(&self.buffer)?;
         let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
         let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
         let mut times: Vec<PassTime> = Vec::new();
-        for (pass, stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
+        for (&(path, pass), stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
             #[allow(
                 clippy::cast_precision_loss,
                 reason = "a difference of ticks within one frame is far below 2^52"
             )]
             let gpu_ms = stamp[1].saturating_sub(stamp[0]) as f64 * ms_per_tick;
-            match times.iter_mut().find(|time| time.pass == *pass) {
+            match times
+                .iter_mut()
+                .find(|time| (time.path, time.pass) == (path, pass))
+            {
                 Some(time) => time.gpu_ms += gpu_ms,
-                None => times.push(PassTime { pass, gpu_ms }),
+                None => times.push(PassTime { path, pass, gpu_ms }),
             }
         }
         Ok(times)

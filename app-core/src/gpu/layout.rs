@@ -9,6 +9,11 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 /// Most light points of one occlusion pass: 16 a colour target, four targets.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
+/// What the fit takes a toy to throw back until it knows better.
+pub const PRIOR_BOUNCE: f32 = 0.2;
+/// What the fit takes all lights' shares to sum to until it knows better.
+pub const PRIOR_SHARE: f32 = 0.5;
+
 /// A 3 x 3 matrix in uniform layout: columns on 16 bytes.
 pub type Mat3Columns = [[f32; 4]; 3];
 
@@ -107,4 +112,14 @@ pub struct Published {
     pub seam_px: i32,
     pub n_blocker_taps: u32,
     pub n_filter_taps: u32,
+}
+
+/// What is fitted: `SUBJECT_RECEIVER` and `SUBJECT_TOY` in `common/fit_step.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Subject {
+    /// The receiver: gain, bounce and each light's share.
+    Receiver = 0,
+    /// The toy: ambient light, its gradient and each light's strength.
+    Toy = 1,
 }

@@ -17,7 +17,10 @@ impl BoxFilter {
         let pipeline = |is_rows: f64| {
             gpu.fullscreen_pipeline(&BOX_FILTER, "fs_sum", TERM_FORMAT, &[("IS_ROWS", is_rows)])
         };
-        Self { rows: pipeline(1.0), columns: pipeline(0.0) }
+        Self {
+            rows: pipeline(1.0),
+            columns: pipeline(0.0),
+        }
     }
 
     /// Leaves the sums over the box in `terms`, by way of `between`.

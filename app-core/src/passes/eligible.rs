@@ -16,7 +16,9 @@ pub(crate) struct Eligible {
 
 impl Eligible {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: gpu.fullscreen_pipeline(&ELIGIBLE, "fs_mark", ELIGIBLE_FORMAT, &[]) }
+        Self {
+            pipeline: gpu.fullscreen_pipeline(&ELIGIBLE, "fs_mark", ELIGIBLE_FORMAT, &[]),
+        }
     }
 
     pub(crate) fn encode(

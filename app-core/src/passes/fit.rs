@@ -2,7 +2,9 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{Fit as FitLayout, FitStep, MAX_LIGHTS, N_COLUMNS};
+use crate::gpu::layout::{
+    Fit as FitLayout, FitStep, MAX_LIGHTS, N_COLUMNS, PRIOR_BOUNCE, PRIOR_SHARE, Subject,
+};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{FIT_SOLVE, FIT_SUMS};
 use crate::plan::Plan;
@@ -10,16 +12,6 @@ use crate::plan::Plan;
 /// Sums of one row: the upper triangle of the normal equations and their right-hand side.
 const N_SUMS: u64 = 27;
 const N_CHANNELS: u64 = 3;
-
-/// What is fitted; the numbers are the shader's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub(crate) enum Subject {
-    /// The receiver: gain, bounce and each light's share.
-    Receiver = 0,
-    /// The toy: ambient light, its gradient and each light's strength.
-    Toy = 1,
-}
 
 pub(crate) struct Fit {
     sums: wgpu::ComputePipeline,
@@ -49,10 +41,10 @@ impl Fit {
     /// A solution to start from, which also stands where a frame gives no evidence at all.
     pub(crate) fn start(n_lights: usize) -> FitLayout {
         #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
-        let share = 0.5 / n_lights.max(1) as f32;
+        let share = PRIOR_SHARE / n_lights.max(1) as f32;
         let mut fit = FitLayout {
             gain: [1.0; 4],
-            bounce: [0.2; 4],
+            bounce: [PRIOR_BOUNCE; 4],
             share: [[0.0; 4]; MAX_LIGHTS],
             toy: [[0.0; 4]; N_COLUMNS],
             contrast: [0.0; 4],

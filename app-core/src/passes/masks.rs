@@ -19,10 +19,20 @@ pub(crate) struct Masks {
 impl Masks {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let stream = Stream::new(0, VertexFormat::Float32x3);
-        let stages = Stages { vertex: "vs_object", fragment: "fs_set", buffers: &[stream.layout()] };
-        let shape =
-            RenderShape { targets: &[Some(MASKS_FORMAT.into())], n_samples: 1, depth: None, constants: &[] };
-        Self { pipeline: gpu.render_pipeline(&MASKS, &gpu.module(&MASKS), &stages, &shape) }
+        let stages = Stages {
+            vertex: "vs_object",
+            fragment: "fs_set",
+            buffers: &[stream.layout()],
+        };
+        let shape = RenderShape {
+            targets: &[Some(MASKS_FORMAT.into())],
+            n_samples: 1,
+            depth: None,
+            constants: &[],
+        };
+        Self {
+            pipeline: gpu.render_pipeline(&MASKS, &gpu.module(&MASKS), &stages, &shape),
+        }
     }
 
     pub(crate) fn encode(

@@ -18,7 +18,9 @@ impl Pcss {
     /// For a toy no taller than `tallest_m`.
     pub(crate) fn new(gpu: &Gpu, tallest_m: f64) -> Self {
         let constants = [("TALLEST_M", tallest_m)];
-        Self { pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", PCSS_FORMAT, &constants) }
+        Self {
+            pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", PCSS_FORMAT, &constants),
+        }
     }
 
     pub(crate) fn encode(
@@ -32,7 +34,10 @@ impl Pcss {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(
             &layout(GROUP_GLOBALS),
-            &[(0, globals.as_entire_binding()), (2, published.as_entire_binding())],
+            &[
+                (0, globals.as_entire_binding()),
+                (2, published.as_entire_binding()),
+            ],
         );
         let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(warp))]);
         encoder.fullscreen(

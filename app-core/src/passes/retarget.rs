@@ -30,7 +30,10 @@ pub(crate) struct RetargetInputs<'a> {
 impl Retarget {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let module = gpu.module(&RETARGET);
-        let streams = [Stream::new(0, VertexFormat::Float32x3), Stream::new(1, VertexFormat::Float32x3)];
+        let streams = [
+            Stream::new(0, VertexFormat::Float32x3),
+            Stream::new(1, VertexFormat::Float32x3),
+        ];
         let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
         let shape = |depth| RenderShape {
             targets: &[Some(wgpu::ColorTargetState {
@@ -42,8 +45,16 @@ impl Retarget {
             depth: Some(depth),
             constants: &[],
         };
-        let receiver = Stages { vertex: "vs_fullscreen", fragment: "fs_receiver", buffers: &[] };
-        let toy = Stages { vertex: "vs_toy", fragment: "fs_toy", buffers: &buffers };
+        let receiver = Stages {
+            vertex: "vs_fullscreen",
+            fragment: "fs_receiver",
+            buffers: &[],
+        };
+        let toy = Stages {
+            vertex: "vs_toy",
+            fragment: "fs_toy",
+            buffers: &buffers,
+        };
         Self {
             receiver: gpu.render_pipeline(&RETARGET, &module, &receiver, &shape(behind_all())),
             toy: gpu.render_pipeline(&RETARGET, &module, &toy, &shape(nearest_surface())),
@@ -61,8 +72,10 @@ impl Retarget {
     ) {
         let globals = (0, inputs.globals.as_entire_binding());
         let published = (2, inputs.published.as_entire_binding());
-        let receiver_shared =
-            gpu.bind(&self.receiver.get_bind_group_layout(GROUP_GLOBALS), &[globals.clone(), published]);
+        let receiver_shared = gpu.bind(
+            &self.receiver.get_bind_group_layout(GROUP_GLOBALS),
+            &[globals.clone(), published],
+        );
         let toy_shared = gpu.bind(&self.toy.get_bind_group_layout(GROUP_GLOBALS), &[globals]);
         let receiver_own = gpu.bind(
             &self.receiver.get_bind_group_layout(GROUP_PASS),
@@ -77,7 +90,10 @@ impl Retarget {
         );
         let toy_own = gpu.bind(
             &self.toy.get_bind_group_layout(GROUP_PASS),
-            &[(0, view(inputs.frame)), (5, wgpu::BindingResource::Sampler(&self.linear))],
+            &[
+                (0, view(inputs.frame)),
+                (5, wgpu::BindingResource::Sampler(&self.linear)),
+            ],
         );
         let colors = [Some(resolved(targets.samples, targets.picture))];
         let mut render = encoder.render(RETARGET.name, &colors, Some(targets.depth), StoreOp::Discard);

@@ -27,14 +27,20 @@ pub(crate) struct SearchInputs<'a> {
 
 impl Search {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let stages = Stages { vertex: "vs_fullscreen", fragment: "fs_search", buffers: &[] };
+        let stages = Stages {
+            vertex: "vs_fullscreen",
+            fragment: "fs_search",
+            buffers: &[],
+        };
         let shape = RenderShape {
             targets: &[Some(TERM_FORMAT.into()), Some(TAPS_FORMAT.into())],
             n_samples: 1,
             depth: None,
             constants: &[],
         };
-        Self { pipeline: gpu.render_pipeline(&SEARCH, &gpu.module(&SEARCH), &stages, &shape) }
+        Self {
+            pipeline: gpu.render_pipeline(&SEARCH, &gpu.module(&SEARCH), &stages, &shape),
+        }
     }
 
     pub(crate) fn encode(
@@ -47,7 +53,10 @@ impl Search {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(
             &layout(GROUP_GLOBALS),
-            &[(0, inputs.globals.as_entire_binding()), (2, inputs.published.as_entire_binding())],
+            &[
+                (0, inputs.globals.as_entire_binding()),
+                (2, inputs.published.as_entire_binding()),
+            ],
         );
         let own = gpu.bind(
             &layout(GROUP_PASS),

@@ -18,16 +18,25 @@ pub(crate) struct Warp {
 
 impl Warp {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let streams = [Stream::new(0, VertexFormat::Float32x3), Stream::new(1, VertexFormat::Float32x3)];
+        let streams = [
+            Stream::new(0, VertexFormat::Float32x3),
+            Stream::new(1, VertexFormat::Float32x3),
+        ];
         let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
-        let stages = Stages { vertex: "vs_warp", fragment: "fs_source", buffers: &buffers };
+        let stages = Stages {
+            vertex: "vs_warp",
+            fragment: "fs_source",
+            buffers: &buffers,
+        };
         let shape = RenderShape {
             targets: &[Some(WARP_FORMAT.into())],
             n_samples: 1,
             depth: Some(nearest_surface()),
             constants: &[],
         };
-        Self { pipeline: gpu.render_pipeline(&WARP, &gpu.module(&WARP), &stages, &shape) }
+        Self {
+            pipeline: gpu.render_pipeline(&WARP, &gpu.module(&WARP), &stages, &shape),
+        }
     }
 
     /// Warps to the pose at `shown`; `depth` is of the region's size and not kept.
@@ -41,7 +50,10 @@ impl Warp {
     ) {
         let shared = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[(0, globals.as_entire_binding()), (2, published.as_entire_binding())],
+            &[
+                (0, globals.as_entire_binding()),
+                (2, published.as_entire_binding()),
+            ],
         );
         let mut render = encoder.render(WARP.name, &[Some(cleared(warp))], Some(depth), StoreOp::Discard);
         render.set_pipeline(&self.pipeline);

@@ -19,8 +19,8 @@ use harness::report::Report;
 
 /// The session that comes with the project.
 const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
-/// Where results go that were given no place.
-const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/replay");
+/// Where results go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/replay";
 
 /// Replay a recorded session: one picture per frame, and report.json with times, passes and, where there is a truth,
 /// errors.
@@ -107,7 +107,8 @@ fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
     let session = session
         .canonicalize()
         .with_context(|| session.display().to_string())?;
-    let results = std::path::absolute(RESULTS).context("finding target/replay")?;
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let results = package.parent().unwrap_or(package).join(RESULTS);
     Ok(results.join(session.file_name().unwrap_or("session".as_ref())))
 }
 

@@ -171,6 +171,10 @@ fn skins_and_morphs() -> Vec<Case> {
     let attributes = &mut two_sets.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_1"] = more_joints.into();
     attributes["WEIGHTS_1"] = more_weights.into();
+    // The lowest integer of 16 bits stands for -1 as well.
+    let mut by_fractions = morphed();
+    let weights = by_fractions.view(&[i16::MIN, i16::MAX, 0, 0].map(i16::to_le_bytes).concat());
+    by_fractions.json["accessors"][3] = json!({ "bufferView": weights, "componentType": 5122, "normalized": true, "type": "SCALAR", "count": 4 });
     vec![
         one("skin", skinned(joints, quarters), None, blend),
         one("weights that sum to two", skinned(joints, doubled), None, blend),
@@ -193,6 +197,12 @@ fn skins_and_morphs() -> Vec<Case> {
             morphed(),
             Some(("move", 0.25)),
             moved([0.25, 0.75, 0.0]),
+        ),
+        one(
+            "morph by fractions",
+            by_fractions,
+            Some(("move", 0.0)),
+            moved([-1.0, 1.0, 0.0]),
         ),
     ]
 }

@@ -1,0 +1,48 @@
+//! Makes the picture that each preset makes now the one that is expected of it. Never ends in success.
+
+use std::process::ExitCode;
+
+use anyhow::{Context, ensure};
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::wgpu;
+use clap::Parser;
+use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
+
+/// Rewrite the golden pictures from what the presets make on the software adapter.
+#[derive(Parser)]
+#[command(name = "bless")]
+struct Args {
+    /// Only goldens whose name contains this [default: all]
+    #[arg(default_value = "")]
+    filter: String,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => eprintln!("blessed, look at the pictures, then run the tests again"),
+        Err(error) => eprintln!("error: {error:#}"),
+    }
+    // Success would let a script bless and go on, with no one having looked.
+    ExitCode::FAILURE
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let adapter = AdapterChoice::Named(SOFTWARE_ADAPTER.to_owned());
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))
+        .context("goldens are made on the software adapter alone")?;
+    let goldens = Goldens::of_project();
+    let named: Vec<(Preset, String)> = Preset::ALL
+        .iter()
+        .map(|&preset| (preset, name_of(preset)))
+        .filter(|(_, name)| name.contains(&args.filter))
+        .collect();
+    ensure!(!named.is_empty(), "no golden's name contains \"{}\"", args.filter);
+    for (preset, name) in named {
+        let picture = render(&mut core, preset).with_context(|| name.clone())?;
+        goldens.write(&name, &picture)?;
+        eprintln!("{}", goldens.path(&name).display());
+    }
+    Ok(())
+}

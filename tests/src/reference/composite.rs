@@ -1,0 +1,105 @@
+//! Twin of `fs_receiver` in `composite.wgsl`: the picture where it shows the receiver.
+
+use glam::{DVec3, DVec4, UVec2};
+
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::raster::Raster;
+use super::{ConstantError, shader_constant};
+
+/// What the shader fixes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompositeConstants {
+    /// Change of the model, in plates, up to which a seen pixel keeps its own residual.
+    pub keep_all: f64,
+    /// Change from which it has none of it.
+    pub keep_none: f64,
+    /// Change from which the pooled residual no longer holds at half its size.
+    pub residual_half: f64,
+}
+
+impl CompositeConstants {
+    /// Reads them from the shader.
+    ///
+    /// # Errors
+    /// When it has no such constant.
+    pub fn from_shader() -> Result<Self, ConstantError> {
+        Ok(Self {
+            keep_all: shader_constant("composite", "KEEP_ALL")?,
+            keep_none: shader_constant("composite", "KEEP_NONE")?,
+            residual_half: shader_constant("composite", "RESIDUAL_HALF")?,
+        })
+    }
+}
+
+/// The toy's shown pose, and what was learned.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// Visibility of each light with the shown toy.
+    pub visibility: Raster<DVec4>,
+    /// Visibility of the ambient light with the shown toy, of any size.
+    pub ambient: Raster<f64>,
+    /// What the fit found.
+    pub solution: Solution,
+    /// Filled residuals, in plates.
+    pub residual: Raster<DVec3>,
+    /// Region pixels a cell of the residual, along each side.
+    pub cell_px: u32,
+}
+
+/// Linear colour of the receiver at `texel` of the region.
+#[must_use]
+pub fn receiver_color(
+    region: &Region,
+    pictures: &Pictures,
+    shown: &Shown,
+    constants: &CompositeConstants,
+    texel: UVec2,
+) -> DVec3 {
+    let at = centre_px(texel);
+    let (frame, plate, seen) = (
+        pictures.frame.at(texel),
+        pictures.plate.at(texel),
+        pictures.seen.at(texel),
+    );
+    let Some(in_plane) = region.receiver_point(at) else {
+        return frame;
+    };
+    let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
+        let ambient = coarse_at(ambient, region, at);
+        shown
+            .solution
+            .receiver_model(region, in_plane, ambient, visibility.at(texel))
+    };
+    let before = model(&pictures.ambient, &pictures.visibility);
+    let after = model(&shown.ambient, &shown.visibility);
+    let change = (after - before).abs().max_element();
+
+    let pooled = shown.residual.bilinear(at / f64::from(shown.cell_px));
+    let pooled = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
+    let made = plate * (after + pooled).max(DVec3::ZERO);
+    let kept = frame + plate * (after - before);
+    let keep = seen * (1.0 - smoothstep(constants.keep_all, constants.keep_none, change));
+
+    // What hides the receiver must go even at the border.
+    let inside = inside_border(region, texel).max(1.0 - seen);
+    frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO)
+}
+
+/// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.
+#[must_use]
+pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
+    let at = centre_px(texel);
+    let size = region.size_px.as_dvec2();
+    let to_edge_px = [at.x, at.y, size.x - at.x, size.y - at.y];
+    let inner_edges = to_edge_px
+        .iter()
+        .zip(region.border_px)
+        .filter(|(_, fade_px)| *fade_px > 0.0);
+    inner_edges.map(|(px, fade_px)| px / fade_px).fold(1.0, f64::min)
+}
+
+/// Hermite step from 0 at `low` to 1 at `high`.
+fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

@@ -1,0 +1,52 @@
+//! Twin of `fill.wgsl`: cells that are not known, from those around, by pull-push.
+//!
+//! Source: Gortler et al. 1996, section 3.4.
+
+use glam::{DVec3, DVec4, UVec2};
+
+use super::raster::Raster;
+use super::residual::Cell;
+use super::{ConstantError, shader_constant};
+
+/// Number of levels that the shader always runs, of which the last may all be of one cell.
+///
+/// # Errors
+/// When the shader does not say.
+pub fn n_levels_of_shader() -> Result<u32, ConstantError> {
+    shader_constant("fill", "N_LEVELS")
+}
+
+/// Fills every cell as far as it is uncertain, over `n_levels`, the finest one included.
+#[must_use]
+pub fn fill(cells: &Raster<Cell>, n_levels: u32) -> Raster<DVec3> {
+    let finest = Raster::from_fn(cells.size(), |at| {
+        let cell = cells.at(at);
+        (cell.residual * cell.certainty).extend(cell.certainty)
+    });
+    push(finest, n_levels - 1).map(DVec4::truncate)
+}
+
+/// Values times certainties in, the same with every certainty made up from the coarser level out.
+fn push(level: Raster<DVec4>, n_coarser: u32) -> Raster<DVec4> {
+    if n_coarser == 0 {
+        return level.map(|all| if all.w > 0.0 { all / all.w } else { all });
+    }
+    let coarse = push(pull(&level), n_coarser - 1);
+    Raster::from_fn(level.size(), |at| {
+        let own = level.at(at);
+        own + (1.0 - own.w) * coarse.bilinear(0.5 * (at.as_dvec2() + 0.5))
+    })
+}
+
+/// Half the size, rounded up: sums of four, where four certain cells are no more certain than one.
+fn pull(fine: &Raster<DVec4>) -> Raster<DVec4> {
+    Raster::from_fn((fine.size() + 1) / 2, |at| {
+        let children = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE].map(|corner| 2 * at + corner);
+        let sum: DVec4 = children
+            .into_iter()
+            .filter(|child| child.cmplt(fine.size()).all())
+            .map(|child| fine.at(child))
+            .sum();
+        sum / sum.w.max(1.0)
+    })
+}

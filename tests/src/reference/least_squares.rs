@@ -1,0 +1,78 @@
+//! Weighted linear least squares.
+
+/// Weighted normal equations of any number of unknowns.
+#[derive(Clone, Debug)]
+pub struct NormalEquations {
+    matrix: Vec<Vec<f64>>,
+    right: Vec<f64>,
+}
+
+impl NormalEquations {
+    /// Of `n_columns` unknowns, without any observation.
+    #[must_use]
+    pub fn new(n_columns: usize) -> Self {
+        Self {
+            matrix: vec![vec![0.0; n_columns]; n_columns],
+            right: vec![0.0; n_columns],
+        }
+    }
+
+    /// Adds the observation that `columns` times the unknowns is `value`.
+    pub fn observe(&mut self, columns: &[f64], value: f64, weight: f64) {
+        for (i, column) in columns.iter().enumerate() {
+            for (j, other) in columns.iter().enumerate() {
+                self.matrix[i][j] += weight * column * other;
+            }
+            self.right[i] += weight * column * value;
+        }
+    }
+
+    /// Adds the observation that unknown `column` is `value`.
+    pub fn expect(&mut self, column: usize, value: f64, weight: f64) {
+        self.matrix[column][column] += weight;
+        self.right[column] += weight * value;
+    }
+
+    /// Adds all observations of `other`.
+    pub fn join(&mut self, other: &Self) {
+        let pairs = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        self.matrix
+            .iter_mut()
+            .zip(&other.matrix)
+            .for_each(|(row, more)| pairs(row, more));
+        pairs(&mut self.right, &other.right);
+    }
+
+    /// Sum of the weighted squares of a column.
+    #[must_use]
+    pub fn energy(&self, column: usize) -> f64 {
+        self.matrix[column][column]
+    }
+
+    /// The unknowns, by elimination with partial pivoting; not finite where they are not determined.
+    #[must_use]
+    pub fn solve(&self) -> Vec<f64> {
+        let n = self.right.len();
+        let mut rows: Vec<Vec<f64>> = self.matrix.clone();
+        rows.iter_mut()
+            .zip(&self.right)
+            .for_each(|(row, value)| row.push(*value));
+        for p in 0..n {
+            let largest = (p..n).max_by(|a, b| rows[*a][p].abs().total_cmp(&rows[*b][p].abs()));
+            rows.swap(p, largest.unwrap_or(p));
+            let (above, below) = rows.split_at_mut(p + 1);
+            for row in below {
+                let factor = row[p] / above[p][p];
+                for (value, pivot) in row.iter_mut().zip(&above[p]).skip(p) {
+                    *value -= factor * pivot;
+                }
+            }
+        }
+        let mut unknowns = vec![0.0; n];
+        for p in (0..n).rev() {
+            let known: f64 = (p + 1..n).map(|j| rows[p][j] * unknowns[j]).sum();
+            unknowns[p] = (rows[p][n] - known) / rows[p][p];
+        }
+        unknowns
+    }
+}

@@ -1,0 +1,132 @@
+//! Twin of `occlusion.wgsl`: which light points a posed mesh hides from a point of the receiver.
+//!
+//! The shader flattens the mesh onto the receiver; here a ray goes from the receiver to the light.
+
+use glam::{DVec2, DVec3, DVec4, UVec2};
+
+use super::model::Region;
+
+/// Where the multisample positions lie within a pixel. Source: Vulkan 1.3, table of standard sample locations.
+pub const SAMPLE_POSITIONS: [DVec2; 4] = [
+    DVec2::new(0.375, 0.125),
+    DVec2::new(0.875, 0.375),
+    DVec2::new(0.125, 0.625),
+    DVec2::new(0.625, 0.875),
+];
+
+/// A posed mesh in plane space.
+#[derive(Clone, Debug)]
+pub struct Occluder {
+    triangles: Vec<[DVec3; 3]>,
+    min: DVec3,
+    max: DVec3,
+}
+
+/// Where a ray meets a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Multiples of the ray's direction up to the point.
+    pub distance: f64,
+    /// The triangle, in the order of the mesh.
+    pub triangle: usize,
+}
+
+impl Occluder {
+    /// A mesh of triangles; each three indices are the corners of one.
+    #[must_use]
+    pub fn new(positions: &[DVec3], indices: &[u32]) -> Self {
+        let triangles = indices
+            .chunks_exact(3)
+            .map(|corners| [0, 1, 2].map(|k| positions[corners[k] as usize]));
+        let triangles: Vec<[DVec3; 3]> = triangles.collect();
+        let corners = triangles.as_flattened();
+        Self {
+            min: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
+            max: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+            triangles,
+        }
+    }
+
+    /// Whether the mesh stands between the receiver point (x, z) and a homogeneous light point.
+    #[must_use]
+    pub fn hides(&self, in_plane: DVec2, light_point: DVec4) -> bool {
+        let origin = DVec3::new(in_plane.x, 0.0, in_plane.y);
+        let (direction, end) = if light_point.w == 0.0 {
+            (light_point.truncate(), f64::INFINITY)
+        } else {
+            (light_point.truncate() - origin, 1.0)
+        };
+        self.reaches_box(origin, direction, end)
+            && self
+                .triangles
+                .iter()
+                .any(|corners| meets(origin, direction, corners).is_some_and(|t| t < end))
+    }
+
+    /// The nearest triangle that a ray meets.
+    #[must_use]
+    pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        if !self.reaches_box(origin, direction, f64::INFINITY) {
+            return None;
+        }
+        let hits = self
+            .triangles
+            .iter()
+            .enumerate()
+            .filter_map(|(triangle, corners)| {
+                meets(origin, direction, corners).map(|distance| Hit { distance, triangle })
+            });
+        hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Share of the light points of each multisample position that the mesh hides from `texel` of a map of
+    /// `map_px` texels over the region, or `None` where that texel looks past the plane.
+    ///
+    /// Light point i is seen from multisample position i % 4.
+    #[must_use]
+    pub fn hidden_share(
+        &self,
+        region: &Region,
+        (map_px, texel): (UVec2, UVec2),
+        light_points: &[DVec4],
+    ) -> Option<f64> {
+        let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
+        let mut n_hidden = 0.0;
+        for (i, light_point) in light_points.iter().enumerate() {
+            let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
+            let in_plane = region.plane_point(position * region_px_per_texel)?;
+            n_hidden += f64::from(u8::from(self.hides(in_plane, *light_point)));
+        }
+        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+        let n_points = light_points.len() as f64;
+        Some(n_hidden / n_points)
+    }
+
+    /// Slab test against the bounding box: most rays pass the toy by.
+    fn reaches_box(&self, origin: DVec3, direction: DVec3, end: f64) -> bool {
+        let to_min = (self.min - origin) / direction;
+        let to_max = (self.max - origin) / direction;
+        let enter = to_min.min(to_max).max_element();
+        let leave = to_min.max(to_max).min_element();
+        // A ray within a face gives 0 / 0, for which no comparison holds: it must pass on to the triangles.
+        let is_past = enter.max(0.0) > leave.min(end);
+        !is_past
+    }
+}
+
+/// Multiples of `direction` after which a ray meets a triangle, from either side.
+///
+/// Source: Moller and Trumbore 1997.
+fn meets(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+    let (ab, ac, from_a) = (b - a, c - a, origin - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    if determinant == 0.0 {
+        return None;
+    }
+    let u = from_a.dot(p) / determinant;
+    let q = from_a.cross(ab);
+    let v = direction.dot(q) / determinant;
+    let t = ac.dot(q) / determinant;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
+}

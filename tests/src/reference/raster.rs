@@ -1,0 +1,69 @@
+//! Values over a rectangle of pixels.
+
+use std::ops::{Add, Mul};
+
+use glam::{DVec2, UVec2};
+
+/// Values over a rectangle, rows from the top; the centre of the first lies at (0.5, 0.5).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster<T> {
+    size: UVec2,
+    texels: Vec<T>,
+}
+
+impl<T: Copy> Raster<T> {
+    /// Asks `value` for each texel.
+    pub fn from_fn(size: UVec2, mut value: impl FnMut(UVec2) -> T) -> Self {
+        let rows = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+        Self {
+            size,
+            texels: rows.map(&mut value).collect(),
+        }
+    }
+
+    /// Another value for each texel.
+    #[must_use]
+    pub fn map<U>(&self, value: impl FnMut(T) -> U) -> Raster<U> {
+        Raster {
+            size: self.size,
+            texels: self.texels.iter().copied().map(value).collect(),
+        }
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// All texels, row by row.
+    #[must_use]
+    pub fn texels(&self) -> &[T] {
+        &self.texels
+    }
+
+    /// The texel at (column, row), of which there is none outside.
+    ///
+    /// # Panics
+    /// Outside the rectangle.
+    #[must_use]
+    pub fn at(&self, texel: UVec2) -> T {
+        assert!(texel.cmplt(self.size).all(), "no texel {texel} in {}", self.size);
+        self.texels[(texel.y * self.size.x + texel.x) as usize]
+    }
+
+    /// The value between the four nearest centres, of which those outside are moved to the border.
+    #[must_use]
+    pub fn bilinear(&self, at: DVec2) -> T
+    where
+        T: Add<Output = T> + Mul<f64, Output = T>,
+    {
+        let last = self.size.as_dvec2() - 1.0;
+        let low = (at - 0.5).floor();
+        let t = at - 0.5 - low;
+        let texel =
+            |dx: f64, dy: f64| self.at((low + DVec2::new(dx, dy)).clamp(DVec2::ZERO, last).as_uvec2());
+        let row = |dy: f64| texel(0.0, dy) * (1.0 - t.x) + texel(1.0, dy) * t.x;
+        row(0.0) * (1.0 - t.y) + row(1.0) * t.y
+    }
+}

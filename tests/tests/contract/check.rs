@@ -1,0 +1,265 @@
+//! The shaders' side of the contract: everything that is demanded of one joined module, as a list of what is wrong.
+
+use app_core::gpu::phone_limits;
+use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
+use naga::{
+    AddressSpace, ArraySize, Expression, GlobalVariable, Handle, ImageClass, Literal, Module, TypeInner,
+};
+
+use crate::mirrors::{Member, SHARED_CONSTANTS, mirrors};
+
+/// What a shader may use beyond plain WGSL: nothing.
+///
+/// wgpu derives naga's capabilities from the features asked for and from the downlevel flags of the adapter. The one
+/// feature asked for is `TIMESTAMP_QUERY`, which gives none. The flags could give multisampled shading, arrays of cube
+/// maps and half floats packed in floats where an adapter has them; no phone limit promises any of the three.
+pub(crate) const REQUESTED: Capabilities = Capabilities::empty();
+
+/// Parses a joined module.
+pub(crate) fn parse(source: &str) -> Result<Module, String> {
+    naga::front::wgsl::parse_str(source)
+        .map_err(|error| format!("does not parse: {}", error.emit_to_string(source)))
+}
+
+/// Validates a module for a device with `capabilities`.
+pub(crate) fn validate(module: &Module, capabilities: Capabilities) -> Result<ModuleInfo, String> {
+    Validator::new(ValidationFlags::all(), capabilities)
+        .validate(module)
+        .map_err(|error| format!("is not valid for the device: {:?}", error.into_inner()))
+}
+
+/// What is wrong with a joined module that should have `entry_points`.
+pub(crate) fn problems(source: &str, entry_points: &[&str]) -> Vec<String> {
+    let checked = parse(source).and_then(|module| Ok((validate(&module, REQUESTED)?, module)));
+    let (info, module) = match checked {
+        Ok(checked) => checked,
+        Err(problem) => return vec![problem],
+    };
+    let mut problems = struct_problems(&module);
+    problems.extend(constant_problems(&module));
+    problems.extend(entry_point_problems(&module, entry_points));
+    for (index, entry) in module.entry_points.iter().enumerate() {
+        let counts = counts(&module, entry, info.get_entry_point(index));
+        let too_many = counts.into_iter().filter(|(_, count, limit)| count > limit);
+        problems.extend(
+            too_many.map(|(what, count, limit)| format!("{}: {count} {what}, at most {limit}", entry.name)),
+        );
+    }
+    problems
+}
+
+/// Value of a constant of type u32.
+pub(crate) fn constant(module: &Module, name: &str) -> Option<u32> {
+    let (_, constant) = module
+        .constants
+        .iter()
+        .find(|(_, constant)| constant.name.as_deref() == Some(name))?;
+    match module.global_expressions[constant.init] {
+        Expression::Literal(Literal::U32(value)) => Some(value),
+        _ => None,
+    }
+}
+
+/// Elements of an array variable of the module.
+pub(crate) fn array_length(module: &Module, name: &str) -> Option<u32> {
+    let (_, global) = module
+        .global_variables
+        .iter()
+        .find(|(_, global)| global.name.as_deref() == Some(name))?;
+    match module.types[global.ty].inner {
+        TypeInner::Array {
+            size: ArraySize::Constant(n),
+            ..
+        } => Some(n.get()),
+        _ => None,
+    }
+}
+
+fn struct_problems(module: &Module) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mirrors = mirrors();
+    for (_, ty) in module.types.iter() {
+        let TypeInner::Struct { members, span } = &ty.inner else {
+            continue;
+        };
+        let name = ty.name.as_deref().unwrap_or_default();
+        let Some(mirror) = mirrors.iter().find(|mirror| mirror.name == name) else {
+            continue;
+        };
+        let shader: Vec<Member> = members
+            .iter()
+            .map(|member| shader_member(module, member))
+            .collect();
+        if shader != mirror.members {
+            problems.push(format!(
+                "{name}: shader has {shader:#?}, host has {:#?}",
+                mirror.members
+            ));
+        }
+        if *span as usize != mirror.size {
+            problems.push(format!(
+                "{name}: {span} bytes in the shader, {} on the host",
+                mirror.size
+            ));
+        }
+    }
+    for name in shared_structs(module) {
+        if !mirrors.iter().any(|mirror| mirror.name == name) {
+            problems.push(format!(
+                "{name}: bound to a buffer, but the host has no mirror of it"
+            ));
+        }
+    }
+    problems
+}
+
+/// Names of the structs that buffers hold, alone or in an array.
+pub(crate) fn shared_structs(module: &Module) -> Vec<String> {
+    let is_buffer = |global: &&GlobalVariable| {
+        matches!(global.space, AddressSpace::Uniform | AddressSpace::Storage { .. })
+    };
+    let globals = module.global_variables.iter().map(|(_, global)| global);
+    globals
+        .filter(is_buffer)
+        .filter_map(|global| {
+            let mut ty = &module.types[global.ty];
+            while let TypeInner::Array { base, .. } = ty.inner {
+                ty = &module.types[base];
+            }
+            matches!(ty.inner, TypeInner::Struct { .. }).then(|| ty.name.clone().unwrap_or_default())
+        })
+        .collect()
+}
+
+fn shader_member(module: &Module, member: &naga::StructMember) -> Member {
+    let mut inner = &module.types[member.ty].inner;
+    let size = inner.size(module.to_ctx()) as usize;
+    while let TypeInner::Array { base, .. } = inner {
+        inner = &module.types[*base].inner;
+    }
+    let kind = match inner {
+        TypeInner::Matrix { scalar, .. } => Some(scalar.kind),
+        other => other.scalar_kind(),
+    };
+    Member {
+        name: member.name.clone().unwrap_or_default(),
+        offset: member.offset as usize,
+        size,
+        kind,
+    }
+}
+
+fn constant_problems(module: &Module) -> Vec<String> {
+    let is_there = |name: &str| {
+        module
+            .constants
+            .iter()
+            .any(|(_, constant)| constant.name.as_deref() == Some(name))
+    };
+    SHARED_CONSTANTS
+        .iter()
+        .filter(|(name, _)| is_there(name))
+        .filter_map(|(name, host)| {
+            let shader = constant(module, name).map(|value| value as usize);
+            (shader != Some(*host)).then(|| format!("{name}: {shader:?} in the shader, {host} on the host"))
+        })
+        .collect()
+}
+
+fn entry_point_problems(module: &Module, listed: &[&str]) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mut found: Vec<&str> = module
+        .entry_points
+        .iter()
+        .map(|entry| entry.name.as_str())
+        .collect();
+    let mut listed = listed.to_vec();
+    found.sort_unstable();
+    listed.sort_unstable();
+    if found != listed {
+        problems.push(format!(
+            "the entry points are {found:?}, but {listed:?} are listed"
+        ));
+    }
+    for entry in &module.entry_points {
+        let prefix = match entry.stage {
+            naga::ShaderStage::Vertex => "vs_",
+            naga::ShaderStage::Fragment => "fs_",
+            naga::ShaderStage::Compute => "cs_",
+            _ => "a stage that phones lack",
+        };
+        if !entry.name.starts_with(prefix) {
+            problems.push(format!("{}: should be named {prefix}…", entry.name));
+        }
+    }
+    problems
+}
+
+/// What one entry point uses of what the device limits: (what, how much, limit).
+fn counts(module: &Module, entry: &naga::EntryPoint, uses: &FunctionInfo) -> Vec<(&'static str, u32, u32)> {
+    let limits = phone_limits();
+    let is_used = |handle: Handle<GlobalVariable>| !uses[handle].is_empty();
+    let used: Vec<&GlobalVariable> = module
+        .global_variables
+        .iter()
+        .filter(|(handle, _)| is_used(*handle))
+        .map(|(_, global)| global)
+        .collect();
+    let count = |is_one: &dyn Fn(&GlobalVariable) -> bool| {
+        u32::try_from(used.iter().filter(|global| is_one(global)).count()).unwrap_or(u32::MAX)
+    };
+    let inner = |global: &GlobalVariable| &module.types[global.ty].inner;
+    let is_image = |global: &GlobalVariable, is_storage: bool| match inner(global) {
+        TypeInner::Image { class, .. } => matches!(class, ImageClass::Storage { .. }) == is_storage,
+        _ => false,
+    };
+    let workgroup_bytes = used
+        .iter()
+        .filter(|global| global.space == AddressSpace::WorkGroup)
+        // As wgpu counts them: each variable starts on 16 bytes.
+        .map(|global| inner(global).size(module.to_ctx()).next_multiple_of(16))
+        .sum();
+    let n_groups = used
+        .iter()
+        .filter_map(|global| global.binding.as_ref())
+        .map(|binding| binding.group + 1)
+        .max();
+    vec![
+        ("bind groups", n_groups.unwrap_or(0), limits.max_bind_groups),
+        (
+            "storage buffers",
+            count(&|global| matches!(global.space, AddressSpace::Storage { .. })),
+            limits.max_storage_buffers_per_shader_stage,
+        ),
+        (
+            "uniform buffers",
+            count(&|global| global.space == AddressSpace::Uniform),
+            limits.max_uniform_buffers_per_shader_stage,
+        ),
+        (
+            "storage textures",
+            count(&|global| is_image(global, true)),
+            limits.max_storage_textures_per_shader_stage,
+        ),
+        (
+            "sampled textures",
+            count(&|global| is_image(global, false)),
+            limits.max_sampled_textures_per_shader_stage,
+        ),
+        (
+            "samplers",
+            count(&|global| matches!(inner(global), TypeInner::Sampler { .. })),
+            limits.max_samplers_per_shader_stage,
+        ),
+        (
+            "invocations",
+            entry.workgroup_size.iter().product(),
+            limits.max_compute_invocations_per_workgroup,
+        ),
+        (
+            "bytes of workgroup memory",
+            workgroup_bytes,
+            limits.max_compute_workgroup_storage_size,
+        ),
+    ]
+}

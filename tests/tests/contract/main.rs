@@ -1,0 +1,282 @@
+//! The contract between host and shaders, read from the shaders themselves, and proof that its checks can fail.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod check;
+mod mirrors;
+
+use app_core::gpu::layout::{MAX_LIGHTS, N_COLUMNS};
+use app_core::gpu::phone_limits;
+use app_core::gpu::shaders::{ALL, Shader};
+use app_core::plan::{Plan, SceneFacts};
+use app_core::preset::BALANCED;
+use app_core::region::PixelRect;
+use glam::UVec2;
+use naga::Module;
+use naga::valid::Capabilities;
+
+use check::{array_length, constant, parse, problems, shared_structs, validate};
+use harness::reference::shader_constant;
+use mirrors::{SHARED_CONSTANTS, SHARED_FRACTIONS, mirrors};
+
+fn shader(name: &str) -> &'static Shader {
+    ALL.iter().find(|shader| shader.name == name).unwrap()
+}
+
+fn module(name: &str) -> Module {
+    parse(&shader(name).source()).unwrap()
+}
+
+fn number(module: &Module, name: &str) -> u32 {
+    constant(module, name).unwrap_or_else(|| panic!("there is no constant {name}"))
+}
+
+#[test]
+fn every_shader_keeps_the_contract() {
+    let wrong: Vec<String> = ALL
+        .iter()
+        .flat_map(|shader| {
+            let problems = problems(&shader.source(), shader.entry_points);
+            problems
+                .into_iter()
+                .map(|problem| format!("{}: {problem}", shader.name))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_mirror_and_shared_constant_is_in_a_shader() {
+    let modules: Vec<Module> = ALL
+        .iter()
+        .map(|shader| parse(&shader.source()).unwrap())
+        .collect();
+    let shared: Vec<String> = modules.iter().flat_map(shared_structs).collect();
+    for mirror in mirrors() {
+        assert!(
+            shared.iter().any(|name| name == mirror.name),
+            "no buffer holds a {}",
+            mirror.name
+        );
+    }
+    for (name, _) in SHARED_CONSTANTS {
+        assert!(
+            modules.iter().any(|module| constant(module, name).is_some()),
+            "no shader has {name}"
+        );
+    }
+}
+
+#[test]
+fn the_fit_starts_from_its_priors() {
+    for (shader, name, host) in SHARED_FRACTIONS {
+        let value: f32 = shader_constant(shader, name).unwrap();
+        assert_eq!(value.to_bits(), host.to_bits(), "{name}");
+    }
+}
+
+#[test]
+fn every_struct_of_the_layout_is_compared() {
+    let layout = include_str!("../../../app-core/src/gpu/layout.rs");
+    let structs = layout
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub struct ")?.split_whitespace().next());
+    let mirrors = mirrors();
+    assert!(structs.eq(mirrors.iter().map(|mirror| mirror.name)));
+}
+
+#[test]
+fn the_limits_are_those_of_a_phone() {
+    let limits = phone_limits();
+    let asked = [
+        limits.max_bind_groups,
+        limits.max_storage_buffers_per_shader_stage,
+        limits.max_storage_textures_per_shader_stage,
+        limits.max_sampled_textures_per_shader_stage,
+        limits.max_color_attachments,
+        limits.max_color_attachment_bytes_per_sample,
+        limits.max_compute_invocations_per_workgroup,
+    ];
+    assert_eq!(asked, [4, 4, 4, 16, 4, 32, 256]);
+    assert!(limits.max_compute_workgroup_storage_size <= 16 << 10);
+}
+
+#[test]
+fn the_sums_of_the_fit_have_room() {
+    let n = u32::try_from(N_COLUMNS).unwrap();
+    let n_sums = n * (n + 1) / 2 + n;
+    let (fit, solve) = (module("fit"), module("fit_solve"));
+    assert_eq!([number(&fit, "N_SUMS"), number(&solve, "N_SUMS")], [n_sums; 2]);
+    assert_eq!(array_length(&solve, "sums"), Some(3 * n_sums));
+    assert_eq!(array_length(&solve, "matrix"), Some(n * n));
+    assert!(
+        solve.entry_points[0].workgroup_size[0] >= 3 * n_sums,
+        "a lane for each sum"
+    );
+
+    let (workgroup, part) = (number(&fit, "WORKGROUP"), number(&fit, "N_PART"));
+    assert_eq!(fit.entry_points[0].workgroup_size, [workgroup, 1, 1]);
+    assert_eq!(array_length(&fit, "partial"), Some(workgroup * part));
+    assert_eq!(n_sums % part, 0, "whole parts");
+    assert!(workgroup.is_power_of_two(), "summed by halves");
+    // One pixel more than a workgroup has invocations takes a second one.
+    assert_eq!(
+        [plan(workgroup, 1), plan(workgroup + 1, 1)].map(|plan| plan.n_fit_rows),
+        [1, 2]
+    );
+}
+
+#[test]
+fn the_levels_of_the_fill_reach_one_cell() {
+    let fill = module("fill");
+    let largest = plan(8000, 6000).grid.size.into_iter().max().unwrap();
+    assert!(largest > 32 && largest <= 1 << (number(&fill, "N_LEVELS") - 1));
+    assert_eq!(
+        fill.entry_points[0].workgroup_size,
+        [number(&fill, "WORKGROUP"), 1, 1]
+    );
+}
+
+#[test]
+fn a_light_point_fits_each_sample_and_channel() {
+    let mirrors = mirrors();
+    let points = mirrors
+        .iter()
+        .find(|mirror| mirror.name == "LightPoints")
+        .unwrap();
+    let limits = phone_limits();
+    // Four samples a pixel, four channels a target, 16 bytes a point.
+    assert_eq!(points.size, 4 * 4 * limits.max_color_attachments as usize * 16);
+    // One channel of the visibility map a light.
+    const { assert!(MAX_LIGHTS <= 4) };
+}
+
+fn plan(width_px: u32, height_px: u32) -> Plan {
+    let region = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: UVec2::new(width_px, height_px),
+    };
+    Plan::new(
+        &SceneFacts {
+            region,
+            penumbra_px: vec![10.0],
+        },
+        &BALANCED,
+    )
+}
+
+/// A shader with a fault must be found out, in words that name it.
+#[test]
+fn faults_in_a_shader_are_found() {
+    // Shader, text in it, text in its place, words of the problem.
+    let faults = [
+        ("composite", "bounce", "rebound", ["Fit", "rebound"]),
+        (
+            "residual",
+            "cell_px: u32,\n  _pad: u32,",
+            "_pad: u32,\n  cell_px: u32,",
+            ["Grid", "cell_px"],
+        ),
+        (
+            "residual",
+            "_pad: u32",
+            "normal_offset: u32",
+            ["Grid", "normal_offset"],
+        ),
+        ("residual", "_pad: u32", "_pad: f32", ["Grid", "_pad"]),
+        (
+            "present",
+            "origin_px: vec2u,",
+            "origin_px: vec2u,\n  more: u32,",
+            ["Placement", "bytes"],
+        ),
+        (
+            "occlusion",
+            "array<vec4f, 64>",
+            "array<vec4f, 32>",
+            ["LightPoints", "bytes"],
+        ),
+        (
+            "composite",
+            "MAX_LIGHTS: u32 = 4u",
+            "MAX_LIGHTS: u32 = 5u",
+            ["MAX_LIGHTS", "5"],
+        ),
+        ("residual", "fn cs_pool", "fn pool", ["listed", "cs_…"]),
+        (
+            "residual",
+            "@workgroup_size(8, 8)",
+            "@workgroup_size(16, 17)",
+            ["272", "invocations"],
+        ),
+        (
+            "fit",
+            "N_PARTIAL: u32 = 2304u",
+            "N_PARTIAL: u32 = 5000u",
+            ["20000", "workgroup memory"],
+        ),
+        ("present", "@group(1)", "@group(4)", ["5", "bind groups"]),
+        (
+            "residual",
+            "var product",
+            "var product: vec2f",
+            ["does not parse", "product"],
+        ),
+    ];
+    for (name, from, to, words) in faults {
+        let shader = shader(name);
+        let sound = shader.source();
+        let faulty = sound.replace(from, to);
+        assert_ne!(faulty, sound, "{name} has no \"{from}\"");
+        assert_found(&problems(&faulty, shader.entry_points), &words, to);
+    }
+}
+
+#[test]
+fn faults_in_bindings_are_found() {
+    let buffers = |n: u32| {
+        let declared: String = (0..n)
+            .map(|k| format!("@group(0) @binding({k}) var<storage, read> b{k}: array<f32>;\n"))
+            .collect();
+        let used: Vec<String> = (0..n).map(|k| format!("b{k}[0]")).collect();
+        let sum = used.join(" + ");
+        format!("{declared}@fragment fn fs_sum() -> @location(0) vec4f {{ return vec4f({sum}); }}")
+    };
+    assert_eq!(problems(&buffers(4), &["fs_sum"]), Vec::<String>::new());
+    assert_found(
+        &problems(&buffers(5), &["fs_sum"]),
+        &["5", "storage buffers"],
+        "five buffers",
+    );
+
+    let unknown = "struct Extra { a: f32 }\n@group(0) @binding(0) var<uniform> extra: array<Extra, 4>;";
+    let aligned = unknown.replace("a: f32", "@align(16) a: f32");
+    assert_found(
+        &problems(&aligned, &[]),
+        &["Extra", "mirror"],
+        "a struct that the host lacks",
+    );
+}
+
+#[test]
+fn what_the_device_was_not_asked_for_is_found() {
+    let half = "enable f16;\n@fragment fn fs_half(@builtin(position) at: vec4f) -> @location(0) vec4f {\n\
+        let half_at = vec4h(at);\n  return vec4f(half_at + half_at);\n}";
+    assert_found(
+        &problems(half, &["fs_half"]),
+        &["not valid for the device"],
+        "f16",
+    );
+    // It is the capability that is missing, nothing else.
+    validate(&parse(half).unwrap(), Capabilities::all()).unwrap();
+}
+
+fn assert_found(problems: &[String], words: &[&str], fault: &str) {
+    let text = problems.join("\n");
+    for word in words {
+        assert!(
+            text.contains(word),
+            "\"{fault}\" is not found, \"{word}\" is not in:\n{text}"
+        );
+    }
+}

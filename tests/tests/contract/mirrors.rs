@@ -1,0 +1,134 @@
+//! The host's side of the contract: each struct and constant that the shaders share, as Rust lays it out.
+
+use std::mem::{offset_of, size_of};
+
+use app_core::gpu::layout;
+use naga::ScalarKind;
+
+/// A struct of `gpu/layout.rs`.
+pub(crate) struct Mirror {
+    pub(crate) name: &'static str,
+    pub(crate) size: usize,
+    pub(crate) members: Vec<Member>,
+}
+
+/// A member of a mirrored struct, on either side.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Member {
+    pub(crate) name: String,
+    pub(crate) offset: usize,
+    pub(crate) size: usize,
+    pub(crate) kind: Option<ScalarKind>,
+}
+
+/// What a host type is made of.
+trait Plain {
+    const KIND: ScalarKind;
+}
+
+impl Plain for f32 {
+    const KIND: ScalarKind = ScalarKind::Float;
+}
+
+impl Plain for i32 {
+    const KIND: ScalarKind = ScalarKind::Sint;
+}
+
+impl Plain for u32 {
+    const KIND: ScalarKind = ScalarKind::Uint;
+}
+
+impl<T: Plain, const N: usize> Plain for [T; N] {
+    const KIND: ScalarKind = T::KIND;
+}
+
+fn member<T, F: Plain>(name: &str, offset: usize, _type_of: impl Fn(&T) -> F) -> Member {
+    Member {
+        name: name.to_owned(),
+        offset,
+        size: size_of::<F>(),
+        kind: Some(F::KIND),
+    }
+}
+
+macro_rules! mirror {
+    ($name:ident { $($field:ident),* $(,)? }) => {{
+        // Does not compile when a field is missing from the list.
+        let _all_fields = |layout::$name { $($field: _),* }: layout::$name| ();
+        Mirror {
+            name: stringify!($name),
+            size: size_of::<layout::$name>(),
+            members: vec![$(member(
+                stringify!($field),
+                offset_of!(layout::$name, $field),
+                |of: &layout::$name| of.$field,
+            )),*],
+        }
+    }};
+}
+
+/// Every struct of `gpu/layout.rs`.
+pub(crate) fn mirrors() -> Vec<Mirror> {
+    vec![
+        mirror!(Globals {
+            clip_from_plane,
+            plane_from_region_px,
+            clip_from_receiver,
+            lights,
+            border_px,
+            camera_in_plane,
+            n_lights,
+            reference_in_plane,
+            half_extent_m,
+            region_size_px,
+            region_origin_px,
+        }),
+        mirror!(Fit {
+            gain,
+            bounce,
+            share,
+            toy,
+            contrast
+        }),
+        mirror!(FitStep {
+            is_reweighted,
+            n_rows,
+            n_columns,
+            subject,
+            stride_px
+        }),
+        mirror!(Grid { size, cell_px, _pad }),
+        mirror!(LightPoints { points }),
+        mirror!(Material { base_color_linear }),
+        mirror!(Placement { origin_px, size_px }),
+        mirror!(Published {
+            light,
+            light_radius,
+            is_textured,
+            is_constant,
+            constant_ratio,
+            eligible_margin_px,
+            ring_step_px,
+            n_ring_directions,
+            n_rings,
+            box_radius_px,
+            seam_px,
+            n_blocker_taps,
+            n_filter_taps
+        }),
+    ]
+}
+
+/// Constants that go by one name on both sides.
+pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
+    ("MAX_LIGHTS", layout::MAX_LIGHTS),
+    ("N_COLUMNS", layout::N_COLUMNS),
+    ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
+    ("SUBJECT_TOY", layout::Subject::Toy as usize),
+];
+
+/// Fractional constants that go by one name on both sides, and the shader they are in.
+pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
+    ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
+    ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
+];

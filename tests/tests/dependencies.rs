@@ -1,0 +1,235 @@
+//! What the project stands on: licences, sources and versions of every package that is compiled for a desktop or one
+//! of the two phones, and what the core must not reach.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde::Deserialize;
+use spdx::{Expression, ParseMode};
+
+/// Desktop for replay and tests, and the two phones.
+const TARGETS: [&str; 3] = [
+    "x86_64-unknown-linux-gnu",
+    "aarch64-apple-ios",
+    "aarch64-linux-android",
+];
+/// Permissive licences: they ask for a notice and nothing else.
+const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
+const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
+/// Packages of which more than one version is compiled, and whose doing that is.
+const TWICE: [(&str, &str); 6] = [
+    ("hashbrown", "gpu-allocator is one behind wgpu"),
+    ("jni-sys", "jni-sys 0.3 is a shim over 0.4"),
+    ("miniz_oxide", "png is one behind flate2"),
+    ("syn", "derive macros move to 3 one by one"),
+    ("thiserror", "ndk is at 1"),
+    ("thiserror-impl", "follows thiserror"),
+];
+/// Windows, event loops, networks and file systems: the shells' and the harness's business.
+const NOT_IN_CORE: [&str; 14] = [
+    "android-activity",
+    "indicatif",
+    "memmap2",
+    "mio",
+    "ndk",
+    "notify",
+    "objc2-ui-kit",
+    "reqwest",
+    "rustls",
+    "socket2",
+    "tempfile",
+    "tokio",
+    "walkdir",
+    "winit",
+];
+/// What `cargo metadata` prints, as far as it is looked at.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Package>,
+    resolve: Resolve,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    id: String,
+    name: String,
+    version: String,
+    license: Option<String>,
+    /// None for a package of this workspace, or one beside it.
+    source: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Resolve {
+    nodes: Vec<Node>,
+}
+
+#[derive(Deserialize)]
+struct Node {
+    id: String,
+    deps: Vec<Dependency>,
+}
+
+#[derive(Deserialize)]
+struct Dependency {
+    pkg: String,
+    dep_kinds: Vec<DependencyKind>,
+}
+
+#[derive(Deserialize)]
+struct DependencyKind {
+    /// None for what is linked, else `build` or `dev`.
+    kind: Option<String>,
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// The packages of each target.
+fn all_metadata() -> Vec<Metadata> {
+    let of_target = |target| {
+        let output = Command::new(env!("CARGO"))
+            .args([
+                "metadata",
+                "--locked",
+                "--format-version",
+                "1",
+                "--filter-platform",
+                target,
+            ])
+            .current_dir(repository())
+            .output()
+            .unwrap();
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    TARGETS.map(of_target).into()
+}
+
+#[test]
+fn licences_and_sources_are_known() {
+    let mut n_packages = 0;
+    for package in all_metadata().iter().flat_map(|metadata| &metadata.packages) {
+        let label = format!("{} {}", package.name, package.version);
+        let licence = package
+            .license
+            .as_deref()
+            .unwrap_or_else(|| panic!("{label} names no licence"));
+        assert!(is_allowed(licence), "{label} is under {licence}");
+        match package.source.as_deref() {
+            None | Some(CRATES_IO) => n_packages += 1,
+            Some(source) => panic!("{label} comes from {source}"),
+        }
+    }
+    assert!(n_packages > 100, "only {n_packages} packages were looked at");
+}
+
+fn is_allowed(licence: &str) -> bool {
+    // Some older packages write a slash for "or".
+    let expression = Expression::parse_mode(licence, ParseMode::LAX).unwrap();
+    expression.evaluate(|required| {
+        required.addition.is_none()
+            && required
+                .license
+                .id()
+                .is_some_and(|id| LICENCES.contains(&id.name))
+    })
+}
+
+#[test]
+fn licence_expressions_are_weighed() {
+    for allowed in [
+        "MIT",
+        "GPL-3.0-only OR MIT",
+        "Apache-2.0/GPL-2.0-only",
+        "(MIT OR 0BSD) AND Unicode-3.0",
+    ] {
+        assert!(is_allowed(allowed), "{allowed}");
+    }
+    for refused in [
+        "GPL-3.0-only",
+        "MIT AND GPL-3.0-only",
+        "LGPL-2.1-or-later",
+        "LicenseRef-Own",
+    ] {
+        assert!(!is_allowed(refused), "{refused}");
+    }
+}
+
+#[test]
+fn no_package_is_compiled_twice_without_a_reason() {
+    let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for package in all_metadata().into_iter().flat_map(|metadata| metadata.packages) {
+        versions.entry(package.name).or_default().insert(package.version);
+    }
+    versions.retain(|_, versions| versions.len() > 1);
+    let known: BTreeSet<&str> = TWICE.iter().map(|(name, _)| *name).collect();
+    let found: BTreeSet<&str> = versions.keys().map(String::as_str).collect();
+    assert_eq!(found, known, "{versions:?}");
+    assert!(
+        versions.values().all(|versions| versions.len() == 2),
+        "{versions:?}"
+    );
+}
+
+#[test]
+fn the_core_reaches_no_window_network_or_file() {
+    for metadata in all_metadata() {
+        let reached = linked_into(&metadata, "app-core");
+        assert!(reached.contains("wgpu"), "{reached:?}");
+        let wrong: Vec<&&str> = NOT_IN_CORE
+            .iter()
+            .filter(|name| reached.contains(**name))
+            .collect();
+        assert!(wrong.is_empty(), "app-core reaches {wrong:?}");
+        let of_workspace = metadata
+            .packages
+            .iter()
+            .filter(|package| package.source.is_none());
+        let others: Vec<&str> = of_workspace
+            .map(|package| package.name.as_str())
+            .filter(|name| *name != "app-core" && reached.contains(name))
+            .collect();
+        assert!(others.is_empty(), "app-core depends on {others:?}");
+    }
+}
+
+/// Names of all that is linked into a package, itself included.
+fn linked_into<'a>(metadata: &'a Metadata, name: &str) -> BTreeSet<&'a str> {
+    let packages: BTreeMap<&str, &Package> = metadata
+        .packages
+        .iter()
+        .map(|package| (package.id.as_str(), package))
+        .collect();
+    let nodes: BTreeMap<&str, &Node> = metadata
+        .resolve
+        .nodes
+        .iter()
+        .map(|node| (node.id.as_str(), node))
+        .collect();
+    let mut open: Vec<&str> = metadata
+        .packages
+        .iter()
+        .filter(|package| package.name == name)
+        .map(|package| package.id.as_str())
+        .collect();
+    let mut reached = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if reached.insert(id) {
+            let linked = nodes[id]
+                .deps
+                .iter()
+                .filter(|dep| dep.dep_kinds.iter().any(|kind| kind.kind.is_none()));
+            open.extend(linked.map(|dep| dep.pkg.as_str()));
+        }
+    }
+    reached.into_iter().map(|id| packages[id].name.as_str()).collect()
+}

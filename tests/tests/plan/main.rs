@@ -1,0 +1,9 @@
+//! Plans, the work region, the points over a light and the presets: everything that is decided without a device.
+
+mod light_points;
+mod passes;
+mod penumbra;
+mod preset;
+mod region;
+mod rig;
+mod transforms;

@@ -1,0 +1,169 @@
+//! Which passes a plan runs on which path, with which sizes and formats.
+
+use app_core::plan::{Path, Plan, SceneFacts};
+use app_core::preset::BALANCED;
+use app_core::region::PixelRect;
+use app_core::wgpu::TextureFormat;
+use glam::UVec2;
+
+/// Sizes of regions, from a pixel to more than any camera.
+const SIZES_PX: [[u32; 2]; 12] = [
+    [1, 1],
+    [1, 2],
+    [2, 1],
+    [63, 65],
+    [64, 64],
+    [65, 64],
+    [641, 359],
+    [1125, 2436],
+    [8000, 6000],
+    [8192, 8192],
+    [8192, 1],
+    [15, 8191],
+];
+
+fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
+    let region = PixelRect {
+        origin_px: UVec2::new(3, 7),
+        size_px: size_px.into(),
+    };
+    let facts = SceneFacts {
+        region,
+        penumbra_px: penumbra_px.to_vec(),
+    };
+    Plan::new(&facts, &BALANCED)
+}
+
+fn names(plan: &Plan, path: Path) -> Vec<&'static str> {
+    plan.passes
+        .iter()
+        .filter(|pass| pass.path == path)
+        .map(|pass| pass.name)
+        .collect()
+}
+
+fn leaves_out(plan: &Plan, what: &str) -> bool {
+    assert!(plan.left_out.iter().all(|left_out| !left_out.why.is_empty()));
+    plan.left_out.iter().any(|left_out| left_out.what == what)
+}
+
+#[test]
+fn what_belongs_to_the_place_is_not_on_the_frame_path() {
+    let plan = plan([640, 360], &[10.0]);
+    assert_eq!(
+        names(&plan, Path::Frame),
+        ["occlusion", "visibility", "composite", "present"]
+    );
+    let capture = names(&plan, Path::Capture);
+    let place = |name: &str| capture.iter().position(|pass| *pass == name).unwrap();
+    // Each pass comes after those whose results it reads.
+    for order in [
+        &["object", "evidence", "appearance"][..],
+        &["occlusion", "visibility", "fit", "fit_solve", "residual", "fill"],
+        &["evidence", "fit"],
+    ] {
+        assert!(
+            order.is_sorted_by_key(|name| place(name)),
+            "{order:?} in {capture:?}"
+        );
+    }
+    let first_frame = plan
+        .passes
+        .iter()
+        .position(|pass| pass.path == Path::Frame)
+        .unwrap();
+    assert!(
+        plan.passes[first_frame..]
+            .iter()
+            .all(|pass| pass.path == Path::Frame)
+    );
+}
+
+#[test]
+fn there_is_a_channel_for_each_light_and_few_more() {
+    let formats = [
+        TextureFormat::R16Float,
+        TextureFormat::Rg16Float,
+        TextureFormat::Rgba16Float,
+    ];
+    for n_lights in 1..=6 {
+        let plan = plan([640, 360], &vec![10.0; n_lights]);
+        assert_eq!(plan.lights.len(), n_lights.min(4), "the fifth is left out");
+        let n_channels = usize::from(plan.visibility_format.components());
+        let least = formats
+            .iter()
+            .map(|format| usize::from(format.components()))
+            .find(|n| *n >= plan.lights.len());
+        assert!(formats.contains(&plan.visibility_format));
+        assert_eq!(Some(n_channels), least);
+        assert_eq!(leaves_out(&plan, "overlap of shadows"), n_lights == 1);
+    }
+}
+
+#[test]
+fn a_hard_light_costs_four_points_and_no_penumbra() {
+    let settings = BALANCED;
+    let n_points = |plan: &Plan| plan.lights.iter().map(|light| light.n_points).collect::<Vec<_>>();
+    let hard = plan([640, 360], &[0.0, 0.99]);
+    assert_eq!(n_points(&hard), [4, 4]);
+    assert!(leaves_out(&hard, "penumbra"));
+    let mixed = plan([640, 360], &[0.0, 1.0]);
+    assert_eq!(n_points(&mixed), [4, settings.n_light_points]);
+    assert!(!leaves_out(&mixed, "penumbra"));
+    // A light no higher than the toy has a penumbra without end.
+    assert_eq!(
+        n_points(&plan([640, 360], &[f64::INFINITY])),
+        [settings.n_light_points]
+    );
+}
+
+#[test]
+fn a_scene_without_lights_has_nothing_to_overlap() {
+    let plan = plan([640, 360], &[]);
+    assert!(plan.lights.is_empty() && leaves_out(&plan, "overlap of shadows"));
+}
+
+#[test]
+fn grid_and_ambient_maps_cover_the_region() {
+    let divisor = BALANCED.ambient_divisor;
+    for size_px in SIZES_PX {
+        let plan = plan(size_px, &[10.0]);
+        assert_eq!(plan.region.size_px.to_array(), size_px);
+        let maps = [
+            (plan.grid.size, plan.grid.cell_px),
+            (plan.ambient_px.to_array(), divisor),
+        ];
+        for (n_cells, cell_px) in maps {
+            for (n_cells, side_px) in n_cells.into_iter().zip(size_px) {
+                let covered = n_cells * cell_px;
+                assert!(
+                    covered >= side_px && covered < side_px + cell_px,
+                    "{size_px:?}: {n_cells} of {cell_px}"
+                );
+            }
+        }
+        assert!(
+            plan.grid.size.into_iter().all(|n| n <= 64),
+            "{size_px:?}: {:?}",
+            plan.grid
+        );
+    }
+}
+
+#[test]
+fn the_fit_takes_enough_pixels_and_not_many() {
+    for size_px in SIZES_PX {
+        let plan = plan(size_px, &[10.0]);
+        let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.fit_stride_px));
+        let (n_taken, n_pixels) = (width * height, u64::from(size_px[0]) * u64::from(size_px[1]));
+        // The next smaller stride would be too many: at most one in four is lost by that, and as much by rounding.
+        assert!(n_taken <= 1 << 16, "{size_px:?}: {n_taken}");
+        assert!(n_taken >= n_pixels.min(1 << 16) / 8, "{size_px:?}: {n_taken}");
+        assert!((1..=64).contains(&plan.n_fit_rows));
+        assert!(
+            u64::from(plan.n_fit_rows - 1) * 256 < n_taken,
+            "{size_px:?}: a workgroup without work"
+        );
+        assert!(plan.n_fit_steps >= 2, "one to start from, one to reweight");
+    }
+}

@@ -1,0 +1,46 @@
+//! Names of presets, and what they spend.
+
+use app_core::preset::{Method, Preset};
+
+/// The names that the design gives to presets, built or not.
+const DESIGNED: [&str; 5] = ["flat", "paper", "fast", "balanced", "best"];
+
+#[test]
+fn a_preset_that_is_built_has_a_name_of_the_design() {
+    for &preset in Preset::ALL {
+        assert!(DESIGNED.contains(&preset.name()));
+        assert_eq!(preset.to_string().parse(), Ok(preset));
+    }
+    assert_eq!(Preset::default().name(), "balanced");
+}
+
+#[test]
+fn a_preset_that_is_not_built_is_refused_by_name() {
+    let is_built = |name: &str| Preset::ALL.iter().any(|preset| preset.name() == name);
+    let unbuilt = DESIGNED.into_iter().filter(|name| !is_built(name));
+    for name in unbuilt.chain(["", "Balanced", "balanced ", "bal", "ultra"]) {
+        let refusal = name.parse::<Preset>().unwrap_err();
+        assert_eq!(refusal.asked, name);
+        let message = refusal.to_string();
+        assert!(message.contains(&format!("\"{name}\"")), "{message}");
+        for preset in Preset::ALL {
+            assert!(message.contains(preset.name()), "{message}");
+        }
+    }
+}
+
+#[test]
+fn a_preset_spends_what_the_passes_can_take() {
+    for preset in Preset::ALL {
+        let Method::Model(settings) = preset.method() else {
+            continue;
+        };
+        for n_points in [settings.n_light_points, settings.n_ambient_directions] {
+            assert!(
+                (16..=64).contains(&n_points) && n_points % 16 == 0,
+                "{preset}: {n_points}"
+            );
+        }
+        assert!((1..=16).contains(&settings.ambient_divisor), "{preset}");
+    }
+}

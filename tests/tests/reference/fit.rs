@@ -1,0 +1,178 @@
+//! A frame made from a known solution gives that solution back.
+
+use glam::{DVec2, DVec3, DVec4, UVec2};
+use harness::reference::fit::{FitConstants, ReceiverSample, ToySample, fit_receiver, fit_toy, toy_columns};
+use harness::reference::model::{Region, Solution};
+
+use crate::flat::{region, scatter, start, truth, two_bulbs};
+
+const N_SAMPLES: u32 = 2000;
+
+fn without_priors() -> FitConstants {
+    FitConstants {
+        prior_weight: 0.0,
+        white_weight: 0.0,
+        ..FitConstants::from_shaders().unwrap()
+    }
+}
+
+fn place(n_lights: usize) -> Region {
+    region(UVec2::splat(80), two_bulbs()[..n_lights].to_vec())
+}
+
+/// Receiver points all over the place, lit and in all kinds of shade, over a plate of many colours.
+fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
+    let sample = |seed: u32| {
+        let unit = |dimension| scatter(seed, dimension);
+        let in_plane = DVec2::new(unit(0) - 0.5, unit(1) - 0.5);
+        let plate = DVec3::new(unit(2), unit(3), unit(4)) * 0.6 + 0.2;
+        let ambient = 1.0 - 0.8 * unit(5) * unit(5);
+        // Half of the points are out of each shadow.
+        let visibility = DVec4::new(unit(6), unit(7), 0.0, 0.0) * 2.0;
+        let visibility = visibility.min(DVec4::ONE);
+        let model = solution.receiver_model(region, in_plane, ambient, visibility);
+        ReceiverSample {
+            frame: plate * model,
+            plate,
+            in_plane,
+            ambient,
+            visibility,
+        }
+    };
+    (0..N_SAMPLES).map(sample).collect()
+}
+
+/// Largest difference of gain, bounce and shares.
+fn difference(a: &Solution, b: &Solution) -> f64 {
+    let shares = a
+        .shares
+        .iter()
+        .zip(&b.shares)
+        .map(|(a, b)| (a - b).abs().max_element());
+    let rest = [
+        (a.gain - b.gain).abs().max_element(),
+        (a.bounce - b.bounce).abs().max_element(),
+    ];
+    shares.chain(rest).fold(0.0, f64::max)
+}
+
+#[test]
+fn known_light_is_recovered() {
+    for n_lights in [1, 2] {
+        let region = place(n_lights);
+        let samples = samples(&region, &truth(n_lights));
+        // The falloff of the plate is linearised, so this takes steps; each one halves the error and more.
+        let fitted = fit_receiver(&region, &samples, &start(n_lights), &without_priors(), 40);
+        let error = difference(&fitted, &truth(n_lights));
+        assert!(error < 1e-6, "{n_lights} lights: off by {error:e}, {fitted:?}");
+    }
+}
+
+#[test]
+fn priors_and_few_steps_cost_little() {
+    let constants = FitConstants::from_shaders().unwrap();
+    for n_lights in [1, 2] {
+        let region = place(n_lights);
+        let samples = samples(&region, &truth(n_lights));
+        let fitted = fit_receiver(&region, &samples, &start(n_lights), &constants, 5);
+        let error = difference(&fitted, &truth(n_lights));
+        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 2e-4.
+        assert!(error < 1e-3, "{n_lights} lights: off by {error:e}");
+    }
+}
+
+#[test]
+fn hand_in_the_picture_counts_little() {
+    for n_lights in [1, 2] {
+        let region = place(n_lights);
+        let mut samples = samples(&region, &truth(n_lights));
+        // One pixel of twenty shows skin.
+        samples
+            .iter_mut()
+            .step_by(20)
+            .for_each(|sample| sample.frame = DVec3::new(0.55, 0.33, 0.24));
+        let fitted = fit_receiver(&region, &samples, &start(n_lights), &without_priors(), 20);
+        let plain = FitConstants {
+            cauchy_scale: 1e6,
+            ..without_priors()
+        };
+        let fooled = fit_receiver(&region, &samples, &start(n_lights), &plain, 20);
+        let shares = |solution: &Solution| {
+            let of_truth = truth(n_lights).shares;
+            let off = solution
+                .shares
+                .iter()
+                .zip(&of_truth)
+                .map(|(a, b)| (a - b).abs().max_element());
+            off.fold(0.0, f64::max)
+        };
+        // Measured: 2e-4 with one light and 5e-4 with two; 2e-2 without weights.
+        assert!(shares(&fitted) < 2e-3, "{n_lights} lights: {fitted:?}");
+        assert!(
+            shares(&fooled) > 5.0 * shares(&fitted),
+            "weights make no difference: {fooled:?}"
+        );
+    }
+}
+
+#[test]
+fn without_evidence_the_start_stays() {
+    let constants = FitConstants::from_shaders().unwrap();
+    let region = place(2);
+    let mut dark = samples(&region, &truth(2));
+    dark.iter_mut().for_each(|sample| sample.frame = DVec3::ZERO);
+    for samples in [Vec::new(), dark] {
+        assert_eq!(
+            fit_receiver(&region, &samples, &start(2), &constants, 5),
+            start(2)
+        );
+    }
+    assert_eq!(fit_toy(&region, &[], &start(2), &constants, 5), start(2));
+}
+
+#[test]
+fn unseen_shadow_leaves_the_expected_share() {
+    let constants = FitConstants::from_shaders().unwrap();
+    let region = place(2);
+    let mut lit = samples(&region, &truth(2));
+    for sample in &mut lit {
+        (sample.ambient, sample.visibility) = (1.0, DVec4::ONE);
+        sample.frame = sample.plate * 0.9;
+    }
+    let fitted = fit_receiver(&region, &lit, &start(2), &constants, 5);
+    for share in &fitted.shares {
+        // The prior is on gain times share, and expects a gain of 1: the share is off by the gain.
+        let expected = constants.prior_share / 2.0 / 0.9;
+        assert!((share - expected).abs().max_element() < 1e-3, "{fitted:?}");
+    }
+    assert!((fitted.gain - 0.9).abs().max_element() < 1e-3, "{fitted:?}");
+    assert!(fitted.contrast.max_element() < 1e-12, "{fitted:?}");
+}
+
+#[test]
+fn light_on_the_toy_is_recovered() {
+    let region = place(2);
+    let lit = [
+        DVec3::new(0.3, 0.32, 0.4),
+        DVec3::new(0.1, 0.12, 0.15),
+        DVec3::splat(0.5),
+        DVec3::splat(0.2),
+    ];
+    let sample = |seed: u32| {
+        let unit = |dimension| scatter(seed, dimension);
+        let normal = DVec3::new(unit(0) - 0.5, unit(1) - 0.2, unit(2) - 0.5).normalize();
+        let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
+        let columns = toy_columns(&region, normal, DVec3::ZERO);
+        let light: DVec3 = columns.iter().zip(lit).map(|(column, lit)| *column * lit).sum();
+        ToySample {
+            frame: base * light,
+            base,
+            normal,
+        }
+    };
+    let samples: Vec<_> = (0..N_SAMPLES).map(sample).collect();
+    let fitted = fit_toy(&region, &samples, &start(2), &without_priors(), 10);
+    for (fitted, lit) in fitted.toy.iter().zip(lit) {
+        assert!((fitted - lit).abs().max_element() < 1e-6, "{fitted}, not {lit}");
+    }
+}

@@ -1,0 +1,9 @@
+//! The references against closed forms: what geometry and algebra say, not what another program says.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod composite;
+mod fit;
+mod flat;
+mod residual;
+mod visibility;

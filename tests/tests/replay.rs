@@ -1,0 +1,251 @@
+//! The bundled session end to end: through the library into pictures and a report, and through the program into
+//! errors that a person can act on.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use std::process::{self, Command, Output};
+
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::scene::Image;
+use app_core::session::{Capture, GroundTruth, Session};
+use app_core::wgpu;
+use harness::files::Folder;
+use harness::metrics::{Regions, Score, Scores, measure};
+use harness::progress::Quiet;
+use harness::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
+use harness::report::{Report, mean_scores};
+
+const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+/// The bundled session ends with a frame that shows the real toy's own pose.
+const IDENTITY_FRAME: usize = 4;
+
+fn bundled() -> Capture {
+    Capture::open(Folder::open(BUNDLED).unwrap()).unwrap()
+}
+
+fn run(session: &Capture, options: &Options) -> Result<Report, ReplayError> {
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
+    replay(session, Some(session), &mut core, options, &mut Quiet)
+}
+
+#[test]
+fn the_bundled_session_becomes_pictures_and_a_report() {
+    let (session, out) = (bundled(), TemporaryFolder::new("whole"));
+    let options = Options {
+        out: Some(out.to_owned()),
+        ..Options::default()
+    };
+    let report = run(&session, &options).unwrap();
+
+    let mut expected: Vec<String> = (0..session.n_frames()).map(picture_file).collect();
+    expected.push(REPORT_FILE.to_owned());
+    assert_eq!(out.names(), expected);
+    for index in 0..session.n_frames() {
+        let picture = image::open(out.join(picture_file(index))).unwrap().into_rgba8();
+        let frame = session.frame(index).unwrap().image;
+        assert_eq!(picture.dimensions(), (frame.width_px, frame.height_px));
+        let is_camera_frame = picture.as_raw() == &frame.rgba8;
+        assert_eq!(is_camera_frame, index == IDENTITY_FRAME, "frame {index}");
+    }
+
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join(REPORT_FILE)).unwrap()).unwrap();
+    assert_eq!(json["session"], "llama");
+    assert_eq!(json["frames"].as_array().unwrap().len(), session.n_frames());
+    assert_eq!(json["frames"][0]["passes"][0]["path"], "capture");
+    assert_eq!(json["frames"][1]["passes"][0]["path"], "frame");
+    assert_eq!(json["frames"][IDENTITY_FRAME]["scores"]["frame"]["rmse"], 0.0);
+    assert_eq!(
+        json["fit"]["share"].as_array().unwrap().len(),
+        session.scene().lights.len()
+    );
+    let [first, .., last] = [0, 1, 2, 3, 4].map(|index| report.frames[index].scores.unwrap().shadow.rmse);
+    assert!(first > 0.0 && last == 0.0, "{first} {last}");
+}
+
+#[test]
+fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
+    let (session, out) = (bundled(), TemporaryFolder::new("some"));
+    fs::write(out.join(REPORT_FILE), "of an earlier run").unwrap();
+    let options = |frames| Options {
+        frames: Some(frames),
+        out: Some(out.to_owned()),
+        ..Options::default()
+    };
+
+    // Not empty, so that no file can take its place.
+    let obstacle = out.join(picture_file(4));
+    fs::create_dir_all(obstacle.join("full")).unwrap();
+    let error = run(&session, &options(3..5)).unwrap_err().to_string();
+    assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
+    assert_eq!(
+        out.names(),
+        [picture_file(3), picture_file(4)],
+        "what was whole stays, and no remnants"
+    );
+
+    fs::remove_dir_all(&obstacle).unwrap();
+    let report = run(&session, &options(4..5)).unwrap();
+    assert_eq!(
+        report.frames.iter().map(|frame| frame.index).collect::<Vec<_>>(),
+        [4]
+    );
+    assert_eq!(
+        out.names(),
+        [picture_file(3), picture_file(4), REPORT_FILE.to_owned()]
+    );
+}
+
+#[test]
+fn the_folder_of_a_session_is_never_written_to() {
+    let (session, out) = (bundled(), TemporaryFolder::new("session"));
+    fs::copy(Path::new(BUNDLED).join("capture.json"), out.join("capture.json")).unwrap();
+    let error = run(
+        &session,
+        &Options {
+            out: Some(out.to_owned()),
+            ..Options::default()
+        },
+    )
+    .unwrap_err();
+    assert!(matches!(error, ReplayError::OutIsSession { .. }), "{error}");
+    assert_eq!(out.names(), ["capture.json"]);
+}
+
+/// Mean RMSE and SSIM over shadow, toy, edge and frame of the bundled session, for pictures that do not depend on this
+/// project's pipeline. Recorded with a scorer in Python that shares no code with ours: scikit-image 0.26,
+/// `structural_similarity` (Gaussian weights, sigma 1.5, biased covariance, data range 255) and `dilation` and
+/// `erosion` by squares.
+const RECORDED_FOR_INPUT: [[f64; 2]; 4] = [
+    [18.8630, 0.84161],
+    [27.6232, 0.67717],
+    [18.5666, 0.67802],
+    [9.8155, 0.95588],
+];
+const RECORDED_FOR_PLATE: [[f64; 2]; 4] = [
+    [34.5451, 0.81998],
+    [55.5540, 0.37039],
+    [31.0878, 0.28529],
+    [18.4957, 0.92791],
+];
+
+#[test]
+fn scores_agree_with_an_independent_scorer() {
+    let session = bundled();
+    let plate = &session.scene().plates[0].image;
+    check_recorded(
+        &mean_over_truths(&session, |_| plate.as_ref().clone()),
+        &RECORDED_FOR_PLATE,
+    );
+    let input = |index| session.frame(index).unwrap().image.as_ref().clone();
+    check_recorded(&mean_over_truths(&session, input), &RECORDED_FOR_INPUT);
+}
+
+fn mean_over_truths(session: &Capture, picture: impl Fn(usize) -> Image) -> Scores {
+    let score = |index| {
+        let truth = session.truth(index).unwrap().unwrap();
+        measure(&picture(index), &truth.image, &Regions::from_mask(&truth.mask)).unwrap()
+    };
+    mean_scores(&(0..session.n_frames()).map(score).collect::<Vec<_>>()).unwrap()
+}
+
+fn check_recorded(actual: &Scores, recorded: &[[f64; 2]; 4]) {
+    let actual: [Score; 4] = [actual.shadow, actual.toy, actual.edge, actual.frame];
+    for (actual, [rmse, ssim]) in actual.iter().zip(recorded) {
+        // The last digit recorded.
+        assert!(
+            (actual.rmse - rmse).abs() < 1e-4 && (actual.ssim - ssim).abs() < 1e-5,
+            "{actual:?} {rmse} {ssim}"
+        );
+    }
+}
+
+#[test]
+fn the_program_says_what_is_wrong() {
+    let out = TemporaryFolder::new("program");
+    let out_arg = out.to_str().unwrap();
+    let missing = out.join("missing");
+    let missing_arg = missing.to_str().unwrap();
+    let cases: [(&[&str], i32, &str); 7] = [
+        (
+            &["--preset", "dazzling"],
+            2,
+            "preset \"dazzling\" is not built; there is balanced",
+        ),
+        (&["--frames", "3..3"], 2, "3..3"),
+        (&["--frames", "3-4"], 2, "3-4"),
+        (
+            &["--frames", "3..6"],
+            1,
+            "frames 3..6 are asked for, but the session has 5",
+        ),
+        (&["--adapter", "abacus"], 1, "\"abacus\""),
+        (&[missing_arg], 1, missing_arg),
+        (&[out_arg], 1, "capture.json"),
+    ];
+    for (args, code, cause) in cases {
+        let output = program(&[args, &["--out", out_arg]].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {stderr}");
+        let mut lines = stderr.lines().filter(|line| line.starts_with("error: "));
+        let error = lines.next_back().unwrap_or_default();
+        assert!(error.contains(cause), "{args:?}: {stderr}");
+        assert!(!stderr.contains("panicked"), "{args:?}: {stderr}");
+        assert_eq!(out.names(), [""; 0], "{args:?}");
+    }
+}
+
+#[test]
+fn the_program_replays_quietly() {
+    let out = TemporaryFolder::new("quiet");
+    let output = program(&["--quiet", "--frames", "4..5", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
+    assert_eq!(out.names(), [picture_file(4), REPORT_FILE.to_owned()]);
+}
+
+fn program(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_replay"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+/// An empty folder that goes with its test.
+struct TemporaryFolder(PathBuf);
+
+impl TemporaryFolder {
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("replay-{name}-{}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// What lies in it, in order.
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Deref for TemporaryFolder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        // A remnant in the target folder does no harm.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,244 @@
+//! Rules of the source tree that no compiler checks.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use app_core::gpu::shaders::ALL;
+use app_core::plan::{Plan, PublishedPlan, SceneFacts};
+use app_core::preset::{Method, Preset};
+use app_core::region::PixelRect;
+use glam::UVec2;
+
+/// Passes whose code is in the module of another: the pass, and that module.
+const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit")];
+/// Modules among the passes that are none.
+const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
+/// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
+const BANNED_IN_CORE: &[&str] = &["std::time", "std::fs", "std::net", "target_os", "target_vendor"];
+const MAX_RUST_LINES: usize = 500;
+const MAX_WGSL_LINES: usize = 300;
+
+struct Source {
+    /// Relative to the project's root.
+    path: PathBuf,
+    text: String,
+}
+
+impl Source {
+    fn stem(&self) -> &str {
+        self.path.file_stem().unwrap().to_str().unwrap()
+    }
+
+    fn n_lines(&self) -> usize {
+        self.text.lines().count()
+    }
+}
+
+/// All files in `folder` of the project, and in the folders in it, whose names end in `extension`.
+fn sources(folder: &str, extension: &str) -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut folders = vec![root.join(folder)];
+    let mut sources = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == extension) {
+                let text = fs::read_to_string(&path).unwrap();
+                sources.push(Source {
+                    path: path.strip_prefix(root).unwrap().to_owned(),
+                    text,
+                });
+            }
+        }
+    }
+    assert!(!sources.is_empty(), "{folder} has no .{extension}");
+    sources
+}
+
+fn rust_sources() -> Vec<Source> {
+    let folders = [
+        "app-core/src",
+        "app-ios/src",
+        "app-android/src",
+        "tests/src",
+        "tests/tests",
+        "xtask/src",
+    ];
+    folders
+        .into_iter()
+        .flat_map(|folder| sources(folder, "rs"))
+        .collect()
+}
+
+/// Fails with all that is wrong.
+fn assert_none(wrong: impl IntoIterator<Item = String>) {
+    let wrong: Vec<String> = wrong.into_iter().collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn wrong_files(sources: Vec<Source>, rule: &str, is_wrong: impl Fn(&Source) -> bool) -> Vec<String> {
+    let wrong = sources.into_iter().filter(|source| is_wrong(source));
+    wrong
+        .map(|source| format!("{}: {rule}", source.path.display()))
+        .collect()
+}
+
+/// The shaders that are passes, not the parts that several share.
+fn pass_files() -> Vec<Source> {
+    sources("shaders", "wgsl")
+        .into_iter()
+        .filter(|file| !file.path.starts_with("shaders/common"))
+        .collect()
+}
+
+fn planned_passes() -> Vec<&'static str> {
+    let region = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: UVec2::splat(100),
+    };
+    let facts = SceneFacts {
+        region,
+        penumbra_px: vec![10.0; 4],
+    };
+    let passes = |preset: &Preset| match preset.method() {
+        Method::Model(settings) => Plan::new(&facts, &settings).passes,
+        Method::Published(settings) => PublishedPlan::new(&facts, &settings).passes,
+        other => panic!("{other:?} has no plan here"),
+    };
+    Preset::ALL
+        .iter()
+        .flat_map(passes)
+        .map(|pass| pass.name)
+        .collect()
+}
+
+#[test]
+fn a_pass_has_one_name_everywhere() {
+    let files = pass_files();
+    let mut stems: Vec<&str> = files.iter().map(Source::stem).collect();
+    let mut names: Vec<&str> = ALL.iter().map(|shader| shader.name).collect();
+    stems.sort_unstable();
+    names.sort_unstable();
+    assert_eq!(stems, names, "files in shaders/ and the registry");
+
+    let mut planned = planned_passes();
+    planned.sort_unstable();
+    planned.dedup();
+    assert_eq!(planned, names, "the plans' passes and the registry");
+
+    let module_of = |name: &str| {
+        SECOND_STEPS
+            .iter()
+            .find(|(pass, _)| *pass == name)
+            .map(|(_, module)| *module)
+    };
+    let mut expected: Vec<&str> = names.iter().map(|name| module_of(name).unwrap_or(name)).collect();
+    expected.extend(NO_PASSES);
+    expected.sort_unstable();
+    expected.dedup();
+    let modules = sources("app-core/src/passes", "rs");
+    let mut modules: Vec<&str> = modules.iter().map(Source::stem).collect();
+    modules.sort_unstable();
+    assert_eq!(
+        modules, expected,
+        "modules in app-core/src/passes and the registry"
+    );
+}
+
+#[test]
+fn every_shader_file_is_joined_into_a_shader_and_its_own_under_its_name() {
+    assert_none(wrong_files(
+        sources("shaders", "wgsl"),
+        "is in no shader of the registry",
+        |file| !ALL.iter().any(|shader| shader.source().contains(&file.text)),
+    ));
+    assert_none(wrong_files(
+        pass_files(),
+        "is not in the shader of its name",
+        |file| {
+            ALL.iter()
+                .any(|shader| shader.name == file.stem() && !shader.source().contains(&file.text))
+        },
+    ));
+}
+
+#[test]
+fn shaders_say_what_they_are_and_what_they_read_and_write() {
+    let header = |file: &Source| -> String {
+        file.text
+            .lines()
+            .map_while(|line| line.strip_prefix("//"))
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    assert_none(wrong_files(
+        sources("shaders", "wgsl"),
+        "does not begin with what it is",
+        |file| header(file).trim().is_empty(),
+    ));
+    assert_none(wrong_files(
+        pass_files(),
+        "header without Reads: and Writes:",
+        |file| {
+            let header = header(file).to_lowercase();
+            let has_both = header.contains("reads:") && header.contains("writes:");
+            !has_both && !header.contains("reads and writes:")
+        },
+    ));
+}
+
+#[test]
+fn every_twin_that_a_shader_names_exists() {
+    let twins = |file: &Source| -> Vec<String> {
+        let lines = file
+            .text
+            .lines()
+            .filter_map(|line| line.strip_prefix("// Twin: "));
+        lines
+            .map(|line| line.split(". ").next().unwrap().trim_end_matches('.').to_owned())
+            .collect()
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    assert_none(wrong_files(
+        pass_files(),
+        "names a twin that is not there",
+        |file| twins(file).iter().any(|twin| !folder.join(twin).is_file()),
+    ));
+}
+
+#[test]
+fn every_module_begins_with_what_it_is() {
+    assert_none(wrong_files(rust_sources(), "does not begin with //!", |file| {
+        !file.text.starts_with("//! ")
+    }));
+}
+
+#[test]
+fn files_are_short() {
+    assert_none(wrong_files(rust_sources(), "is too long", |file| {
+        file.n_lines() > MAX_RUST_LINES
+    }));
+    assert_none(wrong_files(sources("shaders", "wgsl"), "is too long", |file| {
+        file.n_lines() > MAX_WGSL_LINES
+    }));
+}
+
+#[test]
+fn the_core_has_no_clock_no_files_no_platform_and_no_unsafe_code() {
+    for banned in BANNED_IN_CORE {
+        let rule = format!("has \"{banned}\"");
+        assert_none(wrong_files(sources("app-core/src", "rs"), &rule, |file| {
+            file.text.contains(banned)
+        }));
+    }
+    let root = wrong_files(
+        sources("app-core/src", "rs"),
+        "does not forbid unsafe code",
+        |file| file.path.ends_with("src/lib.rs") && !file.text.contains("#![forbid(unsafe_code)]"),
+    );
+    assert_none(root);
+}

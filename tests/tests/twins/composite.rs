@@ -1,0 +1,85 @@
+//! `composite` where it shows the receiver, in codes of the finished picture.
+
+use glam::{DVec2, UVec2};
+use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
+use harness::reference::model::centre_px;
+use harness::reference::raster::Raster;
+
+use crate::errors::Errors;
+use crate::photo::unrounded_code;
+use crate::run::{Run, runs};
+
+/// Whether the shown toy is, or may by rounding be, on any of a pixel's samples.
+fn shows_toy(run: &Run) -> Raster<bool> {
+    let occluder = run.stand.occluder(&run.stand.shown);
+    Raster::from_fn(run.region.size_px, |texel| {
+        let around = [-0.5, 0.0, 0.5].map(|dy| [-0.5, 0.0, 0.5].map(|dx| DVec2::new(dx, dy)));
+        around.as_flattened().iter().any(|offset| {
+            let at = centre_px(run.plan.region.origin_px + texel) + *offset;
+            let (origin, direction) = run.stand.camera_ray(at);
+            occluder.nearest(origin, direction).is_some()
+        })
+    })
+}
+
+#[test]
+fn receiver_in_codes() {
+    let constants = CompositeConstants::from_shader().unwrap();
+    for run in runs() {
+        let shown = Shown {
+            visibility: run.shown_visibility.clone(),
+            ambient: run.shown_ambient.clone(),
+            solution: run.solution.clone(),
+            residual: run.residual.map(|texel| texel.truncate()),
+            cell_px: run.plan.grid.cell_px,
+        };
+        let hidden = shows_toy(run);
+        let texels = Raster::from_fn(run.region.size_px, |texel| texel);
+        let pairs = texels
+            .texels()
+            .iter()
+            .filter(|texel| !hidden.at(**texel))
+            .flat_map(|texel| {
+                let expected = receiver_color(&run.region, &run.pictures, &shown, &constants, *texel);
+                let actual = run.picture.at(*texel);
+                assert_eq!(actual[3], 255, "alpha at {texel}");
+                (0..3).map(move |channel| (f64::from(actual[channel]), unrounded_code(expected[channel])))
+            });
+        // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
+        // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a
+        // graphics card are 1/512 of the difference between two texels.
+        Errors::between(pairs).check(&format!("{}, codes", run.stand.setup.name), (0.5, 0.1), 0.7);
+    }
+}
+
+/// Twins of setups that never meet a branch say nothing about it.
+#[test]
+fn setups_meet_every_branch() {
+    type Condition = fn(&Run, UVec2) -> bool;
+    let conditions: [(&str, Condition); 3] = [
+        ("beside the receiver", |run, texel| {
+            run.region.receiver_point(centre_px(texel)).is_none()
+        }),
+        ("away from every border", |run, texel| {
+            inside_border(&run.region, texel) == 1.0
+        }),
+        ("seen at an inner border", |run, texel| {
+            inside_border(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
+        }),
+    ];
+    for (what, is_met) in conditions {
+        let is_met_somewhere = runs().iter().any(|run| {
+            let hidden = shows_toy(run);
+            let texels = Raster::from_fn(run.region.size_px, |texel| texel);
+            texels
+                .texels()
+                .iter()
+                .any(|texel| !hidden.at(*texel) && is_met(run, *texel))
+        });
+        assert!(is_met_somewhere, "no pixel is {what}");
+    }
+    assert!(
+        runs().iter().any(|run| run.plan.grid.cell_px > 1),
+        "every cell is a pixel"
+    );
+}

@@ -1,0 +1,56 @@
+//! `fill` on grids of any size and any certainty, without the passes before it.
+
+use glam::{DVec3, UVec2};
+use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::raster::Raster;
+use harness::reference::residual::Cell;
+
+use crate::device::Device;
+use crate::errors::Errors;
+
+/// A cell of a patchwork: known, half known, and holes of all sizes.
+fn patchwork(at: UVec2) -> Cell {
+    let wave = |k: u32| (0.37 * f64::from(at.x * k) + 0.61 * f64::from(at.y + k)).sin();
+    let certainty = (1.5 * wave(1) * wave(2)).clamp(0.0, 1.0);
+    Cell {
+        residual: 0.1 * DVec3::new(wave(3), wave(4), wave(5)),
+        certainty,
+    }
+}
+
+#[test]
+fn pull_push() {
+    let device = Device::open();
+    let n_levels = n_levels_of_shader().unwrap();
+    for size in [
+        UVec2::new(1, 1),
+        UVec2::new(1, 64),
+        UVec2::new(61, 37),
+        UVec2::new(64, 64),
+        UVec2::new(5, 3),
+    ] {
+        for cell in [patchwork, |_| Cell::default()] {
+            let cells = Raster::from_fn(size, cell);
+            let premultiplied: Vec<[f32; 4]> = cells
+                .texels()
+                .iter()
+                .map(|cell| {
+                    (cell.residual * cell.certainty)
+                        .extend(cell.certainty)
+                        .as_vec4()
+                        .to_array()
+                })
+                .collect();
+            let actual = device.fill(size, &premultiplied);
+            let expected = fill(&cells, n_levels);
+            let pairs = actual
+                .iter()
+                .zip(expected.texels())
+                .flat_map(|(actual, expected)| {
+                    (0..3).map(|channel| (f64::from(actual[channel]), expected[channel]))
+                });
+            // Some ten roundings of 32 bits of values up to 0.1.
+            Errors::between(pairs).check_all(&format!("fill of {size}"), 1e-7);
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! `fit` with `fit_solve`: sums of 32 bits over workgroups against sums of 64.
+
+use glam::{DVec3, UVec2};
+use harness::reference::fit::{
+    FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_columns,
+};
+use harness::reference::model::{Solution, centre_px};
+use harness::reference::raster::Raster;
+
+use crate::errors::Errors;
+use crate::photo::truth;
+use crate::run::{Run, runs};
+
+/// What the core starts from.
+fn start(n_lights: usize) -> Solution {
+    let constants = FitConstants::from_shaders().unwrap();
+    let share = constants.prior_share / f64::from(u32::try_from(n_lights).unwrap());
+    Solution {
+        gain: DVec3::ONE,
+        bounce: DVec3::splat(constants.prior_bounce),
+        shares: vec![DVec3::splat(share); n_lights],
+        toy: vec![DVec3::ZERO; 2 + n_lights],
+        contrast: DVec3::ZERO,
+    }
+}
+
+fn receiver_values(solution: &Solution) -> impl Iterator<Item = f64> + '_ {
+    let colors = [solution.gain, solution.bounce, solution.contrast].into_iter();
+    colors
+        .chain(solution.shares.iter().copied())
+        .flat_map(|color| color.to_array())
+}
+
+#[test]
+fn receiver() {
+    let constants = FitConstants::from_shaders().unwrap();
+    for run in runs() {
+        let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
+        let start = start(run.region.lights.len());
+        let expected = fit_receiver(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+        let errors = Errors::between(receiver_values(&run.solution).zip(receiver_values(&expected)));
+        // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and 8
+        // bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits: 4e-6.
+        errors.check_all(&format!("{}, receiver", run.stand.setup.name), 1e-3);
+    }
+}
+
+/// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.
+#[test]
+fn receiver_finds_the_light_that_was_there() {
+    for run in runs() {
+        let truth = truth(run.region.lights.len());
+        let pairs = |colors: [DVec3; 2]| (0..3).map(move |channel| (colors[0][channel], colors[1][channel]));
+        // Codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map, and the faint light that no list
+        // names. Measured: 8e-3 and 8e-4.
+        let shares = run
+            .solution
+            .shares
+            .iter()
+            .zip(&truth.shares)
+            .flat_map(|(a, b)| pairs([*a, *b]));
+        Errors::between(shares).check_all(&format!("{}, true shares", run.stand.setup.name), 0.02);
+        Errors::between(pairs([run.solution.gain, truth.gain])).check_all("true gain", 0.01);
+    }
+}
+
+/// Pixels that the device took for one surface of the toy, with normals from rays.
+fn toy_samples(run: &Run) -> Vec<ToySample> {
+    let (stand, stride_px) = (&run.stand, run.plan.fit_stride_px);
+    let occluder = stand.occluder(&stand.physical);
+    let taken = Raster::from_fn(run.region.size_px / stride_px, |texel| texel * stride_px);
+    let sample = |texel: &UVec2| {
+        let (origin, direction) = stand.camera_ray(centre_px(run.plan.region.origin_px + *texel));
+        let hit = occluder
+            .nearest(origin, direction)
+            .filter(|_| run.evidence.at(*texel).y > 0.0)?;
+        Some(ToySample {
+            frame: run.pictures.frame.at(*texel),
+            base: run.object_base.at(*texel),
+            normal: stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3(),
+        })
+    };
+    taken.texels().iter().filter_map(sample).collect()
+}
+
+#[test]
+fn toy() {
+    let constants = FitConstants::from_shaders().unwrap();
+    for run in runs() {
+        let samples = toy_samples(run);
+        assert!(samples.len() > 80, "the toy is too small");
+        let start = start(run.region.lights.len());
+        let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+        // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
+        let light = |solution: &Solution, normal: DVec3| -> DVec3 {
+            let columns = toy_columns(&run.region, normal, DVec3::ZERO);
+            columns
+                .iter()
+                .zip(&solution.toy)
+                .map(|(column, toy)| *column * *toy)
+                .sum()
+        };
+        let pairs = samples.iter().flat_map(|sample| {
+            let (actual, expected) = (
+                light(&run.solution, sample.normal),
+                light(&expected, sample.normal),
+            );
+            (0..3).map(move |channel| (actual[channel], expected[channel]))
+        });
+        // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.
+        Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), 1e-3);
+    }
+}

@@ -1,0 +1,16 @@
+//! The device against the references, each stage fed with the device's own inputs of that stage, so that errors do not
+//! add up. Small synthetic scenes of odd sizes, whose truth is known.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod composite;
+mod device;
+mod errors;
+mod fill;
+mod fit;
+mod occlusion;
+mod photo;
+mod place;
+mod residual;
+mod run;
+mod toy;

@@ -1,0 +1,119 @@
+//! Plate and frame of a stand, made from the model itself: the fit has an answer that is known.
+
+use std::sync::Arc;
+
+use app_core::scene::Image;
+use glam::{DVec2, DVec3, DVec4, UVec2};
+use harness::reference::fit::toy_columns;
+use harness::reference::model::{Region, Solution, centre_px};
+use harness::reference::raster::Raster;
+use harness::reference::visibility::visibility_map;
+
+use crate::place::{Stand, ambient_points};
+use crate::toy;
+
+const N_POINTS: usize = 64;
+
+/// What the pictures are made with.
+pub(crate) fn truth(n_lights: usize) -> Solution {
+    let shares = [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)];
+    let light = [DVec3::new(0.55, 0.5, 0.48), DVec3::new(0.35, 0.36, 0.4)];
+    Solution {
+        gain: DVec3::new(1.04, 1.0, 0.96),
+        bounce: DVec3::new(0.25, 0.15, 0.08),
+        shares: shares[..n_lights].to_vec(),
+        toy: [DVec3::splat(0.4), DVec3::splat(0.15)]
+            .into_iter()
+            .chain(light)
+            .take(2 + n_lights)
+            .collect(),
+        contrast: DVec3::ZERO,
+    }
+}
+
+/// The plate and the frame.
+pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
+    let region = stand.region(&stand.whole_image());
+    let size = region.size_px;
+    let solution = truth(region.lights.len());
+    let occluder = stand.occluder(&stand.physical);
+    let map = |points: &[DVec4]| visibility_map(&occluder, &region, size, points);
+    let lights: Vec<Raster<f64>> = (0..region.lights.len())
+        .map(|i| map(&stand.light_points(i, N_POINTS)))
+        .collect();
+    let ambient = map(&ambient_points(N_POINTS));
+    let plate_at = |in_plane: DVec2| albedo(in_plane) * solution.plate_falloff(&region, in_plane);
+    let in_plane = |texel| region.plane_point(centre_px(texel)).unwrap_or(DVec2::ZERO);
+    let plate = Raster::from_fn(size, |texel| plate_at(in_plane(texel)));
+    let frame = Raster::from_fn(size, |texel| {
+        if let Some(color) = toy_color(stand, &region, &solution, texel) {
+            return color;
+        }
+        let at = in_plane(texel);
+        let mut visibility = DVec4::ZERO;
+        lights
+            .iter()
+            .enumerate()
+            .for_each(|(i, light)| visibility[i] = light.at(texel));
+        let model = solution.receiver_model(&region, at, ambient.at(texel), visibility);
+        plate_at(at) * (model + unmodelled(at))
+    });
+    [plate, frame].map(|picture| Arc::new(image(&picture)))
+}
+
+/// Wood, more or less: grain, knots and a speckle.
+fn albedo(at: DVec2) -> DVec3 {
+    let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
+    let speckle = (9000.0 * at.x).sin() * (8000.0 * at.y).sin();
+    DVec3::new(0.55, 0.42, 0.3) * (1.0 + 0.22 * grain + 0.08 * speckle)
+}
+
+/// A faint light that no list names.
+fn unmodelled(at: DVec2) -> DVec3 {
+    0.012 * (-(at - DVec2::new(0.08, 0.03)).length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
+}
+
+fn toy_color(stand: &Stand, region: &Region, solution: &Solution, texel: UVec2) -> Option<DVec3> {
+    let (origin, direction) = stand.camera_ray(centre_px(texel));
+    let hit = stand.occluder(&stand.physical).nearest(origin, direction)?;
+    let normal = stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
+    let columns = toy_columns(region, normal, origin + hit.distance * direction);
+    let light: DVec3 = columns
+        .iter()
+        .zip(&solution.toy)
+        .map(|(column, light)| *column * *light)
+        .sum();
+    Some(toy::base_color(hit.triangle) * light)
+}
+
+fn image(linear: &Raster<DVec3>) -> Image {
+    let code = |color: DVec3| [code(color.x), code(color.y), code(color.z), 255];
+    let rgba8 = linear.texels().iter().flat_map(|color| code(*color)).collect();
+    Image {
+        width_px: linear.size().x,
+        height_px: linear.size().y,
+        rgba8,
+    }
+}
+
+/// The 8-bit code of a linear value.
+pub(crate) fn code(linear: f64) -> u8 {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 255"
+    )]
+    let code = unrounded_code(linear).round() as u8;
+    code
+}
+
+/// The same, before it is rounded. Source: IEC 61966-2-1.
+pub(crate) fn unrounded_code(linear: f64) -> f64 {
+    let linear = linear.clamp(0.0, 1.0);
+    255.0
+        * if linear <= 0.003_130_8 {
+            12.92 * linear
+        } else {
+            1.055 * linear.powf(1.0 / 2.4) - 0.055
+        }
+}

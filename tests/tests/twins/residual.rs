@@ -1,0 +1,39 @@
+//! `residual` with `fill`, from the light that the device fitted.
+
+use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::residual::{ResidualConstants, pool};
+
+use crate::errors::Errors;
+use crate::run::runs;
+
+#[test]
+fn pooled_and_filled() {
+    let constants = ResidualConstants::from_shader().unwrap();
+    for run in runs() {
+        let cells = pool(
+            &run.region,
+            &run.pictures,
+            &run.solution,
+            &constants,
+            run.plan.grid.cell_px,
+        );
+        assert_eq!(cells.size(), run.residual.size());
+        let n_hidden = cells.texels().iter().filter(|cell| cell.certainty == 0.0).count();
+        assert!(n_hidden > 0, "the toy hides no cell");
+        let expected = fill(&cells, n_levels_of_shader().unwrap());
+        let pairs = run
+            .residual
+            .texels()
+            .iter()
+            .zip(expected.texels())
+            .flat_map(|(actual, expected)| (0..3).map(|channel| (actual[channel], expected[channel])));
+        let largest = expected
+            .texels()
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs().max_element()));
+        assert!(largest > 0.005, "there is no residual: {largest}");
+        // A graphics card's bilinear filter has weights of 8 bits, 1/512 of the difference of two texels of the ambient
+        // map, which is 0.3 at a contact. Measured in software, which filters in 32 bits: 2e-7.
+        Errors::between(pairs).check_all(&format!("{}, residual", run.stand.setup.name), 5e-4);
+    }
+}

@@ -1,0 +1,161 @@
+//! The core on each setup, once for all tests, and everything that it made.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
+use app_core::gpu::AdapterChoice;
+use app_core::gpu::layout::Fit;
+use app_core::maps::{FloatMap, Map};
+use app_core::plan::Plan;
+use app_core::preset::Preset;
+use app_core::scene::{Image, Plate, Scene};
+use app_core::wgpu;
+use glam::{DVec3, DVec4, UVec2, Vec4};
+use harness::reference::model::{Pictures, Region, Solution};
+use harness::reference::raster::Raster;
+
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::photo::{code, photograph, unrounded_code};
+use crate::place::{SETUPS, Stand};
+
+/// What the device made of a setup.
+pub(crate) struct Run {
+    pub(crate) stand: Stand,
+    pub(crate) plan: Plan,
+    pub(crate) region: Region,
+    /// What the passes saw, as they saw it.
+    pub(crate) pictures: Pictures,
+    /// r where the frame shows the receiver, g where it shows the toy.
+    pub(crate) evidence: Raster<DVec4>,
+    pub(crate) object_base: Raster<DVec3>,
+    pub(crate) shown_visibility: Raster<DVec4>,
+    pub(crate) shown_ambient: Raster<f64>,
+    pub(crate) solution: Solution,
+    /// Filled residuals, and their certainty.
+    pub(crate) residual: Raster<DVec4>,
+    /// Codes of the finished picture, within the region.
+    pub(crate) picture: Raster<[u8; 4]>,
+}
+
+static RUNS: LazyLock<Result<Vec<Run>, String>> = LazyLock::new(|| {
+    let decoded = Device::open().decoded();
+    let run = |setup| Run::new(Stand::new(setup), &decoded).map_err(|error| error.to_string());
+    SETUPS.into_iter().map(run).collect()
+});
+
+/// A run for each setup.
+///
+/// # Panics
+/// Where there is no adapter, with what the core says.
+pub(crate) fn runs() -> &'static [Run] {
+    match &*RUNS {
+        Ok(runs) => runs,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+impl Run {
+    fn new(stand: Stand, decoded: &[f64]) -> Result<Self, CoreError> {
+        let instance = wgpu::Instance::default();
+        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+        let [plate, frame] = photograph(&stand);
+        core.set_scene(scene(&stand, &plate), Preset::Balanced)?;
+        let report = core.frame(&FrameInput {
+            image: Arc::clone(&frame),
+            world_from_camera: stand.world_from_camera,
+            shown_pose: stand.shown_pose,
+        })?;
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        let plan = core.plan().expect("the toy moves").clone();
+        let (origin, size) = (plan.region.origin_px, plan.region.size_px);
+        let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the toy moves")));
+        let visible = |map: Raster<DVec4>| map.map(|texel| texel.x);
+        let seen_by_shader = |code: u8| decoded[usize::from(code)];
+        let crop = |image: &Image| {
+            let [r, g, b] = [0, 1, 2].map(|channel| {
+                Raster::from_fn(size, |texel| {
+                    seen_by_shader(texel_of(image, origin + texel)[channel])
+                })
+            });
+            Raster::from_fn(size, |texel| DVec3::new(r.at(texel), g.at(texel), b.at(texel)))
+        };
+        let evidence = map(Map::Evidence)?;
+        let base = map(Map::ObjectBase)?;
+        let fit = core.read_fit()?.expect("the toy moves");
+        let picture = core.read_picture()?;
+        Ok(Self {
+            region: stand.region(&plan.region),
+            pictures: Pictures {
+                frame: crop(&frame),
+                plate: crop(&plate),
+                seen: evidence.map(|texel| texel.x),
+                visibility: map(Map::PhysicalVisibility)?,
+                ambient: visible(map(Map::PhysicalAmbient)?),
+            },
+            evidence,
+            // The map is decoded by the standard, the shader by the driver.
+            object_base: base.map(|texel| {
+                DVec3::from([texel.x, texel.y, texel.z].map(|linear| seen_by_shader(code(linear))))
+            }),
+            shown_visibility: map(Map::Visibility)?,
+            shown_ambient: visible(map(Map::Ambient)?),
+            solution: solution(&fit, stand.setup.lights.len()),
+            residual: map(Map::Residual)?,
+            picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
+            stand,
+            plan,
+        })
+    }
+}
+
+fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
+    Scene {
+        name: stand.setup.name.to_owned(),
+        width_px: stand.setup.image_px.x,
+        height_px: stand.setup.image_px.y,
+        intrinsics: stand.intrinsics,
+        toy: Arc::clone(&stand.toy),
+        world_from_object: stand.world_from_object,
+        physical_pose: stand.physical_pose,
+        receivers: vec![stand.receiver.clone()],
+        lights: stand.setup.lights.to_vec(),
+        plates: vec![Plate {
+            world_from_camera: stand.world_from_camera,
+            image: Arc::clone(plate),
+        }],
+        probe: None,
+    }
+}
+
+fn raster(map: &FloatMap) -> Raster<DVec4> {
+    let texel = |at: UVec2| Vec4::from(map.texels[(at.y * map.width + at.x) as usize]).as_dvec4();
+    Raster::from_fn(UVec2::new(map.width, map.height), texel)
+}
+
+fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {
+    let first = 4 * (at.y * image.width_px + at.x) as usize;
+    [0, 1, 2, 3].map(|channel| image.rgba8[first + channel])
+}
+
+fn solution(fit: &Fit, n_lights: usize) -> Solution {
+    let color = |value: &[f32; 4]| Vec4::from(*value).truncate().as_dvec3();
+    Solution {
+        gain: color(&fit.gain),
+        bounce: color(&fit.bounce),
+        shares: fit.share[..n_lights].iter().map(color).collect(),
+        toy: fit.toy[..2 + n_lights].iter().map(color).collect(),
+        contrast: color(&fit.contrast),
+    }
+}
+
+/// Not a twin, but what the input of every stage is worth: how far the driver's decoding is from the standard's.
+#[test]
+fn driver_decodes_srgb_within_half_a_code() {
+    let pairs = (0..=255u8)
+        .zip(Device::open().decoded())
+        .map(|(code, linear)| (unrounded_code(linear), f64::from(code)));
+    // A software driver's polynomial measures as 0.34 of a code at worst.
+    Errors::between(pairs).check_all("codes of decoded codes", 0.5);
+}

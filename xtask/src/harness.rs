@@ -1,0 +1,59 @@
+//! The programs of the harness, and the demo on top of them.
+
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+
+use crate::command::line;
+use crate::toolchain::Toolchain;
+use crate::vulkan;
+
+/// Replays the bundled session and names what to look at.
+pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
+    let out = toolchain.root.join("target/demo");
+    let code = run(
+        toolchain,
+        "replay",
+        &["--out".into(), out.clone().into_os_string()],
+    )?;
+    if code == ExitCode::SUCCESS {
+        let page = out.join("index.html");
+        let first = if page.exists() {
+            page
+        } else {
+            out.join("frame_0000.png")
+        };
+        println!("To see it, open {}", from_here(&first).display());
+    }
+    Ok(code)
+}
+
+/// Runs a program of the harness with `args` and hands on its exit code.
+pub(crate) fn run(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
+    let asks_only = args.iter().any(|arg| arg == "--help" || arg == "-h");
+    if !asks_only {
+        vulkan::ensure()?;
+    }
+    let mut cargo = toolchain.cargo("run");
+    cargo.args(["--package", "tests", "--bin", program]);
+    // A first build takes minutes, which must not look like a standstill.
+    if asks_only || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
+        cargo.arg("--quiet");
+    }
+    let status = cargo
+        .arg("--")
+        .args(args)
+        .status()
+        .with_context(|| line(&cargo))?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// A path as seen from where the command was called.
+fn from_here(path: &Path) -> &Path {
+    let here = env::current_dir().ok();
+    here.and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path)
+}

@@ -1,0 +1,102 @@
+//! The one toolchain of the project: fetched where it is missing, used for every command.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::command;
+
+/// Parts of the toolchain that commands need besides the compiler.
+const COMPONENTS: [&str; 2] = ["clippy", "rustfmt"];
+
+/// The pinned toolchain, or the one at hand.
+pub(crate) struct Toolchain {
+    /// Top of the repository.
+    pub(crate) root: PathBuf,
+    /// The pinned version; none without rustup, which alone can switch.
+    version: Option<String>,
+}
+
+impl Toolchain {
+    /// Fetches the pinned toolchain where it is missing.
+    pub(crate) fn pinned() -> Result<Self> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .parent()
+            .context("xtask lies in no folder")?
+            .to_owned();
+        let version = pinned_version(&root.join("Cargo.toml"))?;
+        if command::find("rustup").is_none() {
+            let cargo =
+                command::output("cargo", &["--version"]).context("neither rustup nor cargo runs here")?;
+            eprintln!(
+                "no rustup here: going on with {}; the project's own is {version}",
+                cargo.trim()
+            );
+            return Ok(Self { root, version: None });
+        }
+        let list = ["component", "list", "--installed", "--toolchain", &version];
+        let installed = command::output("rustup", &list).unwrap_or_default();
+        if !COMPONENTS.iter().all(|component| lists(&installed, component)) {
+            let mut install = Command::new("rustup");
+            install.args(["toolchain", "install", &version, "--profile", "minimal"]);
+            install.args(COMPONENTS.iter().flat_map(|component| ["--component", component]));
+            command::run(&mut install)?;
+        }
+        Ok(Self {
+            root,
+            version: Some(version),
+        })
+    }
+
+    /// Fetches the standard library for `target` where it is missing.
+    pub(crate) fn ensure_target(&self, target: &str) -> Result<()> {
+        let Some(version) = &self.version else {
+            return Ok(());
+        };
+        let list = ["target", "list", "--installed", "--toolchain", version];
+        if lists(&command::output("rustup", &list).unwrap_or_default(), target) {
+            return Ok(());
+        }
+        command::run(Command::new("rustup").args(["target", "add", "--toolchain", version, target]))
+    }
+
+    /// `cargo SUBCOMMAND` for this workspace, wherever the caller stands.
+    pub(crate) fn cargo(&self, subcommand: &str) -> Command {
+        let mut cargo = Command::new("cargo");
+        cargo
+            .arg(subcommand)
+            .arg("--manifest-path")
+            .arg(self.root.join("Cargo.toml"));
+        // What the cargo that runs us says about itself must not reach another version.
+        cargo.env_remove("CARGO");
+        if let Some(version) = &self.version {
+            cargo.env("RUSTUP_TOOLCHAIN", version);
+        }
+        if env::var_os("XDG_RUNTIME_DIR").is_none() {
+            // Without a desktop, Mesa's choice among its devices only prints an error of its own.
+            cargo.env("NODEVICE_SELECT", "1");
+        }
+        cargo
+    }
+}
+
+/// Whether a list of rustup has `name`, which may be followed by a dash and the host.
+fn lists(list: &str, name: &str) -> bool {
+    list.lines().any(|line| {
+        line.trim()
+            .strip_prefix(name)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    })
+}
+
+fn pinned_version(manifest: &Path) -> Result<String> {
+    let text = fs::read_to_string(manifest).with_context(|| manifest.display().to_string())?;
+    let value = text
+        .lines()
+        .find_map(|line| line.strip_prefix("rust-version")?.trim_start().strip_prefix('='));
+    let version = value.with_context(|| format!("{}: no rust-version", manifest.display()))?;
+    Ok(version.trim().trim_matches('"').to_owned())
+}
