@@ -120,7 +120,7 @@ pub struct PublishedSettings {
 
 /// A preset asked for by a name that it does not have.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("preset \"{asked}\" is not built; there is {known}")]
+#[error("preset \"{asked}\" is not built; there are {known}")]
 pub struct UnknownPreset {
     /// What was asked for.
     pub asked: String,
