@@ -27,6 +27,8 @@ pub(crate) const AMBIENT_FORMAT: TextureFormat = TextureFormat::R16Float;
 pub(crate) struct Visibilities {
     pub(crate) lights: Texture,
     pub(crate) ambient: Texture,
+    /// Replaces what the passes make of the lights.
+    pub(crate) injected: Option<Texture>,
 }
 
 /// Everything of the region's size, and what was learned.
@@ -202,6 +204,9 @@ impl Capture {
             pass.visibility
                 .encode(gpu, encoder, targets, &outputs.lights.view);
         }
+        if let Some(injected) = &outputs.injected {
+            outputs.lights.encode_copy(encoder, injected);
+        }
         let directions = ambient_directions(self.plan.n_ambient_directions);
         let caster = Caster {
             toy,
@@ -246,5 +251,6 @@ fn visibilities(gpu: &Gpu, plan: &Plan) -> Visibilities {
             (plan.visibility_format, 1),
         ),
         ambient: texture(gpu, "ambient", plan.ambient_px, (AMBIENT_FORMAT, 1)),
+        injected: None,
     }
 }

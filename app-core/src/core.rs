@@ -9,6 +9,7 @@ use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::encoder::{Encoder, PassTime, Stamps};
 use crate::gpu::layout::Fit;
 use crate::gpu::{AdapterChoice, Gpu, GpuError};
+use crate::inject::InjectedVisibility;
 use crate::maps::{FloatMap, Map};
 use crate::plan::Plan;
 use crate::preset::Preset;
@@ -212,6 +213,35 @@ impl Core {
             .then_some(Warning::FaintShadow { contrast })
             .into_iter()
             .collect())
+    }
+
+    /// Replaces visibilities of the lights in what follows, so that errors of visibility can be told from all others.
+    ///
+    /// What was learned is learned again with the next frame. The maps stay until the place, the camera or the scene
+    /// changes, or others are injected. A measuring aid: no product has exact visibility.
+    ///
+    /// # Errors
+    /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.
+    pub fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        let expected_px = stage
+            .work()
+            .ok_or(CoreError::NoScene)?
+            .region()
+            .size_px
+            .to_array();
+        for map in [&maps.physical, &maps.shown].into_iter().flatten() {
+            let actual_px = [map.width, map.height];
+            if actual_px != expected_px {
+                return Err(CoreError::SizeDiffers {
+                    what: "injected visibility",
+                    expected_px,
+                    actual_px,
+                });
+            }
+        }
+        stage.inject(&self.gpu, maps);
+        Ok(())
     }
 
     /// Waits for the device and returns a map of the latest retargeted frame, once there was one.

@@ -11,6 +11,7 @@
 pub mod core;
 pub mod frame;
 pub mod gpu;
+pub mod inject;
 pub mod light_points;
 pub mod maps;
 pub mod plan;

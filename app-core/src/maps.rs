@@ -31,6 +31,12 @@ pub enum Map {
     Masks,
     /// The paper's masks: r is the shadow to sample from (3c), g the real shadow (3b).
     Eligible,
+    /// The paper's warp: where in the region's pixels to sample, the occluder's height in metres; alpha is coverage.
+    Warp,
+    /// Shadow terms as they were sampled; alpha is 1 where there is one.
+    Terms,
+    /// Sums of shadow terms over the box; alpha is their number.
+    FilteredTerms,
     /// Candidates that the ring search looked at, in r; 0 where it was not needed.
     SearchTaps,
 }
@@ -48,6 +54,9 @@ impl Map {
         Self::Residual,
         Self::Masks,
         Self::Eligible,
+        Self::Warp,
+        Self::Terms,
+        Self::FilteredTerms,
         Self::SearchTaps,
     ];
 }
@@ -75,7 +84,9 @@ impl Capture {
             Map::Visibility => read_texture(gpu, &self.shown.lights),
             Map::Ambient => read_texture(gpu, &self.shown.ambient),
             Map::Residual => self.read_cells(gpu),
-            Map::Masks | Map::Eligible | Map::SearchTaps => return Ok(None),
+            Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
+                return Ok(None);
+            }
         };
         map.map(Some)
     }
@@ -99,6 +110,9 @@ impl Published {
         let texture = match map {
             Map::Masks => &self.masks,
             Map::Eligible => &self.eligible,
+            Map::Warp => &self.warp,
+            Map::Terms => &self.terms,
+            Map::FilteredTerms => &self.filtered_terms,
             Map::SearchTaps => &self.taps,
             Map::Visibility => &self.visibility,
             _ => return Ok(None),
@@ -115,6 +129,10 @@ fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
         TextureFormat::R16Float | TextureFormat::Rg16Float | TextureFormat::Rgba16Float => bytes
             .chunks_exact(2)
             .map(|b| f32_from_f16(u16::from_le_bytes([b[0], b[1]])))
+            .collect(),
+        TextureFormat::Rgba32Float => bytes
+            .chunks_exact(4)
+            .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
             .collect(),
         TextureFormat::Rgba8UnormSrgb => bytes
             .iter()

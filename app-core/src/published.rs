@@ -7,6 +7,7 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureShape};
+use crate::inject::Injected;
 use crate::passes::box_filter::BoxFilter;
 use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
@@ -26,12 +27,14 @@ pub(crate) struct Published {
     pub(crate) eligible: Texture,
     pub(crate) taps: Texture,
     pub(crate) visibility: Texture,
+    pub(crate) injected: Injected,
     globals: wgpu::Buffer,
     published: wgpu::Buffer,
-    warp: Texture,
+    pub(crate) warp: Texture,
     warp_depth: Texture,
-    terms: Texture,
+    pub(crate) terms: Texture,
     terms_between: Texture,
+    pub(crate) filtered_terms: Texture,
     samples: Texture,
     samples_depth: Texture,
     is_constant: bool,
@@ -79,8 +82,10 @@ impl Published {
             warp_depth: target("warp depth", TextureFormat::Depth32Float, 1),
             terms: target("terms", TERM_FORMAT, 1),
             terms_between: target("terms between", TERM_FORMAT, 1),
+            filtered_terms: target("filtered terms", TERM_FORMAT, 1),
             taps: target("taps", TAPS_FORMAT, 1),
             visibility: target("visibility", PCSS_FORMAT, 1),
+            injected: Injected::default(),
             samples: target("retarget samples", PICTURE_FORMAT, N_SAMPLES),
             samples_depth: target("retarget depth", TextureFormat::Depth32Float, N_SAMPLES),
             picture: target("retarget", PICTURE_FORMAT, 1),
@@ -102,15 +107,26 @@ impl Published {
         self.passes
             .masks
             .encode(gpu, encoder, &self.globals, toy, &self.masks.view);
-        self.encode_visibility(gpu, encoder, (toy, &toy.physical.positions));
+        self.encode_visibility(
+            gpu,
+            encoder,
+            (toy, &toy.physical.positions),
+            self.injected.physical.as_ref(),
+        );
         let sources = (&self.masks.view, &self.visibility.view);
         self.passes
             .eligible
             .encode(gpu, encoder, &self.published, sources, &self.eligible.view);
     }
 
-    /// Encodes warp and visibility of the pose at `shown`.
-    fn encode_visibility(&self, gpu: &Gpu, encoder: &mut Encoder, shown: (&ToyMesh, &wgpu::Buffer)) {
+    /// Encodes warp and visibility of the pose at `shown`; a visibility that is `injected` replaces the latter.
+    fn encode_visibility(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        shown: (&ToyMesh, &wgpu::Buffer),
+        injected: Option<&Texture>,
+    ) {
         let shared = (&self.globals, &self.published);
         self.passes.warp.encode(
             gpu,
@@ -122,6 +138,9 @@ impl Published {
         self.passes
             .pcss
             .encode(gpu, encoder, shared, &self.warp.view, &self.visibility.view);
+        if let Some(injected) = injected {
+            self.visibility.encode_copy(encoder, injected);
+        }
     }
 
     /// Encodes the shadow of the shown pose and the picture of the region.
@@ -132,7 +151,12 @@ impl Published {
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
     ) {
-        self.encode_visibility(gpu, encoder, (toy, &toy.shown.positions));
+        self.encode_visibility(
+            gpu,
+            encoder,
+            (toy, &toy.shown.positions),
+            self.injected.shown.as_ref(),
+        );
         if !self.is_constant {
             let inputs = SearchInputs {
                 globals: &self.globals,
@@ -150,7 +174,7 @@ impl Published {
                 encoder,
                 &self.published,
                 &self.terms.view,
-                &self.terms_between.view,
+                (&self.terms_between.view, &self.filtered_terms.view),
             );
         }
         let inputs = RetargetInputs {
@@ -161,7 +185,7 @@ impl Published {
             masks: &self.masks.view,
             eligible: &self.eligible.view,
             visibility: &self.visibility.view,
-            terms: &self.terms.view,
+            terms: &self.filtered_terms.view,
         };
         let targets = CompositeTargets {
             samples: &self.samples.view,

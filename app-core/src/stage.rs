@@ -1,5 +1,6 @@
 //! A scene on the device: the toy, the plate and the frame, and what was learned from them.
 
+use std::mem;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3, UVec2};
@@ -10,6 +11,7 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, MAX_LIGHTS, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureShape};
+use crate::inject::InjectedVisibility;
 use crate::light_points::{light_in_plane, light_points};
 use crate::passes::present::Present;
 use crate::passes::toy_mesh::ToyMesh;
@@ -56,6 +58,8 @@ pub(crate) struct Stage {
 struct Learned {
     world_from_camera: DMat4,
     work: Work,
+    /// Its inputs were replaced: learn again.
+    is_stale: bool,
 }
 
 impl Stage {
@@ -102,6 +106,14 @@ impl Stage {
     /// What was learned so far.
     pub(crate) fn work(&self) -> Option<&Work> {
         self.learned.as_ref().map(|learned| &learned.work)
+    }
+
+    /// Replaces visibilities in what follows, where anything was learned.
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        if let Some(learned) = &mut self.learned {
+            learned.work.inject(gpu, maps);
+            learned.is_stale = true;
+        }
     }
 
     /// Encodes one frame into `output`.
@@ -257,13 +269,13 @@ impl Stage {
 
     /// Makes what was learned cover `region` from this camera; true when it must be learned anew.
     fn ensure_learned(&mut self, gpu: &Gpu, input: &FrameInput, region: PixelRect) -> bool {
-        if let Some(learned) = &self.learned
+        if let Some(learned) = &mut self.learned
             && learned
                 .world_from_camera
                 .abs_diff_eq(input.world_from_camera, SAME_CAMERA)
             && learned.work.region().contains(&region)
         {
-            return false;
+            return mem::take(&mut learned.is_stale);
         }
         if let Some(image) = self.plate_image(&input.world_from_camera) {
             self.plate.write(gpu, &image.rgba8);
@@ -294,6 +306,7 @@ impl Stage {
         self.learned = Some(Learned {
             world_from_camera: input.world_from_camera,
             work,
+            is_stale: false,
         });
         true
     }

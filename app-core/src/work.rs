@@ -4,6 +4,7 @@ use crate::capture::{Capture, Pictures};
 use crate::gpu::encoder::Encoder;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
+use crate::inject::{Injected, InjectedVisibility, upload};
 use crate::maps::{FloatMap, Map};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::Passes;
@@ -86,6 +87,24 @@ impl Work {
                 }
                 encoder.path = Path::Frame;
                 published.encode_frame(gpu, encoder, toy, pictures);
+            }
+        }
+    }
+
+    /// Replaces visibilities from the next frame on; see [`Core::inject_visibility`](crate::core::Core).
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        let upload = |map: &Option<FloatMap>, like: &Texture| map.as_ref().map(|map| upload(gpu, map, like));
+        match self {
+            Self::Model(model) => {
+                let capture = &mut model.0;
+                capture.physical.injected = upload(&maps.physical, &capture.physical.lights);
+                capture.shown.injected = upload(&maps.shown, &capture.shown.lights);
+            }
+            Self::Published(published) => {
+                published.injected = Injected {
+                    physical: upload(&maps.physical, &published.visibility),
+                    shown: upload(&maps.shown, &published.visibility),
+                };
             }
         }
     }

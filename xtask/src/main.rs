@@ -29,6 +29,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Measure presets over sessions: time against error (`bench --help` tells more)
+    #[command(disable_help_flag = true)]
+    Bench {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Rewrite the golden pictures (`bless --help` tells more)
     #[command(disable_help_flag = true)]
     Bless {
@@ -78,6 +85,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Demo => return harness::demo(&toolchain),
         Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
+        Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Bless { args } => return harness::run(&toolchain, "bless", &args),
         Command::Test => test::run(&toolchain)?,
         Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,

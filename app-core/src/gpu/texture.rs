@@ -1,6 +1,7 @@
 //! Textures of our own: created from plans, filled from pictures.
 
 use super::Gpu;
+use super::encoder::Encoder;
 
 /// A texture with its whole view.
 #[derive(Debug)]
@@ -26,6 +27,7 @@ impl Texture {
             wgpu::TextureUsages::RENDER_ATTACHMENT
                 | wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST
         };
         Self::create(gpu, label, shape, usage)
     }
@@ -65,6 +67,19 @@ impl Texture {
         Self { raw, view }
     }
 
+    /// Encodes a copy of all of `from`, of the same size and format.
+    pub(crate) fn encode_copy(&self, encoder: &mut Encoder, from: &Self) {
+        encoder.raw.copy_texture_to_texture(
+            from.raw.as_image_copy(),
+            self.raw.as_image_copy(),
+            self.raw.size(),
+        );
+    }
+
+    fn bytes_per_texel(&self) -> Option<u32> {
+        self.raw.format().block_copy_size(None)
+    }
+
     /// The codes of an sRGB texture, not decoded.
     pub(crate) fn codes(&self) -> wgpu::TextureView {
         self.raw.create_view(&wgpu::TextureViewDescriptor {
@@ -73,14 +88,14 @@ impl Texture {
         })
     }
 
-    /// Fills the whole texture with rows of four bytes a pixel.
-    pub(crate) fn write(&self, gpu: &Gpu, rgba8: &[u8]) {
+    /// Fills the whole texture with rows of texels, nothing between them.
+    pub(crate) fn write(&self, gpu: &Gpu, texels: &[u8]) {
         gpu.queue.write_texture(
             self.raw.as_image_copy(),
-            rgba8,
+            texels,
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(4 * self.raw.width()),
+                bytes_per_row: self.bytes_per_texel().map(|bytes| bytes * self.raw.width()),
                 rows_per_image: None,
             },
             self.raw.size(),

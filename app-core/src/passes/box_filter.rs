@@ -23,16 +23,16 @@ impl BoxFilter {
         }
     }
 
-    /// Leaves the sums over the box in `terms`, by way of `between`.
+    /// Leaves the sums over the box in `sums`, by way of `between`.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         published: &wgpu::Buffer,
         terms: &wgpu::TextureView,
-        between: &wgpu::TextureView,
+        (between, sums): (&wgpu::TextureView, &wgpu::TextureView),
     ) {
-        for (pipeline, from, to) in [(&self.rows, terms, between), (&self.columns, between, terms)] {
+        for (pipeline, from, to) in [(&self.rows, terms, between), (&self.columns, between, sums)] {
             let layout = |group| pipeline.get_bind_group_layout(group);
             let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(2, published.as_entire_binding())]);
             let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(from))]);

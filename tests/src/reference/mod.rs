@@ -4,14 +4,17 @@
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
 //! What a scene fixes comes as arguments; what a shader fixes is read from that shader by [`shader_constant`].
 
+pub mod box_filter;
 pub mod composite;
 pub mod fill;
 pub mod fit;
 pub mod least_squares;
 pub mod model;
 pub mod occlusion;
+pub mod pcss;
 pub mod raster;
 pub mod residual;
+pub mod search;
 pub mod visibility;
 
 use std::str::FromStr;

@@ -18,8 +18,7 @@ pub const SAMPLE_POSITIONS: [DVec2; 4] = [
 #[derive(Clone, Debug)]
 pub struct Occluder {
     triangles: Vec<[DVec3; 3]>,
-    min: DVec3,
-    max: DVec3,
+    tree: Tree,
 }
 
 /// Where a ray meets a mesh.
@@ -39,10 +38,8 @@ impl Occluder {
             .chunks_exact(3)
             .map(|corners| [0, 1, 2].map(|k| positions[corners[k] as usize]));
         let triangles: Vec<[DVec3; 3]> = triangles.collect();
-        let corners = triangles.as_flattened();
         Self {
-            min: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-            max: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+            tree: Tree::new(triangles.clone()),
             triangles,
         }
     }
@@ -56,17 +53,13 @@ impl Occluder {
         } else {
             (light_point.truncate() - origin, 1.0)
         };
-        self.reaches_box(origin, direction, end)
-            && self
-                .triangles
-                .iter()
-                .any(|corners| meets(origin, direction, corners).is_some_and(|t| t < end))
+        self.tree.stops(origin, direction, end)
     }
 
     /// The nearest triangle that a ray meets.
     #[must_use]
     pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        if !self.reaches_box(origin, direction, f64::INFINITY) {
+        if !self.tree.reaches_box(origin, direction, f64::INFINITY) {
             return None;
         }
         let hits = self
@@ -101,8 +94,53 @@ impl Occluder {
         let n_points = light_points.len() as f64;
         Some(n_hidden / n_points)
     }
+}
 
-    /// Slab test against the bounding box: most rays pass the toy by.
+/// Triangles within a box, halved until few are left.
+#[derive(Clone, Debug)]
+struct Tree {
+    min: DVec3,
+    max: DVec3,
+    branch: Branch,
+}
+
+#[derive(Clone, Debug)]
+enum Branch {
+    Leaf(Vec<[DVec3; 3]>),
+    Fork(Box<[Tree; 2]>),
+}
+
+impl Tree {
+    const MAX_LEAF: usize = 4;
+
+    fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
+        let corners = triangles.as_flattened();
+        let min = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let max = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let branch = if triangles.len() <= Self::MAX_LEAF {
+            Branch::Leaf(triangles)
+        } else {
+            let axis = (max - min).max_position();
+            let middle = |corners: &[DVec3; 3]| corners.iter().map(|corner| corner[axis]).sum::<f64>();
+            triangles.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+            let upper = triangles.split_off(triangles.len() / 2);
+            Branch::Fork(Box::new([Self::new(triangles), Self::new(upper)]))
+        };
+        Self { min, max, branch }
+    }
+
+    /// Whether a ray meets a triangle before `end`.
+    fn stops(&self, origin: DVec3, direction: DVec3, end: f64) -> bool {
+        self.reaches_box(origin, direction, end)
+            && match &self.branch {
+                Branch::Leaf(triangles) => triangles
+                    .iter()
+                    .any(|corners| meets(origin, direction, corners).is_some_and(|t| t < end)),
+                Branch::Fork(halves) => halves.iter().any(|half| half.stops(origin, direction, end)),
+            }
+    }
+
+    /// Slab test against the bounding box: most rays pass by.
     fn reaches_box(&self, origin: DVec3, direction: DVec3, end: f64) -> bool {
         let to_min = (self.min - origin) / direction;
         let to_max = (self.max - origin) / direction;

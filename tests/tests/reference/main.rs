@@ -2,8 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod box_filter;
 mod composite;
 mod fit;
 mod flat;
+mod pcss;
 mod residual;
+mod search;
 mod visibility;

@@ -40,7 +40,7 @@ fn bulb() -> Light {
 }
 
 /// Share of a disc that lies beyond a straight edge, which is `offset` radii from its centre.
-fn disc_beyond(offset: f64) -> f64 {
+pub(crate) fn disc_beyond(offset: f64) -> f64 {
     let c = offset.clamp(-1.0, 1.0);
     (c.acos() - c * (1.0 - c * c).sqrt()) / PI
 }

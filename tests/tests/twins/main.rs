@@ -11,6 +11,7 @@ mod fit;
 mod occlusion;
 mod photo;
 mod place;
+mod published;
 mod residual;
 mod run;
 mod toy;

@@ -9,6 +9,7 @@ use app_core::gpu::layout::Fit;
 use app_core::maps::{FloatMap, Map};
 use app_core::plan::Plan;
 use app_core::preset::Preset;
+use app_core::region::PixelRect;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2, Vec4};
@@ -73,14 +74,6 @@ impl Run {
         let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the toy moves")));
         let visible = |map: Raster<DVec4>| map.map(|texel| texel.x);
         let seen_by_shader = |code: u8| decoded[usize::from(code)];
-        let crop = |image: &Image| {
-            let [r, g, b] = [0, 1, 2].map(|channel| {
-                Raster::from_fn(size, |texel| {
-                    seen_by_shader(texel_of(image, origin + texel)[channel])
-                })
-            });
-            Raster::from_fn(size, |texel| DVec3::new(r.at(texel), g.at(texel), b.at(texel)))
-        };
         let evidence = map(Map::Evidence)?;
         let base = map(Map::ObjectBase)?;
         let fit = core.read_fit()?.expect("the toy moves");
@@ -88,8 +81,8 @@ impl Run {
         Ok(Self {
             region: stand.region(&plan.region),
             pictures: Pictures {
-                frame: crop(&frame),
-                plate: crop(&plate),
+                frame: crop(&frame, &plan.region, decoded),
+                plate: crop(&plate, &plan.region, decoded),
                 seen: evidence.map(|texel| texel.x),
                 visibility: map(Map::PhysicalVisibility)?,
                 ambient: visible(map(Map::PhysicalAmbient)?),
@@ -110,7 +103,7 @@ impl Run {
     }
 }
 
-fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
+pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
     Scene {
         name: stand.setup.name.to_owned(),
         width_px: stand.setup.image_px.x,
@@ -129,9 +122,17 @@ fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
     }
 }
 
-fn raster(map: &FloatMap) -> Raster<DVec4> {
+pub(crate) fn raster(map: &FloatMap) -> Raster<DVec4> {
     let texel = |at: UVec2| Vec4::from(map.texels[(at.y * map.width + at.x) as usize]).as_dvec4();
     Raster::from_fn(UVec2::new(map.width, map.height), texel)
+}
+
+/// A rectangle of a picture, as shaders see it: `decoded` has the linear value of each code.
+pub(crate) fn crop(image: &Image, rect: &PixelRect, decoded: &[f64]) -> Raster<DVec3> {
+    Raster::from_fn(rect.size_px, |texel| {
+        let [r, g, b, _] = texel_of(image, rect.origin_px + texel).map(|code| decoded[usize::from(code)]);
+        DVec3::new(r, g, b)
+    })
 }
 
 fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {

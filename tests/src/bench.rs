@@ -1,0 +1,206 @@
+//! Speed against error: presets over sessions, timed where nothing is learned or compiled any more.
+
+mod exact;
+mod table;
+
+use std::ops::Range;
+use std::time::Instant;
+
+use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
+use app_core::gpu::PassTime;
+use app_core::inject::InjectedVisibility;
+use app_core::maps::Map;
+use app_core::plan::Path;
+use app_core::preset::Preset;
+use app_core::session::Capture;
+
+use crate::metrics::Scores;
+use crate::progress::Quiet;
+use crate::replay::{self, ReplayError, replay};
+use crate::report::Report;
+
+pub use table::{csv, table};
+
+/// Presets that are also measured with exact visibility, which tells errors of visibility from all others.
+const EXACT_PRESETS: &[Preset] = &[Preset::Paper, Preset::Balanced];
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The presets, in the order of the rows.
+    pub presets: Vec<Preset>,
+    /// How often each frame is timed; at least 1.
+    pub n_repeats: usize,
+    /// The frames, all without it.
+    pub frames: Option<Range<usize>>,
+    /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
+    pub with_exact: bool,
+}
+
+/// One preset on one session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Name of the session.
+    pub session: String,
+    /// Name of the preset, `+exact` behind it where visibility is the reference's.
+    pub preset: String,
+    /// Number of frames.
+    pub n_frames: usize,
+    /// Mean scores over those frames that have a truth.
+    pub scores: Option<Scores>,
+    /// Times; none where visibility is the reference's.
+    pub times: Option<Times>,
+    /// Candidates of the ring search for a texel that needed it, on average; none without a search.
+    pub n_taps: Option<f64>,
+    /// Time of a frame over that of the preset `paper` on this session in this run.
+    pub ratio_to_paper: Option<f64>,
+}
+
+/// Medians over frames and repeats.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Times {
+    /// On the processor, until a steady frame is handed to the device.
+    pub cpu_ms: Option<f64>,
+    /// On the device, for a steady frame; none where it cannot tell.
+    pub gpu_ms: Option<f64>,
+    /// On the device, for the capture path.
+    pub capture_ms: Option<f64>,
+    /// Each pass of a steady frame on the device, in order.
+    pub passes: Vec<(&'static str, f64)>,
+}
+
+/// Measures all presets on one session.
+///
+/// # Errors
+/// When a frame cannot be read, made or scored.
+pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Vec<Row>, ReplayError> {
+    let mut rows = Vec::new();
+    for &preset in &options.presets {
+        rows.push(measure(session, core, preset, options)?);
+    }
+    let frame_ms = |row: &Row| row.times.as_ref().and_then(|times| times.gpu_ms.or(times.cpu_ms));
+    let paper_ms = rows
+        .iter()
+        .find(|row| row.preset == Preset::Paper.name())
+        .and_then(frame_ms);
+    for row in &mut rows {
+        row.ratio_to_paper = frame_ms(row).zip(paper_ms).map(|(own, paper)| own / paper);
+    }
+    if options.with_exact {
+        let presets = options
+            .presets
+            .iter()
+            .filter(|preset| EXACT_PRESETS.contains(preset));
+        for &preset in presets {
+            rows.push(exact::measure(session, core, preset, options)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn measure(
+    session: &Capture,
+    core: &mut Core,
+    preset: Preset,
+    options: &Options,
+) -> Result<Row, ReplayError> {
+    let asked = replay::Options {
+        preset,
+        frames: options.frames.clone(),
+        out: None,
+    };
+    // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
+    let report = replay(session, Some(session), core, &asked, &mut Quiet)?;
+    let inputs = inputs(session, &report)?;
+    Ok(Row {
+        session: report.session,
+        preset: preset.name().to_owned(),
+        n_frames: report.frames.len(),
+        scores: report.mean.scores,
+        times: Some(times(core, &inputs, options.n_repeats)?),
+        n_taps: mean_taps(core, &inputs)?,
+        ratio_to_paper: None,
+    })
+}
+
+/// The replayed frames on which something was worked on.
+fn inputs(session: &Capture, report: &Report) -> Result<Vec<FrameInput>, ReplayError> {
+    use app_core::session::Session;
+    let worked = report.frames.iter().filter(|frame| frame.region.is_some());
+    worked
+        .map(|frame| Ok(FrameInput::from(&session.frame(frame.index)?)))
+        .collect()
+}
+
+fn times(core: &mut Core, inputs: &[FrameInput], n_repeats: usize) -> Result<Times, CoreError> {
+    let Some(first) = inputs.first() else {
+        return Ok(Times::default());
+    };
+    let (mut cpu, mut steady, mut capture) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..n_repeats {
+        core.frame(first)?;
+        // Nothing is injected: only what was learned is learned again.
+        core.inject_visibility(&InjectedVisibility::default())?;
+        core.frame(first)?;
+        capture.extend(device_ms(&core.take_pass_times()?, Path::Capture));
+        for input in inputs {
+            // A camera that moves makes the core learn again: that is not the frame's own time.
+            core.frame(input)?;
+            core.take_pass_times()?;
+            let start = Instant::now();
+            core.frame(input)?;
+            cpu.push(start.elapsed().as_secs_f64() * 1e3);
+            steady.push(core.take_pass_times()?);
+        }
+    }
+    let names = steady.first().map(|times| times.iter().map(|time| time.pass));
+    let of_pass = |name: &'static str| {
+        let times = steady.iter().flatten().filter(|time| time.pass == name);
+        median(times.map(|time| time.gpu_ms).collect()).map(|ms| (name, ms))
+    };
+    Ok(Times {
+        cpu_ms: median(cpu),
+        gpu_ms: median(
+            steady
+                .iter()
+                .filter_map(|times| device_ms(times, Path::Frame))
+                .collect(),
+        ),
+        capture_ms: median(capture),
+        passes: names.into_iter().flatten().filter_map(of_pass).collect(),
+    })
+}
+
+/// Device time of all passes of a path; none where none was timed.
+fn device_ms(times: &[PassTime], path: Path) -> Option<f64> {
+    let own = times
+        .iter()
+        .filter(|time| time.path == path)
+        .map(|time| time.gpu_ms);
+    own.reduce(|sum, ms| sum + ms)
+}
+
+fn mean_taps(core: &mut Core, inputs: &[FrameInput]) -> Result<Option<f64>, CoreError> {
+    let mut taps = Vec::new();
+    for input in inputs {
+        core.frame(input)?;
+        let map = core.read_map(Map::SearchTaps)?;
+        let texels = map.iter().flat_map(|map| &map.texels);
+        taps.extend(texels.map(|texel| f64::from(texel[0])).filter(|taps| *taps > 0.0));
+    }
+    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 texels")]
+    let n_texels = taps.len() as f64;
+    Ok((!taps.is_empty()).then(|| taps.iter().sum::<f64>() / n_texels))
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = values.get(middle).copied()?;
+    Some(if values.len() % 2 == 1 {
+        upper
+    } else {
+        0.5 * (values[middle - 1] + upper)
+    })
+}

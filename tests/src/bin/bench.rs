@@ -1,0 +1,114 @@
+//! Measures presets over recorded sessions: speed against error, as a table and as bench.csv.
+
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::session::Capture;
+use app_core::wgpu;
+use clap::Parser;
+use harness::bench::{Options, bench, csv, table};
+use harness::files::Folder;
+use harness::output::{make_folder, remove_file, write_whole};
+
+/// The session that comes with the project.
+const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+/// Where the result goes that was given no place.
+const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench");
+/// File name of the result.
+const CSV_FILE: &str = "bench.csv";
+
+/// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table and as bench.csv.
+#[derive(Parser)]
+#[command(name = "bench")]
+struct Args {
+    /// Folders of sessions [default: the bundled one]
+    sessions: Vec<PathBuf>,
+    /// Folder for bench.csv
+    #[arg(long, value_name = "DIR", default_value = RESULTS, hide_default_value = true)]
+    out: PathBuf,
+    /// Presets, apart by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    presets: Vec<Preset>,
+    /// How often each frame is timed
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Only the first N frames of each session
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    first: Option<u16>,
+    /// Add rows with visibility from rays, which takes minutes
+    #[arg(long)]
+    exact: bool,
+    /// Part of a graphics adapter's name [default: the fastest]
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Drivers and parsers may speak in several lines.
+            let message = format!("{error:#}")
+                .lines()
+                .map(str::trim)
+                .collect::<Vec<_>>()
+                .join(" ");
+            let _ = writeln!(io::stderr(), "error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let bundled = [PathBuf::from(BUNDLED_SESSION)];
+    let folders = if args.sessions.is_empty() {
+        &bundled[..]
+    } else {
+        &args.sessions
+    };
+    let adapter = args
+        .adapter
+        .clone()
+        .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    let result = args.out.join(CSV_FILE);
+    make_folder(&args.out)?;
+    // A result in the folder means that all sessions were measured.
+    remove_file(&result)?;
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    let mut rows = Vec::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let measured = measure(folder, &mut core, args);
+        rows.extend(measured.with_context(|| folder.display().to_string())?);
+    }
+    write_whole(&result, csv(&rows).as_bytes())?;
+    let gpu = core.gpu();
+    let text = table(&rows, &gpu.adapter_name(), gpu.is_software());
+    io::stdout()
+        .write_all(format!("{text}{}\n", result.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<harness::bench::Row>> {
+    let capture = Capture::open(Folder::open(folder)?)?;
+    let options = Options {
+        presets: if args.presets.is_empty() {
+            Preset::ALL.to_vec()
+        } else {
+            args.presets.clone()
+        },
+        n_repeats: usize::from(args.repeats),
+        frames: args.first.map(|n_frames| Range {
+            start: 0,
+            end: usize::from(n_frames),
+        }),
+        with_exact: args.exact,
+    };
+    Ok(bench(&capture, core, &options)?)
+}

@@ -1,0 +1,55 @@
+//! What a measurement of the bundled session comes to, as a program reads it.
+
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::session::Capture;
+use app_core::wgpu;
+use harness::bench::{Options, bench, csv};
+use harness::files::Folder;
+
+const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+
+#[test]
+fn rows_are_complete_and_the_published_method_is_the_unit() {
+    let session = Capture::open(Folder::open(BUNDLED).unwrap()).unwrap();
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
+    let options = Options {
+        presets: vec![Preset::Balanced, Preset::Paper],
+        n_repeats: 1,
+        frames: Some(0..1),
+        with_exact: false,
+    };
+    let text = csv(&bench(&session, &mut core, &options).unwrap());
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let [header, balanced, paper] = &lines[..] else {
+        panic!("{text}");
+    };
+    assert!(lines.iter().all(|line| line.len() == header.len()), "{text}");
+    let column = |name: &str| header.iter().position(|head| *head == name).unwrap();
+    assert_eq!(
+        [balanced[0], balanced[1], balanced[2]],
+        ["llama", "balanced", "1"]
+    );
+    assert_eq!([paper[0], paper[1], paper[2]], ["llama", "paper", "1"]);
+
+    for line in [balanced, paper] {
+        for name in [
+            "shadow_rmse",
+            "shadow_ssim",
+            "frame_rmse",
+            "frame_ssim",
+            "cpu_ms",
+            "ratio_to_paper",
+        ] {
+            let value: f64 = line[column(name)].parse().unwrap();
+            assert!(value.is_finite() && value > 0.0, "{name}: {value}");
+        }
+    }
+    assert_eq!(paper[column("ratio_to_paper")], "1.000000");
+    // Only the published method searches, and a search looks at whole rings.
+    let taps = column("taps_per_missing_texel");
+    assert_eq!(balanced[taps], "");
+    assert!(paper[taps].parse::<f64>().unwrap() >= 16.0, "{text}");
+}

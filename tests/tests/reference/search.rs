@@ -1,0 +1,83 @@
+//! Searches whose end is known: one eligible texel, a whole ring of them, none.
+
+use glam::{DVec2, DVec3, IVec2, UVec2};
+use harness::reference::raster::Raster;
+use harness::reference::search::{Found, Rings, search, term};
+
+const SIZE: UVec2 = UVec2::new(61, 37);
+const RINGS: Rings = Rings {
+    step_px: 2.0,
+    n_directions: 16,
+    n_rings: 6,
+};
+
+fn only(eligible: &[IVec2]) -> Raster<bool> {
+    Raster::from_fn(SIZE, |at| eligible.contains(&at.as_ivec2()))
+}
+
+#[test]
+fn lone_texel_is_found_on_the_ring_that_it_lies_on() {
+    let start = IVec2::new(30, 18);
+    // Even rings have candidates along the axes.
+    for ring in [2, 4, 6] {
+        for toward in [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y] {
+            let texel = start + toward * 2 * i32::try_from(ring).unwrap();
+            let found = search(&only(&[texel]), start.as_dvec2() + 0.5, &RINGS);
+            let expected = Found {
+                texel: Some(texel),
+                n_taps: 16 * ring,
+            };
+            assert_eq!(found, expected, "ring {ring} toward {toward}");
+        }
+    }
+}
+
+#[test]
+fn closest_of_a_ring_wins_and_an_inner_ring_before_it() {
+    // The first ring's four candidates, from (22.3, 21.9) on round; the point is closer to those on the left.
+    let at_px = DVec2::new(20.9, 20.5);
+    let rings = Rings {
+        n_directions: 4,
+        ..RINGS
+    };
+    let [right, left] = [IVec2::new(22, 21), IVec2::new(19, 21)];
+    let on_second = IVec2::new(24, 20);
+    for (eligible, expected, n_taps) in [
+        (&[right, left][..], left, 4),
+        (&[right], right, 4),
+        (&[right, on_second], right, 4),
+        (&[on_second], on_second, 8),
+    ] {
+        let found = search(&only(eligible), at_px, &rings);
+        assert_eq!(
+            (found.texel, found.n_taps),
+            (Some(expected), n_taps),
+            "{eligible:?}"
+        );
+    }
+}
+
+#[test]
+fn eligible_texel_costs_no_tap_and_nothing_in_reach_costs_all() {
+    let own = search(&only(&[IVec2::new(7, 8)]), DVec2::new(7.99, 8.01), &RINGS);
+    assert_eq!((own.texel, own.n_taps), (Some(IVec2::new(7, 8)), 0));
+    let far = only(&[IVec2::new(7 + 20, 8)]);
+    // Candidates beyond the border are looked at, too, and are none.
+    let nothing = search(&far, DVec2::new(7.5, 8.5), &RINGS);
+    assert_eq!((nothing.texel, nothing.n_taps), (None, 96));
+}
+
+#[test]
+fn term_is_the_shadow_over_the_light_or_its_colour() {
+    let shade = DVec3::new(0.4, 0.5, 0.6);
+    for plate in [DVec3::splat(0.8), DVec3::new(0.1, 0.9, 0.3)] {
+        let ratio = term(shade * plate, plate, true);
+        assert!((ratio - shade).abs().max_element() < 1e-12, "{ratio}");
+        assert_eq!(term(shade, plate, false), shade);
+    }
+    let black = term(DVec3::splat(0.1), DVec3::new(0.0, 0.2, 0.0), true);
+    assert!(
+        (black - DVec3::new(1.0, 0.5, 1.0)).abs().max_element() < 1e-12,
+        "{black}"
+    );
+}

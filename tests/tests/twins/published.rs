@@ -1,0 +1,209 @@
+//! The published method's `search`, `box_filter` and `pcss`, on textured and uniform receivers.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
+use app_core::gpu::AdapterChoice;
+use app_core::light_points::light_in_plane;
+use app_core::maps::Map;
+use app_core::preset::{PUBLISHED, Preset};
+use app_core::scene::{Light, Surface};
+use app_core::wgpu;
+use glam::{DVec3, DVec4, UVec2};
+use harness::reference::box_filter::{box_sums, mean};
+use harness::reference::model::Region;
+use harness::reference::pcss::{Softness, soft_visibility};
+use harness::reference::raster::Raster;
+use harness::reference::search::{Found, Rings, search, term};
+
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::photo::photograph;
+use crate::place::{SETUPS, Setup, Stand};
+use crate::run::{crop, raster, scene};
+
+/// What the device made of a setup by the published method.
+struct Published {
+    stand: Stand,
+    is_textured: bool,
+    region: Region,
+    frame: Raster<DVec3>,
+    plate: Raster<DVec3>,
+    eligible: Raster<DVec4>,
+    warp: Raster<DVec4>,
+    terms: Raster<DVec4>,
+    taps: Raster<DVec4>,
+    filtered: Raster<DVec4>,
+    visibility: Raster<DVec4>,
+}
+
+static RUNS: LazyLock<Result<Vec<Published>, String>> = LazyLock::new(|| {
+    let decoded = Device::open().decoded();
+    let run = |(index, setup): (usize, Setup)| {
+        // What is eligible keeps some pixels away from every edge, so that the shadow must be larger than those.
+        let larger = Setup {
+            image_px: 2 * setup.image_px + 1,
+            ..setup
+        };
+        // Every other receiver is said to be uniform.
+        let run = Published::new(Stand::new(larger), index % 2 == 0, &decoded);
+        run.map_err(|error| error.to_string())
+    };
+    SETUPS.into_iter().enumerate().map(run).collect()
+});
+
+fn runs() -> &'static [Published] {
+    match &*RUNS {
+        Ok(runs) => runs,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+impl Published {
+    fn new(stand: Stand, is_textured: bool, decoded: &[f64]) -> Result<Self, CoreError> {
+        let instance = wgpu::Instance::default();
+        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+        let [plate, frame] = photograph(&stand);
+        let mut scene = scene(&stand, &plate);
+        scene.receivers[0].surface = if is_textured {
+            Surface::Textured
+        } else {
+            Surface::Uniform
+        };
+        core.set_scene(scene, Preset::Paper)?;
+        let report = core.frame(&FrameInput {
+            image: Arc::clone(&frame),
+            world_from_camera: stand.world_from_camera,
+            shown_pose: stand.shown_pose,
+        })?;
+        let rect = report.region.expect("the toy moves");
+        let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the method makes it")));
+        Ok(Self {
+            region: stand.region(&rect),
+            frame: crop(&frame, &rect, decoded),
+            plate: crop(&plate, &rect, decoded),
+            eligible: map(Map::Eligible)?,
+            warp: map(Map::Warp)?,
+            terms: map(Map::Terms)?,
+            taps: map(Map::SearchTaps)?,
+            filtered: map(Map::FilteredTerms)?,
+            visibility: map(Map::Visibility)?,
+            stand,
+            is_textured,
+        })
+    }
+
+    fn check(&self, pass: &str, errors: &Errors, allowed: (f64, f64), max: f64) {
+        errors.check(&format!("{}, {pass}", self.stand.setup.name), allowed, max);
+    }
+
+    /// Texels of the shown shadow.
+    fn shaded(&self) -> impl Iterator<Item = UVec2> + '_ {
+        let size = self.warp.size();
+        let texels = (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)));
+        texels.filter(|texel| self.warp.at(*texel).w > 0.0)
+    }
+}
+
+#[test]
+fn ring_search() {
+    let rings = Rings {
+        step_px: f64::from(PUBLISHED.ring_step_px),
+        n_directions: PUBLISHED.n_ring_directions,
+        n_rings: PUBLISHED.n_rings,
+    };
+    for run in runs() {
+        let eligible = run.eligible.map(|texel| texel.x > 0.0);
+        let found: Vec<_> = run
+            .shaded()
+            .map(|texel| {
+                (
+                    texel,
+                    search(&eligible, run.warp.at(texel).truncate().truncate(), &rings),
+                )
+            })
+            .collect();
+        let taps = found
+            .iter()
+            .map(|(texel, found)| (run.taps.at(*texel).x, f64::from(found.n_taps)));
+        // A candidate within rounding of a texel's border may fall to either side; halves hold odd numbers up to 2048.
+        run.check("taps", &Errors::between(taps), (1.0, 0.005), f64::INFINITY);
+        let terms = found.iter().flat_map(|(texel, found)| {
+            let expected = found.texel.map_or(DVec4::ZERO, |sample| {
+                let sample = sample.as_uvec2();
+                term(run.frame.at(sample), run.plate.at(sample), run.is_textured).extend(1.0)
+            });
+            let actual = run.terms.at(*texel);
+            (0..4).map(move |channel| (actual[channel], expected[channel]))
+        });
+        // Halves have 11 bits: values up to 2 are off by half of 2^-10.
+        run.check("terms", &Errors::between(terms), (1e-3, 0.005), f64::INFINITY);
+        let n_own = found.iter().filter(|(_, found)| found.n_taps == 0).count();
+        let is_searched = |found: &Found| found.n_taps > 0 && found.texel.is_some();
+        let n_searched = found.iter().filter(|(_, found)| is_searched(found)).count();
+        let name = run.stand.setup.name;
+        assert!(
+            n_own > 0 && n_searched > 0,
+            "{name}: {n_own} warped, {n_searched} searched"
+        );
+    }
+}
+
+#[test]
+fn box_filter() {
+    let radius_px = u32::try_from(PUBLISHED.box_radius_px).unwrap();
+    for run in runs() {
+        let terms = run.terms.map(|texel| (texel.w > 0.0).then(|| texel.truncate()));
+        let expected = box_sums(&terms, radius_px);
+        let sums = || run.filtered.texels().iter().zip(expected.texels());
+        let counts = sums().map(|(actual, expected)| (actual.w, expected.w));
+        run.check("count", &Errors::between(counts), (0.0, 0.0), 0.0);
+        let means = sums()
+            .filter_map(|(actual, expected)| mean(*actual).zip(mean(*expected)))
+            .flat_map(|(actual, expected)| (0..3).map(move |channel| (actual[channel], expected[channel])));
+        // Two sums in halves, each off by half of 2^-10 of values up to 2.
+        run.check("mean", &Errors::between(means), (2e-3, 0.0), 2e-3);
+    }
+}
+
+#[test]
+fn percentage_closer_soft_shadows() {
+    for run in runs() {
+        let stand = &run.stand;
+        let light = &stand.setup.lights[0];
+        let heights = stand
+            .physical
+            .positions
+            .iter()
+            .map(|position| f64::from(position.y));
+        let softness = Softness {
+            light: light_in_plane(light, &stand.plane_from_world),
+            light_radius: match *light {
+                Light::Sphere { radius_m, .. } => radius_m,
+                Light::Directional {
+                    angular_radius_rad, ..
+                } => angular_radius_rad.tan(),
+            },
+            tallest_m: heights.fold(0.0, f64::max),
+            n_blocker_taps: PUBLISHED.n_blocker_taps,
+            n_filter_taps: PUBLISHED.n_filter_taps,
+        };
+        let heights_m = run.warp.map(|texel| (texel.w > 0.0).then_some(texel.z));
+        let expected = Raster::from_fn(run.region.size_px, |texel| {
+            soft_visibility(&heights_m, &run.region, &softness, texel)
+        });
+        let values = expected.texels();
+        assert!(
+            values.iter().any(|value| *value == 0.0 || *value < 0.25),
+            "no shadow"
+        );
+        assert!(values.contains(&1.0), "no light");
+        let actual = run.visibility.texels().iter().map(|texel| texel.x);
+        let errors = Errors::between(actual.zip(values.iter().copied()));
+        // A tap within rounding of a texel's border may fall to either side, and a blocker more or less moves the
+        // radius, by which again a few taps change sides.
+        let tap = 1.0 / f64::from(PUBLISHED.n_filter_taps);
+        run.check("pcss", &errors, (0.5 * tap, 0.01), 8.0 * tap);
+    }
+}
