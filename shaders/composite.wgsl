@@ -19,6 +19,7 @@
 @group(1) @binding(10) var appearance: texture_2d<f32>;
 @group(1) @binding(11) var object_depth: texture_depth_2d;
 @group(1) @binding(12) var object_base: texture_2d<f32>;
+@group(1) @binding(13) var object_normal: texture_2d<f32>;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -33,6 +34,8 @@ const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
 // Difference of base colours, against the lighter one, from which two points of the model are of two materials.
 const OTHER_MATERIAL: f32 = 0.25;
+// Cosine between two normals below which they are of two sides.
+const OTHER_SIDE_COSINE: f32 = 0.9;
 // Weight of colours carried past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
@@ -117,15 +120,19 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-fn is_other_material(a: vec3f, b: vec3f) -> bool {
-  return largest(abs(a - b)) > OTHER_MATERIAL * max(largest(a), largest(b));
+// Whether the camera sees another side of the toy at `texel`: turned away and of another colour. Either alone is common
+// on one surface, at a fold or in a pattern.
+fn is_other_side(texel: vec2u, base: vec3f, normal: vec3f) -> bool {
+  let other = textureLoad(object_base, texel, 0).rgb;
+  let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
+  return is_other_color && dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE;
 }
 
 // The camera's colour of a point of the physical toy, alpha 0 where something hides it.
 //
-// Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
+// Of the four pixels around it only those count that show its own surface and side, or that lie beyond the toy's
 // outline where `appearance` carried its colours.
-fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f) -> vec4f {
+fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> vec4f {
   let depth = clip.z / clip.w;
   let at = region_px - 0.5;
   let low = floor(at);
@@ -139,8 +146,7 @@ fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f) -> vec4f {
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
-    let tap_base = textureLoad(object_base, texel, 0);
-    if tap_base.a > 0.0 && is_other_material(tap_base.rgb, base) { continue; }
+    if surface > 0.0 && is_other_side(texel, base, normal) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
@@ -166,7 +172,7 @@ fn fs_toy(in: Surface) -> @location(0) vec4f {
   let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_plane * vec4f(in.physical_in_plane, 1.0);
   let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
-  let pixel = camera_color(clip, region_px, base);
+  let pixel = camera_color(clip, region_px, base, physical_normal);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   let lit = toy_radiance_over_base(normal, in.in_plane);
   let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);

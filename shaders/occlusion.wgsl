@@ -5,7 +5,7 @@
 // i % 4; blending keeps the maximum, and the resolve averages four points. No depth, hence no bias and no acne.
 //
 // Reads: posed positions in plane space. Writes: share of four light points hidden, per channel, in [0, 1].
-// Twin: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections); Blinn 1988 (flattening).
+// Twin: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
 // Here the accumulation is done by the multisample resolve of one pass rather than by one pass a point.
 
 struct LightPoints {
@@ -14,9 +14,6 @@ struct LightPoints {
 }
 
 @group(1) @binding(0) var<uniform> light_points: LightPoints;
-
-// Depth in metres nearer than which a flattened point is cut off.
-const NEAR_M: f32 = 0.01;
 
 struct Flattened {
   @builtin(position) clip: vec4f,
@@ -27,14 +24,8 @@ struct Flattened {
 
 @vertex
 fn vs_flatten(@location(0) in_plane: vec3f, @builtin(instance_index) point: u32) -> Flattened {
-  let light = light_points.points[point];
-  // The line from the light through the vertex meets y = 0 at shadow.xy / shadow.z; shadow.z is the height by which the
-  // light is above the vertex. Nothing is divided here: a vertex above the light is for the rasteriser to clip.
-  let shadow = vec3f(light.y * in_plane.xz - in_plane.y * light.xz, light.y - light.w * in_plane.y);
-  let at = globals.clip_from_receiver * shadow;
   var out: Flattened;
-  // 0 <= z keeps what the camera has in front of it, z <= w what the light has below it.
-  out.clip = vec4f(at.xy, at.z - NEAR_M * shadow.z, at.z);
+  out.clip = clip_from_flattened(flatten(light_points.points[point], in_plane));
   out.height_m = in_plane.y;
   out.point = point;
   return out;

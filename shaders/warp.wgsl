@@ -7,8 +7,6 @@
 // Reads: positions of both poses. Writes: source in region_px, occluder's height in metres, 1.
 // Source: Casas et al. 2018, sections 3.2 and 4.5.
 
-const NEAR_M: f32 = 0.01;
-
 struct Warped {
   @builtin(position) clip: vec4f,
   // Homogeneous, so that the division comes after the interpolation.
@@ -16,17 +14,10 @@ struct Warped {
   @location(1) height_m: f32,
 }
 
-fn flatten(in_plane: vec3f) -> vec3f {
-  let light = published.light;
-  return vec3f(light.y * in_plane.xz - in_plane.y * light.xz, light.y - light.w * in_plane.y);
-}
-
 @vertex
 fn vs_warp(@location(0) shown_in_plane: vec3f, @location(1) physical_in_plane: vec3f) -> Warped {
-  let shadow = flatten(shown_in_plane);
-  let at = globals.clip_from_receiver * shadow;
-  let source = globals.clip_from_receiver * flatten(physical_in_plane);
-  return Warped(vec4f(at.xy, at.z - NEAR_M * shadow.z, at.z), source, shown_in_plane.y);
+  let source = globals.clip_from_receiver * flatten(published.light, physical_in_plane);
+  return Warped(clip_from_flattened(flatten(published.light, shown_in_plane)), source, shown_in_plane.y);
 }
 
 struct WarpTexel {

@@ -74,8 +74,8 @@ pub enum Warning {
     },
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
-    /// The camera's centre lies in the receiver's plane.
-    CameraInPlane,
+    /// The camera's centre is not above the receiver.
+    CameraBelowReceiver,
 }
 
 impl fmt::Display for Warning {
@@ -106,8 +106,8 @@ impl fmt::Display for Warning {
                 "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
             ),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
-            Self::CameraInPlane => {
-                f.write_str("the camera is in the receiver's plane: the camera frame passes through")
+            Self::CameraBelowReceiver => {
+                f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
         }
     }

@@ -86,6 +86,7 @@ impl Passes {
             appearance: &capture.appearance.view,
             object_depth: &capture.object_depth.view,
             object_base: &capture.object_base.view,
+            object_normal: &capture.object_normal.view,
         };
         let targets = CompositeTargets {
             samples: &capture.samples.view,

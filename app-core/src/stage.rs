@@ -220,8 +220,8 @@ impl Stage {
         if self.plate_image(&input.world_from_camera).is_none() {
             return warned(Warning::NoPlate);
         }
-        if self.view(&input.world_from_camera).camera_in_plane().y == 0.0 {
-            return warned(Warning::CameraInPlane);
+        if self.view(&input.world_from_camera).camera_in_plane().y <= 0.0 {
+            return warned(Warning::CameraBelowReceiver);
         }
         let region = match self.known_region {
             Some((known, camera, region)) if known == clip && camera == input.world_from_camera => region,

@@ -174,7 +174,7 @@ fn the_program_says_what_is_wrong() {
         (
             &["--preset", "dazzling"],
             2,
-            "preset \"dazzling\" is not built; there is balanced",
+            "preset \"dazzling\" is not built; there are flat, paper, balanced",
         ),
         (&["--frames", "3..3"], 2, "3..3"),
         (&["--frames", "3-4"], 2, "3-4"),

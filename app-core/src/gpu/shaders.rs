@@ -28,6 +28,7 @@ const GLOBALS: &str = wgsl!("common/globals");
 const DEPTH: &str = wgsl!("common/depth");
 const FIT: &str = wgsl!("common/fit");
 const FIT_STEP: &str = wgsl!("common/fit_step");
+const FLATTEN: &str = wgsl!("common/flatten");
 const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
 const MATERIAL: &str = wgsl!("common/material");
@@ -53,7 +54,7 @@ pub(crate) const APPEARANCE: Shader = Shader {
 };
 pub(crate) const OCCLUSION: Shader = Shader {
     name: "occlusion",
-    parts: &[GLOBALS, wgsl!("occlusion")],
+    parts: &[GLOBALS, FLATTEN, wgsl!("occlusion")],
     entry_points: &["vs_flatten", "fs_cover"],
 };
 pub(crate) const VISIBILITY: Shader = Shader {
@@ -114,7 +115,7 @@ pub(crate) const ELIGIBLE: Shader = Shader {
 };
 pub(crate) const WARP: Shader = Shader {
     name: "warp",
-    parts: &[GLOBALS, PUBLISHED, wgsl!("warp")],
+    parts: &[GLOBALS, PUBLISHED, FLATTEN, wgsl!("warp")],
     entry_points: &["vs_warp", "fs_source"],
 };
 pub(crate) const SEARCH: Shader = Shader {

@@ -35,6 +35,7 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) appearance: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
     pub(crate) object_base: &'a wgpu::TextureView,
+    pub(crate) object_normal: &'a wgpu::TextureView,
 }
 
 /// Textures of the region's size: two multisampled ones that stay on the chip, and the picture.
@@ -132,6 +133,7 @@ impl Composite {
                 (10, view(inputs.appearance)),
                 (11, view(inputs.object_depth)),
                 (12, view(inputs.object_base)),
+                (13, view(inputs.object_normal)),
             ],
         )
     }
