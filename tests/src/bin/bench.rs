@@ -12,14 +12,14 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
-use harness::bench::{Options, bench, csv, table};
+use harness::bench::{Options, Row, bench, csv, table};
 use harness::files::Folder;
 use harness::output::{make_folder, remove_file, write_whole};
 
 /// The session that comes with the project.
 const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
-/// Where the result goes that was given no place.
-const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench");
+/// Where the result goes that was given no place, below the top of the repository.
+const RESULTS: &str = "target/bench";
 /// File name of the result.
 const CSV_FILE: &str = "bench.csv";
 
@@ -29,9 +29,9 @@ const CSV_FILE: &str = "bench.csv";
 struct Args {
     /// Folders of sessions [default: the bundled one]
     sessions: Vec<PathBuf>,
-    /// Folder for bench.csv
-    #[arg(long, value_name = "DIR", default_value = RESULTS, hide_default_value = true)]
-    out: PathBuf,
+    /// Folder for bench.csv [default: target/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Presets, apart by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     presets: Vec<Preset>,
@@ -76,8 +76,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .adapter
         .clone()
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
-    let result = args.out.join(CSV_FILE);
-    make_folder(&args.out)?;
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let results = || package.parent().unwrap_or(package).join(RESULTS);
+    let out = args.out.clone().unwrap_or_else(results);
+    let result = out.join(CSV_FILE);
+    make_folder(&out)?;
     // A result in the folder means that all sessions were measured.
     remove_file(&result)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
@@ -95,7 +98,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .context("writing to standard output")
 }
 
-fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<harness::bench::Row>> {
+fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
     let capture = Capture::open(Folder::open(folder)?)?;
     let options = Options {
         presets: if args.presets.is_empty() {

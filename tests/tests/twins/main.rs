@@ -8,6 +8,7 @@ mod device;
 mod errors;
 mod fill;
 mod fit;
+mod inject;
 mod occlusion;
 mod photo;
 mod place;
