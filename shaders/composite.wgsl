@@ -68,7 +68,9 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let f = textureLoad(frame, image_texel, 0).rgb;
   let point = receiver_point(at);
   let b = textureLoad(plate, image_texel, 0).rgb;
-  if !point.is_hit { return vec4f(f, 1.0); }
+  let seen = textureLoad(evidence, texel, 0).r;
+  // Beyond the receiver nothing changes but that the real toy goes.
+  if !point.is_hit { return vec4f(mix(fit.gain.rgb * b, f, seen), 1.0); }
   let uv = at / globals.region_size_px;
   let before = receiver_model(point.in_plane, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
@@ -77,7 +79,6 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let change = abs(after - before);
   let most = largest(change);
   let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
-  let seen = textureLoad(evidence, texel, 0).r;
   let keep = seen * (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most));
   let made = b * max(after + residual, vec3f(0.0));
   let kept = f + b * (after - before);
@@ -142,7 +143,7 @@ fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> ve
   for (var k = 0u; k < 4u; k++) {
     let corner = vec2f(f32(k & 1u), f32(k >> 1u));
     let tap = low + corner;
-    if any(tap < vec2f(0.0)) || any(tap > last) { continue; }
+    if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }

@@ -1,4 +1,4 @@
-// Which pixels of the frame show what: r is 1 where it shows the receiver alone, g where it shows one surface of the toy.
+// Which pixels of the frame show what: r is 1 where it is clear of the toy, g where it shows one surface of the toy.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are evidence of neither.
 // Reads: depth of the physical toy. Writes: r and g, 0 or 1.
@@ -38,6 +38,5 @@ fn is_one_surface(texel: vec2i) -> bool {
 @fragment
 fn fs_mark(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2i(at.xy);
-  let shows_receiver = receiver_point(at.xy).is_hit && is_clear_of_toy(texel);
-  return vec4f(select(0.0, 1.0, shows_receiver), select(0.0, 1.0, is_one_surface(texel)), 0.0, 1.0);
+  return vec4f(select(0.0, 1.0, is_clear_of_toy(texel)), select(0.0, 1.0, is_one_surface(texel)), 0.0, 1.0);
 }

@@ -118,7 +118,11 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
     sums[lane] = total;
   }
   workgroupBarrier();
+  if lane >= 3u { return; }
   // Without any evidence the starting values stay.
-  if lane >= 3u || sums[lane * N_SUMS] <= 0.0 { return; }
-  if step.subject == SUBJECT_RECEIVER { solve_receiver(lane); } else { solve_toy(lane); }
+  if step.subject == SUBJECT_RECEIVER {
+    if sums[lane * N_SUMS] > 0.0 { solve_receiver(lane); }
+  } else if sums[0] + sums[N_SUMS] + sums[2u * N_SUMS] > 0.0 {
+    solve_toy(lane);
+  }
 }

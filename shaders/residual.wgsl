@@ -31,14 +31,15 @@ fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
     for (var x = first.x; x < last.x; x++) {
       let texel = vec2u(x, y);
       let seen = textureLoad(evidence, texel, 0).r;
-      if seen == 0.0 { continue; }
       let at = vec2f(texel) + 0.5;
+      let point = receiver_point(at);
+      if seen == 0.0 || !point.is_hit { continue; }
       let image_texel = texel + vec2u(globals.region_origin_px);
       let f = textureLoad(frame, image_texel, 0).rgb;
       let b = textureLoad(plate, image_texel, 0).rgb;
       let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
       let v = textureLoad(visibility, texel, 0);
-      let e = f - b * receiver_model(receiver_point(at).in_plane, a, v);
+      let e = f - b * receiver_model(point.in_plane, a, v);
       let brightness = dot(b, b);
       if brightness == 0.0 { continue; }
       let usable = is_evidence(f, b);

@@ -114,13 +114,9 @@ impl Capture {
             depth: &self.object_depth.view,
         };
         passes.object.encode(gpu, encoder, &self.globals, toy, &outputs);
-        passes.evidence.encode(
-            gpu,
-            encoder,
-            &self.globals,
-            &self.object_depth.view,
-            &self.evidence.view,
-        );
+        passes
+            .evidence
+            .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
         self.encode_visibilities(
             gpu,
             encoder,

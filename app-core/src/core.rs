@@ -39,7 +39,9 @@ pub enum CoreError {
     #[error("a frame came before its scene")]
     NoScene,
     /// A picture is not of the scene's size.
-    #[error("the {what} has {actual_px:?} pixels, the scene {expected_px:?}")]
+    #[error(
+        "the {what} has {actual_px:?} pixels in {n_bytes} bytes, the scene {expected_px:?} of four bytes each"
+    )]
     SizeDiffers {
         /// Which picture.
         what: &'static str,
@@ -47,6 +49,16 @@ pub enum CoreError {
         expected_px: [u32; 2],
         /// The picture's size.
         actual_px: [u32; 2],
+        /// What it comes in.
+        n_bytes: usize,
+    },
+    /// A picture is larger than the device takes, or empty.
+    #[error("pictures of {size_px:?} pixels cannot be handled: each side is 1 to {largest_px} pixels")]
+    SizeOutOfRange {
+        /// The scene's size.
+        size_px: [u32; 2],
+        /// Longest side that the device takes.
+        largest_px: u32,
     },
     /// A scene that no frame could be made from.
     #[error("the scene has no receiver")]
@@ -134,10 +146,15 @@ impl Core {
     /// Takes a scene; what was learned of another is forgotten.
     ///
     /// # Errors
-    /// When it has no receiver, or a plate is not of its size.
+    /// When it has no receiver, a plate is not of its size, or that size is out of range.
     pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
         if scene.receivers.is_empty() {
             return Err(CoreError::NoReceiver);
+        }
+        let largest_px = self.gpu.device.limits().max_texture_dimension_2d;
+        let size_px = [scene.width_px, scene.height_px];
+        if size_px.iter().any(|side| !(1..=largest_px).contains(side)) {
+            return Err(CoreError::SizeOutOfRange { size_px, largest_px });
         }
         for plate in &scene.plates {
             check_size("plate", &scene, &plate.image)?;
@@ -232,11 +249,13 @@ impl Core {
             .to_array();
         for map in [&maps.physical, &maps.shown].into_iter().flatten() {
             let actual_px = [map.width, map.height];
-            if actual_px != expected_px {
+            let n_texels = map.width as usize * map.height as usize;
+            if actual_px != expected_px || map.texels.len() != n_texels {
                 return Err(CoreError::SizeDiffers {
                     what: "injected visibility",
                     expected_px,
                     actual_px,
+                    n_bytes: 16 * map.texels.len(),
                 });
             }
         }
@@ -275,13 +294,15 @@ impl Core {
 fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
     let expected_px = [scene.width_px, scene.height_px];
     let actual_px = [image.width_px, image.height_px];
-    if expected_px == actual_px {
+    let n_bytes = 4 * u64::from(image.width_px) * u64::from(image.height_px);
+    if expected_px == actual_px && image.rgba8.len() as u64 == n_bytes {
         Ok(())
     } else {
         Err(CoreError::SizeDiffers {
             what,
             expected_px,
             actual_px,
+            n_bytes: image.rgba8.len(),
         })
     }
 }

@@ -95,7 +95,7 @@ impl fmt::Display for Warning {
             Self::LightsLeftOut { n_lights } => {
                 write!(
                     f,
-                    "the shadows of {n_lights} lights stay as photographed: four are handled"
+                    "the shadows of the last {n_lights} lights stay as photographed: the preset handles fewer"
                 )
             }
             Self::LightBelowReceiver { light } => {

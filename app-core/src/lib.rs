@@ -26,6 +26,7 @@ mod passes;
 mod pipeline;
 mod published;
 mod stage;
+mod standing;
 mod window;
 mod work;
 

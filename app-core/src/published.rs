@@ -1,5 +1,6 @@
 //! The published method on one scene: its textures, its passes and the order they run in.
 
+use glam::DMat4;
 use wgpu::TextureFormat;
 
 use crate::capture::Pictures;
@@ -8,6 +9,7 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::inject::Injected;
+use crate::light_points::light_in_plane;
 use crate::passes::box_filter::BoxFilter;
 use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
@@ -18,6 +20,8 @@ use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::warp::{WARP_FORMAT, Warp};
 use crate::plan::PublishedPlan;
+use crate::preset::PublishedSettings;
+use crate::scene::{Light, Surface};
 
 /// Everything of the region's size, and the passes.
 pub(crate) struct Published {
@@ -193,5 +197,35 @@ impl Published {
             picture: &self.picture.view,
         };
         self.passes.retarget.encode(gpu, encoder, toy, &inputs, &targets);
+    }
+}
+
+/// The shaders' view of the settings and of the one light that the published method takes here.
+pub(crate) fn uniform(
+    light: &Light,
+    plane_from_world: &DMat4,
+    surface: Surface,
+    settings: &PublishedSettings,
+) -> PublishedLayout {
+    PublishedLayout {
+        light: light_in_plane(light, plane_from_world).as_vec4().to_array(),
+        #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
+        light_radius: match *light {
+            Light::Sphere { radius_m, .. } => radius_m,
+            Light::Directional {
+                angular_radius_rad, ..
+            } => angular_radius_rad.tan(),
+        } as f32,
+        is_textured: u32::from(surface == Surface::Textured),
+        is_constant: u32::from(settings.constant_ratio.is_some()),
+        constant_ratio: settings.constant_ratio.unwrap_or_default(),
+        eligible_margin_px: settings.eligible_margin_px,
+        ring_step_px: settings.ring_step_px,
+        n_ring_directions: settings.n_ring_directions,
+        n_rings: settings.n_rings,
+        box_radius_px: settings.box_radius_px,
+        seam_px: settings.seam_px,
+        n_blocker_taps: settings.n_blocker_taps,
+        n_filter_taps: settings.n_filter_taps,
     }
 }

@@ -9,18 +9,19 @@ use crate::capture::{Capture, Pictures};
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{Globals, MAX_LIGHTS, Published as PublishedLayout};
+use crate::gpu::layout::{Globals, MAX_LIGHTS};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::inject::InjectedVisibility;
-use crate::light_points::{light_in_plane, light_points};
+use crate::light_points::light_points;
 use crate::passes::present::Present;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::{Passes, encode_present};
 use crate::plan::{LeftOut, Path, Plan, PublishedPlan, SceneFacts};
 use crate::preset::{Method, Preset, PublishedSettings};
-use crate::published::Published;
+use crate::published::{self, Published};
 use crate::region::{BORDER_PX, Bounds, PixelRect, Place, Reach, View};
-use crate::scene::{Image, Light, PoseTime, Scene, Surface};
+use crate::scene::{Image, Light, PoseTime, Scene};
+use crate::standing;
 use crate::toy::{ClipId, PosedMesh, ToyError};
 use crate::work::{News, Work};
 
@@ -41,8 +42,8 @@ pub(crate) struct Stage {
     plane_from_world: DMat4,
     lights: Vec<Light>,
     physical_bounds: Bounds,
-    /// The region of the clip shown last, from the camera it was shown from.
-    known_region: Option<(ClipId, DMat4, Option<PixelRect>)>,
+    /// What the clip shown last reaches, from the camera it was shown from.
+    known_reach: Option<KnownReach>,
     toy: ToyMesh,
     posed: PosedMesh,
     frame: Texture,
@@ -54,12 +55,26 @@ pub(crate) struct Stage {
     pub(crate) output: Texture,
 }
 
+/// What toy and shadows reach in the physical pose and over a clip.
+#[derive(Clone, Copy)]
+struct KnownReach {
+    /// The clip; none for the model's pose as authored.
+    clip: Option<ClipId>,
+    world_from_camera: DMat4,
+    /// The toy alone, in plane space.
+    bounds: Bounds,
+    /// None when it is out of the picture.
+    region: Option<PixelRect>,
+}
+
 /// What was learned, and of which camera.
 struct Learned {
     world_from_camera: DMat4,
     work: Work,
     /// Its inputs were replaced: learn again.
     is_stale: bool,
+    /// The camera picture that the toy's colours were last taken from.
+    appearance_of: Option<Arc<Image>>,
 }
 
 impl Stage {
@@ -72,7 +87,11 @@ impl Stage {
             .toy
             .pose(clip_time(&scene.physical_pose), &plane_from_object, &mut posed)?;
         let size_px = [scene.width_px, scene.height_px];
-        let (lights, standing_warnings) = usable_lights(&scene, &plane_from_world);
+        let most_lights = match preset.method() {
+            Method::Model(_) => MAX_LIGHTS,
+            Method::Published(_) => 1,
+        };
+        let (lights, standing_warnings) = standing::usable_lights(&scene, &plane_from_world, most_lights);
         let output = TextureShape {
             size_px,
             format: OUTPUT_FORMAT,
@@ -94,7 +113,7 @@ impl Stage {
             plane_from_world,
             lights,
             scene,
-            known_region: None,
+            known_reach: None,
         })
     }
 
@@ -123,7 +142,7 @@ impl Stage {
         encoder: &mut Encoder,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
-        let is_new_image = self.take_image(gpu, &input.image);
+        self.take_image(gpu, &input.image);
         let mut report = FrameReport {
             ran: Vec::new(),
             skipped: Vec::new(),
@@ -135,8 +154,8 @@ impl Stage {
                 reason.tell(&mut report);
                 None
             }
-            Ok(region) => {
-                self.encode_region(gpu, encoder, input, (region, is_new_image), &mut report)?;
+            Ok(reach) => {
+                self.encode_region(gpu, encoder, input, &reach, &mut report)?;
                 self.learned.as_ref()
             }
         };
@@ -152,19 +171,26 @@ impl Stage {
         gpu: &Gpu,
         encoder: &mut Encoder,
         input: &FrameInput,
-        (region, is_image_new): (PixelRect, bool),
+        reach: &Worked,
         report: &mut FrameReport,
     ) -> Result<(), ToyError> {
-        let is_place_new = self.ensure_learned(gpu, input, region);
+        // First, so that a pose that fails leaves nothing half learned.
         self.scene.toy.pose(
             clip_time(&input.shown_pose),
             &self.plane_from_object,
             &mut self.posed,
         )?;
         self.toy.shown.write(gpu, &self.posed);
-        let Some(Learned { work, .. }) = &self.learned else {
+        let is_place_new = self.ensure_learned(gpu, input, reach);
+        let Some(learned) = &mut self.learned else {
             return Ok(());
         };
+        let is_image_new = !learned
+            .appearance_of
+            .as_ref()
+            .is_some_and(|known| Arc::ptr_eq(known, &input.image));
+        learned.appearance_of = Some(Arc::clone(&input.image));
+        let work = &learned.work;
         let pictures = Pictures {
             frame: &self.frame.view,
             plate: &self.plate.view,
@@ -180,40 +206,30 @@ impl Stage {
                 why: "place, pose and camera are known",
             });
         }
-        let ran = work
-            .passes()
-            .iter()
-            .filter(|pass| pass.name != "present" && news.runs(pass));
-        report.ran.extend(ran.map(|pass| (pass.path, pass.name)));
+        report.ran.extend(news.runs(work.passes()));
         report.skipped.extend_from_slice(work.left_out());
         report.region = Some(work.region());
         Ok(())
     }
 
     /// Uploads the camera's picture unless it is the one that is there already.
-    fn take_image(&mut self, gpu: &Gpu, image: &Arc<Image>) -> bool {
+    fn take_image(&mut self, gpu: &Gpu, image: &Arc<Image>) {
         if self
             .frame_image
             .as_ref()
             .is_some_and(|known| Arc::ptr_eq(known, image))
         {
-            return false;
+            return;
         }
         self.frame.write(gpu, &image.rgba8);
         self.frame_image = Some(Arc::clone(image));
-        true
     }
 
-    fn region_of(&mut self, input: &FrameInput) -> Result<Result<PixelRect, PassThrough>, ToyError> {
+    fn region_of(&mut self, input: &FrameInput) -> Result<Result<Worked, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
-        let physical_pose = &self.scene.physical_pose;
-        let Some(clip) = input
-            .shown_pose
-            .clip
-            .filter(|_| input.shown_pose != *physical_pose)
-        else {
+        if is_same_pose(&input.shown_pose, &self.scene.physical_pose) {
             return Ok(Err(PassThrough::PhysicalPose));
-        };
+        }
         if self.lights.is_empty() {
             return warned(Warning::NoLight);
         }
@@ -223,21 +239,30 @@ impl Stage {
         if self.view(&input.world_from_camera).camera_in_plane().y <= 0.0 {
             return warned(Warning::CameraBelowReceiver);
         }
-        let region = match self.known_region {
-            Some((known, camera, region)) if known == clip && camera == input.world_from_camera => region,
-            _ => self.region_over_clip(clip, &input.world_from_camera)?,
-        };
-        self.known_region = Some((clip, input.world_from_camera, region));
-        Ok(region.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
+        let reach = self.reach(input.shown_pose.clip, &input.world_from_camera)?;
+        Ok(match reach.region {
+            Some(region) => Ok(Worked {
+                region,
+                bounds: reach.bounds,
+            }),
+            None => Err(PassThrough::Warned(Warning::OutOfPicture)),
+        })
     }
 
     /// What toy and shadows reach in the physical pose and over all of `clip`.
-    fn region_over_clip(
-        &mut self,
-        clip: ClipId,
-        world_from_camera: &DMat4,
-    ) -> Result<Option<PixelRect>, ToyError> {
-        let over_clip = self.scene.toy.bounds_over_clip(clip)?;
+    fn reach(&mut self, clip: Option<ClipId>, world_from_camera: &DMat4) -> Result<KnownReach, ToyError> {
+        if let Some(known) = self.known_reach
+            && known.clip == clip
+            && known
+                .world_from_camera
+                .abs_diff_eq(*world_from_camera, SAME_CAMERA)
+        {
+            return Ok(known);
+        }
+        let over_clip = match clip {
+            Some(clip) => self.scene.toy.bounds_over_clip(clip)?,
+            None => self.scene.toy.bounds_of_pose(None)?,
+        };
         let in_object = Bounds {
             min: over_clip.min.as_dvec3(),
             max: over_clip.max.as_dvec3(),
@@ -248,12 +273,11 @@ impl Stage {
         let bounds = bounds_of(corners.chain([self.physical_bounds.min, self.physical_bounds.max]));
         let view = self.view(world_from_camera);
         let mut reach = Reach::new(&view, &bounds, &self.lights, &self.plane_from_world);
-        let duration_secs = self.scene.toy.clips()[clip.index()].duration_secs;
-        let moments = (0..N_REGION_MOMENTS).map(|k| f64::from(k) / f64::from(N_REGION_MOMENTS - 1));
-        let poses = moments
-            .map(|at| Some((clip, at * duration_secs)))
-            .chain([clip_time(&self.scene.physical_pose)]);
-        for pose in poses {
+        for pose in self
+            .moments(clip)
+            .into_iter()
+            .chain([clip_time(&self.scene.physical_pose)])
+        {
             self.scene
                 .toy
                 .pose(pose, &self.plane_from_object, &mut self.posed)?;
@@ -262,13 +286,36 @@ impl Stage {
                 .iter()
                 .for_each(|p| reach.include(p.as_dvec3()));
         }
-        Ok(reach
+        let region = reach
             .region()
-            .map(|region| region.grown(REGION_MARGIN_PX, view.image_px)))
+            .map(|region| region.grown(REGION_MARGIN_PX, view.image_px));
+        let known = KnownReach {
+            clip,
+            world_from_camera: *world_from_camera,
+            bounds,
+            region,
+        };
+        self.known_reach = Some(known);
+        Ok(known)
     }
 
-    /// Makes what was learned cover `region` from this camera; true when it must be learned anew.
-    fn ensure_learned(&mut self, gpu: &Gpu, input: &FrameInput, region: PixelRect) -> bool {
+    /// Moments of a clip, evenly spaced, or the pose as authored.
+    fn moments(&self, clip: Option<ClipId>) -> Vec<Option<(ClipId, f64)>> {
+        let Some(clip) = clip else { return vec![None] };
+        let duration_secs = self.scene.toy.clips()[clip.index()].duration_secs;
+        (0..N_REGION_MOMENTS)
+            .map(|k| {
+                Some((
+                    clip,
+                    duration_secs * f64::from(k) / f64::from(N_REGION_MOMENTS - 1),
+                ))
+            })
+            .collect()
+    }
+
+    /// Makes what was learned cover the region from this camera; true when it must be learned anew.
+    fn ensure_learned(&mut self, gpu: &Gpu, input: &FrameInput, worked: &Worked) -> bool {
+        let Worked { region, bounds } = *worked;
         if let Some(learned) = &mut self.learned
             && learned
                 .world_from_camera
@@ -291,7 +338,7 @@ impl Stage {
         let penumbra_px = self
             .lights
             .iter()
-            .map(|light| view.penumbra_px(light, &self.plane_from_world, &self.physical_bounds));
+            .map(|light| view.penumbra_px(light, &self.plane_from_world, &bounds));
         let facts = SceneFacts {
             region,
             penumbra_px: penumbra_px.collect(),
@@ -299,14 +346,18 @@ impl Stage {
         let globals = view.globals(&region, &place);
         let work = match self.preset.method() {
             Method::Model(settings) => self.model(gpu, Plan::new(&facts, &settings), &globals),
-            Method::Published(settings) => {
-                self.published(gpu, PublishedPlan::new(&facts, &settings), &globals, &settings)
-            }
+            Method::Published(settings) => self.published(
+                gpu,
+                (PublishedPlan::new(&facts, &settings), bounds.max.y),
+                &globals,
+                &settings,
+            ),
         };
         self.learned = Some(Learned {
             world_from_camera: input.world_from_camera,
             work,
             is_stale: false,
+            appearance_of: None,
         });
         true
     }
@@ -326,39 +377,13 @@ impl Stage {
     fn published(
         &self,
         gpu: &Gpu,
-        plan: PublishedPlan,
+        (plan, tallest_m): (PublishedPlan, f64),
         globals: &Globals,
         settings: &PublishedSettings,
     ) -> Work {
-        let light = &self.lights[0];
-        let uniform = PublishedLayout {
-            light: light_in_plane(light, &self.plane_from_world).as_vec4().to_array(),
-            #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
-            light_radius: match *light {
-                Light::Sphere { radius_m, .. } => radius_m,
-                Light::Directional {
-                    angular_radius_rad, ..
-                } => angular_radius_rad.tan(),
-            } as f32,
-            is_textured: u32::from(self.scene.receivers[0].surface == Surface::Textured),
-            is_constant: u32::from(settings.constant_ratio.is_some()),
-            constant_ratio: settings.constant_ratio.unwrap_or_default(),
-            eligible_margin_px: settings.eligible_margin_px,
-            ring_step_px: settings.ring_step_px,
-            n_ring_directions: settings.n_ring_directions,
-            n_rings: settings.n_rings,
-            box_radius_px: settings.box_radius_px,
-            seam_px: settings.seam_px,
-            n_blocker_taps: settings.n_blocker_taps,
-            n_filter_taps: settings.n_filter_taps,
-        };
-        Work::Published(Box::new(Published::new(
-            gpu,
-            plan,
-            globals,
-            &uniform,
-            self.physical_bounds.max.y,
-        )))
+        let surface = self.scene.receivers[0].surface;
+        let uniform = published::uniform(&self.lights[0], &self.plane_from_world, surface, settings);
+        Work::Published(Box::new(Published::new(gpu, plan, globals, &uniform, tallest_m)))
     }
 
     fn view(&self, world_from_camera: &DMat4) -> View {
@@ -380,6 +405,12 @@ impl Stage {
         });
         same.map(|plate| plate.image.as_ref())
     }
+}
+
+/// Where a frame is worked on, and where the toy can be there.
+struct Worked {
+    region: PixelRect,
+    bounds: Bounds,
 }
 
 /// Why a camera frame is shown as it is.
@@ -404,6 +435,11 @@ impl PassThrough {
     }
 }
 
+/// The time of a pose without a clip means nothing.
+fn is_same_pose(a: &PoseTime, b: &PoseTime) -> bool {
+    a.clip == b.clip && (a.clip.is_none() || a.time_secs.total_cmp(&b.time_secs).is_eq())
+}
+
 fn clip_time(pose: &PoseTime) -> Option<(ClipId, f64)> {
     pose.clip.map(|clip| (clip, pose.time_secs))
 }
@@ -419,30 +455,4 @@ fn bounds_of(points: impl Iterator<Item = DVec3>) -> Bounds {
             max: bounds.max.max(p),
         },
     )
-}
-
-fn usable_lights(scene: &Scene, plane_from_world: &DMat4) -> (Vec<Light>, Vec<Warning>) {
-    let mut warnings = Vec::new();
-    let mut lights = Vec::new();
-    for (index, light) in scene.lights.iter().enumerate() {
-        if light_in_plane(light, plane_from_world).y > 0.0 {
-            lights.push(*light);
-        } else {
-            warnings.push(Warning::LightBelowReceiver { light: index });
-        }
-    }
-    if lights.len() > MAX_LIGHTS {
-        warnings.push(Warning::LightsLeftOut {
-            n_lights: lights.len() - MAX_LIGHTS,
-        });
-        lights.truncate(MAX_LIGHTS);
-    }
-    if scene.receivers.len() > 1 {
-        let names = scene.receivers[1..]
-            .iter()
-            .map(|receiver| receiver.name.clone())
-            .collect();
-        warnings.push(Warning::ReceiversLeftOut { names });
-    }
-    (lights, warnings)
 }

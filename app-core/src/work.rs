@@ -58,7 +58,7 @@ impl Work {
         }
     }
 
-    /// Encodes the passes of `path`; of the capture path only what follows a new camera picture unless `is_fresh`.
+    /// Encodes the frame path, and before it what the news ask for.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
@@ -73,6 +73,8 @@ impl Work {
                 encoder.path = Path::Capture;
                 if news.is_place_new {
                     capture.encode(gpu, encoder, passes, toy, pictures);
+                } else {
+                    encoder.path = Path::Frame;
                 }
                 if news.is_place_new || news.is_image_new {
                     capture.encode_appearance(gpu, encoder, passes, pictures.frame);
@@ -128,8 +130,19 @@ pub(crate) struct News {
 }
 
 impl News {
-    /// Whether a planned pass runs.
-    pub(crate) fn runs(self, pass: &PlannedPass) -> bool {
-        pass.path == Path::Frame || self.is_place_new || (self.is_image_new && pass.name == "appearance")
+    /// Which of the planned passes run, all but `present`, and on which path.
+    ///
+    /// A new camera picture of a known place needs the toy's colours anew: then `appearance` is the frame's.
+    pub(crate) fn runs(self, passes: &[PlannedPass]) -> impl Iterator<Item = (Path, &'static str)> + '_ {
+        passes
+            .iter()
+            .filter(|pass| pass.name != "present")
+            .filter_map(move |pass| {
+                let is_frames = pass.path == Path::Frame || (pass.name == "appearance" && !self.is_place_new);
+                let is_run = pass.path == Path::Frame
+                    || self.is_place_new
+                    || (pass.name == "appearance" && self.is_image_new);
+                is_run.then_some((if is_frames { Path::Frame } else { Path::Capture }, pass.name))
+            })
     }
 }

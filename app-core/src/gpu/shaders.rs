@@ -44,7 +44,7 @@ pub(crate) const OBJECT: Shader = Shader {
 };
 pub(crate) const EVIDENCE: Shader = Shader {
     name: "evidence",
-    parts: &[GLOBALS, DEPTH, FULLSCREEN, wgsl!("evidence")],
+    parts: &[DEPTH, FULLSCREEN, wgsl!("evidence")],
     entry_points: &["vs_fullscreen", "fs_mark"],
 };
 pub(crate) const APPEARANCE: Shader = Shader {

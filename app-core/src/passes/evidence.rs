@@ -4,7 +4,7 @@ use wgpu::TextureFormat;
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
+use crate::gpu::pipeline::{GROUP_PASS, view};
 use crate::gpu::shaders::EVIDENCE;
 
 /// Format of the evidence: r for the receiver, g for the toy.
@@ -25,18 +25,13 @@ impl Evidence {
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        globals: &wgpu::Buffer,
         object_depth: &wgpu::TextureView,
         evidence: &wgpu::TextureView,
     ) {
-        let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
-        let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(object_depth))]);
-        encoder.fullscreen(
-            EVIDENCE.name,
-            &self.pipeline,
-            &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
-            evidence,
+        let own = gpu.bind(
+            &self.pipeline.get_bind_group_layout(GROUP_PASS),
+            &[(0, view(object_depth))],
         );
+        encoder.fullscreen(EVIDENCE.name, &self.pipeline, &[(GROUP_PASS, &own)], evidence);
     }
 }

@@ -62,7 +62,7 @@ pub fn receiver_color(
         pictures.seen.at(texel),
     );
     let Some(in_plane) = region.receiver_point(at) else {
-        return frame;
+        return (shown.solution.gain * plate).lerp(frame, seen);
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         let ambient = coarse_at(ambient, region, at);

@@ -76,11 +76,15 @@ fn away_px(texel: IVec2, at_px: DVec2) -> f64 {
 
 /// What a sample tells of the shadow: its colour on a uniform receiver, its ratio to the plate on a textured one.
 ///
-/// Where the plate is black, a ratio tells nothing and is 1.
+/// Where the plate is black, a ratio tells nothing and is 1; a shadow never adds light.
 #[must_use]
 pub fn term(frame: DVec3, plate: DVec3, is_textured: bool) -> DVec3 {
     if is_textured {
-        DVec3::select(plate.cmpgt(DVec3::ZERO), frame / plate, DVec3::ONE)
+        DVec3::select(
+            plate.cmpgt(DVec3::ZERO),
+            (frame / plate).min(DVec3::ONE),
+            DVec3::ONE,
+        )
     } else {
         frame
     }

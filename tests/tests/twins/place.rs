@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use app_core::light_points::{ambient_directions, light_points};
+use app_core::region::Bounds;
 use app_core::region::{PixelRect, Place, View};
 use app_core::scene::{Intrinsics, Light, PoseTime, Receiver, Surface};
 use app_core::toy::{PosedMesh, Toy};
@@ -95,6 +96,19 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
+    /// Height over the receiver of the box around the toy, over the physical pose and the whole clip.
+    pub(crate) fn tallest_m(&self) -> f64 {
+        let over_clip = self.toy.bounds_over_clip(self.shown_pose.clip.unwrap()).unwrap();
+        let corners = Bounds {
+            min: over_clip.min.as_dvec3(),
+            max: over_clip.max.as_dvec3(),
+        };
+        let plane_from_object = self.plane_from_world * self.world_from_object;
+        let clip = corners.corners().map(|p| plane_from_object.transform_point3(p).y);
+        let physical = self.physical.positions.iter().map(|p| f64::from(p.y));
+        clip.chain(physical).fold(f64::MIN, f64::max)
+    }
+
     pub(crate) fn new(setup: Setup) -> Self {
         let toy = Toy::from_glb("boxes.glb", &toy::glb()).unwrap();
         let clip = toy.find_clip(toy::CLIP).unwrap();

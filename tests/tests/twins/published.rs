@@ -172,11 +172,6 @@ fn percentage_closer_soft_shadows() {
     for run in runs() {
         let stand = &run.stand;
         let light = &stand.setup.lights[0];
-        let heights = stand
-            .physical
-            .positions
-            .iter()
-            .map(|position| f64::from(position.y));
         let softness = Softness {
             light: light_in_plane(light, &stand.plane_from_world),
             light_radius: match *light {
@@ -185,7 +180,7 @@ fn percentage_closer_soft_shadows() {
                     angular_radius_rad, ..
                 } => angular_radius_rad.tan(),
             },
-            tallest_m: heights.fold(0.0, f64::max),
+            tallest_m: stand.tallest_m(),
             n_blocker_taps: PUBLISHED.n_blocker_taps,
             n_filter_taps: PUBLISHED.n_filter_taps,
         };
