@@ -1,10 +1,12 @@
 //! Replay harness: runs the core over recorded sessions on a desktop, scores what it makes and reports what it took.
 
 pub mod compare;
+pub mod false_color;
 pub mod files;
 pub mod golden;
 pub mod metrics;
 pub mod output;
+pub mod page;
 pub mod progress;
 pub mod reference;
 pub mod replay;
