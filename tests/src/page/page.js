@@ -24,7 +24,7 @@ function play() {
 
 const viewers = data.presets.map(makeViewer);
 at("viewers").append(...viewers.map(viewer => viewer.node));
-at("viewers").classList.toggle("single", !several);
+document.querySelector("main").classList.toggle("single", !several);
 at("link-label").hidden = !several;
 const [{ report }] = data.presets;
 document.title = `${data.session || "Session"} \u2013 replay`;
