@@ -106,12 +106,14 @@ fn measure(
     options: &Options,
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
-        preset,
+        presets: vec![preset],
         frames: options.frames.clone(),
         out: None,
     };
     // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
-    let report = replay(session, Some(session), core, &asked, &mut Quiet)?;
+    let mut reports = replay(session, Some(session), core, &asked, &mut Quiet)?;
+    // One preset, one report.
+    let report = reports.swap_remove(0);
     let inputs = inputs(session, &report)?;
     Ok(Row {
         session: report.session,

@@ -2,10 +2,12 @@
 
 pub mod bench;
 pub mod compare;
+pub mod false_color;
 pub mod files;
 pub mod golden;
 pub mod metrics;
 pub mod output;
+pub mod page;
 pub mod progress;
 pub mod reference;
 pub mod replay;

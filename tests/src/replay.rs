@@ -6,15 +6,20 @@ use std::time::{Duration, Instant};
 
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
+use app_core::maps::Map;
 use app_core::preset::Preset;
+use app_core::region::PixelRect;
 use app_core::scene::Image;
-use app_core::session::{GroundTruth, Session, SessionError};
+use app_core::session::{GroundTruth, Session, SessionError, Truth};
 use thiserror::Error;
 
+use crate::false_color::{self, ERROR, describe};
 use crate::metrics::{Regions, Scores, SizeError, measure};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
+use crate::page::pictures::Pictures;
+use crate::page::{self, MAPS_FOLDER, PAGE_FILE};
 use crate::progress::Progress;
-use crate::report::{FitEntry, FrameEntry, Mean, Report, pass_entries};
+use crate::report::{FitEntry, FrameEntry, MapEntry, Mean, Report, pass_entries};
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
@@ -22,14 +27,26 @@ pub const REPORT_FILE: &str = "report.json";
 const SESSION_FILE: &str = "capture.json";
 
 /// What to replay and where to put it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Options {
-    /// How much work a frame may cost.
-    pub preset: Preset,
+    /// How much work a frame may cost: all frames with each, and no two the same.
+    pub presets: Vec<Preset>,
     /// The frames to replay, all without it.
     pub frames: Option<Range<usize>>,
-    /// Folder for pictures and report, made where it is missing; without it nothing is written.
+    /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
+    ///
+    /// One preset writes its pictures and report right there, several each into a folder of its name.
     pub out: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            presets: vec![Preset::default()],
+            frames: None,
+            out: None,
+        }
+    }
 }
 
 /// A replay that did not come to its end.
@@ -83,10 +100,10 @@ pub fn picture_file(index: usize) -> String {
     format!("frame_{index:04}.png")
 }
 
-/// Replays `session` on `core`, scores it against `truth`, and tells `progress` about each frame.
+/// Replays `session` on `core` with each preset, scores it against `truth`, and tells `progress` about each frame.
 ///
-/// A report left by an earlier run is removed first, so that one in the output folder means that all frames were
-/// written.
+/// Report and page left by an earlier run are removed first, so that one in the output folder means that all frames
+/// were written.
 ///
 /// # Errors
 /// When a frame cannot be read, made or written; those before it stay.
@@ -96,47 +113,144 @@ pub fn replay(
     core: &mut Core,
     options: &Options,
     progress: &mut dyn Progress,
-) -> Result<Report, ReplayError> {
-    let indices = frames_of(session, options)?;
+) -> Result<Vec<Report>, ReplayError> {
+    let frames = frames_of(session, options)?;
     let out = options.out.as_deref();
-    if let Some(folder) = out {
-        prepare(folder)?;
+    let folders: Vec<String> = options
+        .presets
+        .iter()
+        .map(|preset| match options.presets.len() {
+            1 => String::new(),
+            _ => format!("{}/", preset.name()),
+        })
+        .collect();
+    for folder in folders.iter().map(String::as_str).chain([""]) {
+        out.map(|out| prepare(&out.join(folder))).transpose()?;
     }
-    let scene = session.scene();
-    core.set_scene(scene.clone(), options.preset)?;
-    progress.start(&scene.name, indices.len());
-    let mut frames = Vec::with_capacity(indices.len());
-    for index in indices {
-        let (mut entry, picture) = run_frame(session, core, index)?;
-        if let Some(truth) = truth {
-            entry.scores = score(truth, index, &picture)?;
+    let mut reports = Vec::with_capacity(folders.len());
+    for (preset, folder) in options.presets.iter().zip(folders) {
+        let mut run = Run {
+            session,
+            truth,
+            core,
+            out: out.map(|out| Out::new(out.join(&folder))),
+        };
+        let report = run.replay(*preset, frames.clone(), progress)?;
+        reports.push((folder, report));
+    }
+    if let Some(out) = out {
+        page::write(out, (session, truth), frames, &reports)?;
+    }
+    Ok(reports.into_iter().map(|(_, report)| report).collect())
+}
+
+/// Where one preset's pictures go.
+struct Out {
+    folder: PathBuf,
+    maps: Pictures,
+}
+
+impl Out {
+    fn new(folder: PathBuf) -> Self {
+        Self {
+            maps: Pictures::new(&folder, MAPS_FOLDER),
+            folder,
         }
-        if let Some(folder) = out {
+    }
+}
+
+/// The replay with one preset.
+struct Run<'a> {
+    session: &'a dyn Session,
+    truth: Option<&'a dyn GroundTruth>,
+    core: &'a mut Core,
+    out: Option<Out>,
+}
+
+impl Run<'_> {
+    fn replay(
+        &mut self,
+        preset: Preset,
+        indices: Range<usize>,
+        progress: &mut dyn Progress,
+    ) -> Result<Report, ReplayError> {
+        let scene = self.session.scene();
+        self.core.set_scene(scene.clone(), preset)?;
+        progress.start(&format!("{} with {preset}", scene.name), indices.len());
+        let mut frames = Vec::with_capacity(indices.len());
+        for index in indices {
+            let entry = self.frame(index)?;
+            progress.frame(&entry);
+            frames.push(entry);
+        }
+        let report = Report {
+            session: scene.name.clone(),
+            preset: preset.name(),
+            adapter: self.core.gpu().adapter_name(),
+            is_software: self.core.gpu().is_software(),
+            size_px: [scene.width_px, scene.height_px],
+            warnings: warnings_of(self.session, self.core)?,
+            mean: Mean::of(&frames),
+            fit: self
+                .core
+                .read_fit()?
+                .map(|fit| FitEntry::new(&fit, scene.lights.len())),
+            frames,
+        };
+        if let Some(out) = &self.out {
+            write_report(&out.folder, &report)?;
+        }
+        progress.finish();
+        Ok(report)
+    }
+
+    fn frame(&mut self, index: usize) -> Result<FrameEntry, ReplayError> {
+        let (mut entry, region, picture) = run_frame(self.session, self.core, index)?;
+        let truth = match self.truth {
+            Some(truth) => truth.truth(index)?,
+            None => None,
+        };
+        if let Some(truth) = &truth {
+            entry.scores = Some(score(truth, index, &picture)?);
+        }
+        if let Some(out) = &mut self.out {
             let name = picture_file(index);
-            write_png(&folder.join(&name), &picture)?;
+            write_png(&out.folder.join(&name), &picture)?;
             entry.picture = Some(name);
+            let error = truth.map(|truth| false_color::error(&picture, &truth.image));
+            entry.error = error
+                .map(|error| out.maps.write(ERROR.name, index, error.into()))
+                .transpose()?;
+            let size_px = [picture.width_px, picture.height_px];
+            if let Some(region) = region {
+                entry.maps = write_maps(&mut out.maps, self.core, (index, region), size_px)?;
+            }
         }
-        progress.frame(&entry);
-        frames.push(entry);
+        Ok(entry)
     }
-    let report = Report {
-        session: scene.name.clone(),
-        preset: options.preset.name(),
-        adapter: core.gpu().adapter_name(),
-        is_software: core.gpu().is_software(),
-        size_px: [scene.width_px, scene.height_px],
-        warnings: warnings_of(session, core)?,
-        mean: Mean::of(&frames),
-        fit: core
-            .read_fit()?
-            .map(|fit| FitEntry::new(&fit, scene.lights.len())),
-        frames,
-    };
-    if let Some(folder) = out {
-        write_report(folder, &report)?;
+}
+
+fn write_maps(
+    pictures: &mut Pictures,
+    core: &Core,
+    (index, region): (usize, PixelRect),
+    size_px: [u32; 2],
+) -> Result<Vec<MapEntry>, ReplayError> {
+    let mut entries = Vec::new();
+    for map in Map::ALL {
+        let values = core
+            .read_map(*map)
+            .map_err(|reason| ReplayError::Frame { index, reason })?;
+        if let (Some(shown), Some(values)) = (describe(*map), values) {
+            let picture = false_color::picture(*map, &values, region, size_px);
+            let file = pictures.write(shown.name, index, picture.into())?;
+            entries.push(MapEntry {
+                name: shown.name,
+                file,
+            });
+        }
     }
-    progress.finish();
-    Ok(report)
+    Ok(entries)
 }
 
 fn warnings_of(session: &dyn Session, core: &Core) -> Result<Vec<String>, CoreError> {
@@ -162,6 +276,7 @@ fn prepare(folder: &Path) -> Result<(), ReplayError> {
             folder: folder.to_owned(),
         });
     }
+    remove_file(&folder.join(PAGE_FILE))?;
     Ok(remove_file(&folder.join(REPORT_FILE))?)
 }
 
@@ -170,7 +285,7 @@ fn run_frame(
     session: &dyn Session,
     core: &mut Core,
     index: usize,
-) -> Result<(FrameEntry, Image), ReplayError> {
+) -> Result<(FrameEntry, Option<PixelRect>, Image), ReplayError> {
     let failed = |reason| ReplayError::Frame { index, reason };
     let frame = session.frame(index)?;
     let input = FrameInput::from(&frame);
@@ -185,6 +300,8 @@ fn run_frame(
         index,
         time_secs: frame.time_secs,
         picture: None,
+        error: None,
+        maps: Vec::new(),
         region: report.region.map(Into::into),
         gpu_ms: (!times.is_empty()).then(|| times.iter().map(|time| time.gpu_ms).sum()),
         cpu_ms: ms(cpu),
@@ -196,15 +313,11 @@ fn run_frame(
             .collect(),
         scores: None,
     };
-    Ok((entry, picture))
+    Ok((entry, report.region, picture))
 }
 
-fn score(truth: &dyn GroundTruth, index: usize, picture: &Image) -> Result<Option<Scores>, ReplayError> {
-    let Some(truth) = truth.truth(index)? else {
-        return Ok(None);
-    };
+fn score(truth: &Truth, index: usize, picture: &Image) -> Result<Scores, ReplayError> {
     measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
-        .map(Some)
         .map_err(|reason| ReplayError::Score { index, reason })
 }
 

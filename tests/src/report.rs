@@ -59,6 +59,10 @@ pub struct FrameEntry {
     pub time_secs: f64,
     /// File name of its picture; none where pictures are not written.
     pub picture: Option<String>,
+    /// File of its false-colour error against the truth, where there is one and pictures are written.
+    pub error: Option<String>,
+    /// The maps between input and picture, where pictures are written and a region was worked on.
+    pub maps: Vec<MapEntry>,
     /// The rectangle that was worked on; none where the camera frame passed through.
     pub region: Option<RectEntry>,
     /// Device time of all passes; none where the device cannot tell.
@@ -75,6 +79,15 @@ pub struct FrameEntry {
     pub warnings: Vec<String>,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
+}
+
+/// A map as a picture of the whole frame.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MapEntry {
+    /// Name of the map.
+    pub name: &'static str,
+    /// Its file; frames with equal maps share one.
+    pub file: String,
 }
 
 /// A rectangle of the picture.

@@ -10,11 +10,13 @@ use std::process::{self, Command, Output};
 
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::wgpu;
 use harness::files::Folder;
 use harness::metrics::{Regions, Score, Scores, measure};
+use harness::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
 use harness::progress::Quiet;
 use harness::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
 use harness::report::{Report, mean_scores};
@@ -27,7 +29,12 @@ fn bundled() -> Capture {
     Capture::open(Folder::open(BUNDLED).unwrap()).unwrap()
 }
 
+/// Replays with one preset.
 fn run(session: &Capture, options: &Options) -> Result<Report, ReplayError> {
+    run_all(session, options).map(|mut reports| reports.remove(0))
+}
+
+fn run_all(session: &Capture, options: &Options) -> Result<Vec<Report>, ReplayError> {
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
     replay(session, Some(session), &mut core, options, &mut Quiet)
@@ -43,7 +50,7 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
     let report = run(&session, &options).unwrap();
 
     let mut expected: Vec<String> = (0..session.n_frames()).map(picture_file).collect();
-    expected.push(REPORT_FILE.to_owned());
+    expected.extend([PAGE_FILE, INPUTS_FOLDER, MAPS_FOLDER, REPORT_FILE].map(str::to_owned));
     assert_eq!(out.names(), expected);
     for index in 0..session.n_frames() {
         let picture = image::open(out.join(picture_file(index))).unwrap().into_rgba8();
@@ -84,7 +91,7 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
     assert_eq!(
         out.names(),
-        [picture_file(3), picture_file(4)],
+        [picture_file(3), picture_file(4), MAPS_FOLDER.to_owned()],
         "what was whole stays, and no remnants"
     );
 
@@ -96,8 +103,75 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     );
     assert_eq!(
         out.names(),
-        [picture_file(3), picture_file(4), REPORT_FILE.to_owned()]
+        [
+            &picture_file(3),
+            &picture_file(4),
+            PAGE_FILE,
+            INPUTS_FOLDER,
+            MAPS_FOLDER,
+            REPORT_FILE
+        ]
     );
+}
+
+#[test]
+fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
+    const NAME: &str = "</script><script>alert(1)</script>";
+    let (folder, out) = (TemporaryFolder::new("named"), TemporaryFolder::new("page"));
+    for entry in fs::read_dir(BUNDLED).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
+    let index = fs::read_to_string(folder.join("capture.json")).unwrap();
+    let mut index: serde_json::Value = serde_json::from_str(&index).unwrap();
+    index["name"] = NAME.into();
+    fs::write(folder.join("capture.json"), index.to_string()).unwrap();
+    let session = Capture::open(Folder::open(&*folder).unwrap()).unwrap();
+    let options = Options {
+        presets: vec![Preset::Flat, Preset::Balanced],
+        frames: Some(1..2),
+        out: Some(out.to_owned()),
+    };
+    run_all(&session, &options).unwrap();
+
+    let page = fs::read_to_string(out.join(PAGE_FILE)).unwrap();
+    assert_eq!(
+        page.matches("</script>").count(),
+        2,
+        "one for the data, one for the script"
+    );
+    for remote in [
+        "http:", "https:", "src=\"", "href=", "url(", "@import", "fetch(", "{{",
+    ] {
+        assert!(!page.contains(remote), "{remote}");
+    }
+    let (_, data) = page.split_once("id=\"data\">").unwrap();
+    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    assert_eq!(data["session"], NAME);
+    let mut n_pictures = 0;
+    let mut check = |folder: &serde_json::Value, file: &serde_json::Value| {
+        let path = out.join(folder.as_str().unwrap()).join(file.as_str().unwrap());
+        assert_eq!(
+            image::image_dimensions(&path).unwrap(),
+            (640, 360),
+            "{}",
+            path.display()
+        );
+        n_pictures += 1;
+    };
+    let (inputs, presets) = (&data["frames"][0], data["presets"].as_array().unwrap());
+    check(&"".into(), &inputs["before"]);
+    check(&"".into(), &inputs["truth"]);
+    for preset in presets {
+        let frame = &preset["report"]["frames"][0];
+        check(&preset["folder"], &frame["picture"]);
+        check(&preset["folder"], &frame["error"]);
+        for map in frame["maps"].as_array().unwrap() {
+            check(&preset["folder"], &map["file"]);
+        }
+    }
+    // Inputs, then picture, error and maps of each preset.
+    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 4 + 2 + 8));
 }
 
 #[test]
@@ -204,7 +278,14 @@ fn the_program_replays_quietly() {
     let out = TemporaryFolder::new("quiet");
     let output = program(&["--quiet", "--frames", "4..5", "--out", out.to_str().unwrap()]);
     assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
-    assert_eq!(out.names(), [picture_file(4), REPORT_FILE.to_owned()]);
+    let expected = [
+        &picture_file(4),
+        PAGE_FILE,
+        INPUTS_FOLDER,
+        MAPS_FOLDER,
+        REPORT_FILE,
+    ];
+    assert_eq!(out.names(), expected);
 }
 
 fn program(args: &[&str]) -> Output {

@@ -20,13 +20,7 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
         &["--out".into(), out.clone().into_os_string()],
     )?;
     if code == ExitCode::SUCCESS {
-        let page = out.join("index.html");
-        let first = if page.exists() {
-            page
-        } else {
-            out.join("frame_0000.png")
-        };
-        println!("To see it, open {}", from_here(&first).display());
+        println!("To see it, open {}", from_here(&out.join("index.html")).display());
     }
     Ok(code)
 }

@@ -13,6 +13,7 @@ use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
 use harness::files::Folder;
+use harness::page::PAGE_FILE;
 use harness::progress::{Progress, Quiet, on_stderr};
 use harness::replay::{Options, REPORT_FILE, replay};
 use harness::report::Report;
@@ -22,19 +23,19 @@ const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/lla
 /// Where results go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/replay";
 
-/// Replay a recorded session: one picture per frame, and report.json with times, passes and, where there is a truth,
-/// errors.
+/// Replay a recorded session: one picture per frame, report.json with times, passes and, where there is a truth, errors,
+/// and index.html to look at it all.
 #[derive(Parser)]
 #[command(name = "replay")]
 struct Args {
     /// Folder of the session [default: the bundled one]
     session: Option<PathBuf>,
-    /// Folder for pictures and report [default: target/replay/ and the name of the session's folder]
+    /// Folder for pictures, report and page [default: target/replay/ and the name of the session's folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// How much work a frame may cost
-    #[arg(long, value_name = "NAME", default_value_t)]
-    preset: Preset,
+    /// How much work a frame may cost; several are shown side by side
+    #[arg(long = "preset", value_name = "NAME,...", value_delimiter = ',', default_values_t = [Preset::default()])]
+    presets: Vec<Preset>,
     /// Only frames A up to, but without, B
     #[arg(long, value_name = "A..B", value_parser = parse_frames)]
     frames: Option<Range<usize>>,
@@ -75,15 +76,15 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
     let options = Options {
-        preset: args.preset,
+        presets: without_repeats(&args.presets),
         frames: args.frames.clone(),
         out: Some(out.clone()),
     };
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
-    let report = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
+    let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
     if !args.quiet {
         io::stdout()
-            .write_all(summary(&report, &out).as_bytes())
+            .write_all(summary(&reports, &out).as_bytes())
             .context("writing to standard output")?;
     }
     Ok(())
@@ -112,7 +113,27 @@ fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
     Ok(results.join(session.file_name().unwrap_or("session".as_ref())))
 }
 
-fn summary(report: &Report, out: &Path) -> String {
+fn without_repeats(presets: &[Preset]) -> Vec<Preset> {
+    let mut unique = Vec::new();
+    for preset in presets {
+        if !unique.contains(preset) {
+            unique.push(*preset);
+        }
+    }
+    unique
+}
+
+fn summary(reports: &[Report], out: &Path) -> String {
+    let mut lines: Vec<String> = reports.iter().flat_map(summary_of).collect();
+    let n_pictures: usize = reports.iter().map(|report| report.frames.len()).sum();
+    lines.push(format!(
+        "{n_pictures} pictures and {REPORT_FILE} in {}, to be seen in {PAGE_FILE}",
+        out.display()
+    ));
+    lines.join("\n") + "\n"
+}
+
+fn summary_of(report: &Report) -> Vec<String> {
     let mut lines = vec![format!(
         "{} with preset {} on {}",
         report.session, report.preset, report.adapter
@@ -136,10 +157,5 @@ fn summary(report: &Report, out: &Path) -> String {
             regions.join(", ")
         ));
     }
-    lines.push(format!(
-        "{} pictures and {REPORT_FILE} in {}",
-        report.frames.len(),
-        out.display()
-    ));
-    lines.join("\n") + "\n"
+    lines
 }

@@ -1,0 +1,118 @@
+/* Numbers */
+
+function table(caption, heads, rows) {
+  const header = el("thead", {}, el("tr", {}, heads.map(head => el("th", { scope: "col" }, head))));
+  return el("div", { class: "scroll" }, el("table", {}, el("caption", {}, caption), header, el("tbody", {}, rows)));
+}
+
+function row(head, cells, attributes = {}) {
+  return el("tr", attributes, el("th", { scope: "row" }, head), cells.map(cell => el("td", {}, cell)));
+}
+
+/* RMSE over SSIM, each preset beside the others; the best of several in bold. */
+function scoreCells(scores) {
+  const rounded = (score, key, digits) => score && score[key].toFixed(digits);
+  const best = (key, digits, pick) => pick(...scores.filter(Boolean).map(score => Number(rounded(score, key, digits))));
+  const mark = (text, isBest) => several && isBest ? el("b", {}, text) : text;
+  const lowest = best("rmse", 2, Math.min);
+  const highest = best("ssim", 4, Math.max);
+  return scores.map(score => score === null ? "\u2013" : [
+    mark(rounded(score, "rmse", 2), Number(rounded(score, "rmse", 2)) === lowest),
+    el("small", {}, mark(rounded(score, "ssim", 4), Number(rounded(score, "ssim", 4)) === highest)),
+  ]);
+}
+
+function showNumbers() {
+  const heads = ["", ...data.presets.map(preset => preset.report.preset)];
+  const title = el("h2", {}, "Error against the truth");
+  if (!data.presets.some(preset => preset.report.mean.scores)) {
+    at("numbers").replaceChildren(title, el("p", { class: "soft" }, "The session has no truth to compare with."));
+    return;
+  }
+  const byRegion = scores => REGIONS.map(region =>
+    row(region, scoreCells(data.presets.map(preset => scores(preset)?.[region] ?? null))));
+  const nScored = data.presets[0].report.mean.n_scored;
+  const everyFrame = data.frames.map(({ index }, i) => {
+    const jump = el("button", { type: "button" }, `${index}`);
+    jump.addEventListener("click", () => go(i));
+    const scores = data.presets.map(preset => preset.report.frames[i].scores?.shadow ?? null);
+    return row(jump, scoreCells(scores), { "aria-current": i === current ? "true" : null });
+  });
+  const wasOpen = at("numbers").querySelector("details")?.open ?? false;
+  at("numbers").replaceChildren(title,
+    el("p", { class: "soft" }, "Large: RMSE in codes of 255, lower is better. Small: SSIM, 1 is equal.",
+      several ? " Bold: the best." : ""),
+    el("div", { class: "columns" },
+      table(`Frame ${data.frames[current].index}`, heads, byRegion(preset => entry(preset).scores)),
+      table(`Mean over ${nScored} frames`, heads, byRegion(preset => preset.report.mean.scores))),
+    el("details", { open: wasOpen }, el("summary", {}, "Shadow, frame by frame"),
+      table("Choose a number to go to its frame", ["frame", ...heads.slice(1)], everyFrame)));
+}
+
+/* Times */
+
+const hue = name => [...name].reduce((sum, letter) => (sum * 31 + letter.charCodeAt(0)) % 360, 7);
+
+function bar(preset, path, longest) {
+  const passes = entry(preset).passes.filter(pass => pass.path === path);
+  const total = passes.reduce((sum, pass) => sum + (pass.gpu_ms ?? 0), 0);
+  const parts = passes.map(pass => {
+    const label = `${pass.name} ${ms(pass.gpu_ms)}`;
+    const width = longest > 0 ? 100 * (pass.gpu_ms ?? 0) / longest : 0;
+    const style = `flex: 0 0 ${width}%; background: hsl(${hue(pass.name)} 55% 72%)`;
+    return el("span", { title: label, style, class: width < 2 && "thin" }, el("i", {}, label));
+  });
+  const text = passes.length === 0 ? "did not run" : ms(total);
+  return el("div", { class: "bar-row" }, el("div", {}, el("b", {}, preset.report.preset), el("div", {}, text)),
+    el("div", { class: "bar", role: "img", "aria-label": `${preset.report.preset}: ${text}` }, parts));
+}
+
+function showTimes() {
+  const tells = data.presets.some(preset => entry(preset).passes.some(pass => pass.gpu_ms !== null));
+  const groups = Object.entries(PATHS).map(([path, title]) => {
+    const sums = data.presets.map(preset => entry(preset).passes
+      .filter(pass => pass.path === path).reduce((sum, pass) => sum + (pass.gpu_ms ?? 0), 0));
+    return el("div", {}, el("h2", {}, title), data.presets.map(preset => bar(preset, path, Math.max(...sums))));
+  });
+  const wasOpen = at("times").querySelector("details")?.open ?? false;
+  const lists = data.presets.map(preset => table(preset.report.preset, ["pass", "path", "device time"], [
+    ...entry(preset).passes.map(pass => row(pass.name, [pass.path, ms(pass.gpu_ms)])),
+    row("on the processor", ["", ms(entry(preset).cpu_ms)]),
+    row("until read back", ["", ms(entry(preset).wall_ms)])]));
+  at("times").replaceChildren(
+    tells ? el("div", { class: "columns" }, groups) : el("p", { class: "soft" }, "This device cannot time its passes."),
+    el("details", { open: wasOpen }, el("summary", {}, "Every pass of this frame"),
+      el("div", { class: "columns" }, lists)));
+}
+
+/* What was learned, what was skipped, what is odd */
+
+function makeFit() {
+  const fitted = data.presets.filter(preset => preset.report.fit);
+  at("fit").hidden = fitted.length === 0;
+  const rgb = color => color.map(value => value.toFixed(3)).join("  ");
+  at("fit").replaceChildren(el("h2", {}, "Learned from the real shadow"), ...fitted.map(({ report }) =>
+    table(report.preset, ["", "red  green  blue"], [
+      row("gain: frame over plate", [rgb(report.fit.gain)]),
+      row("bounce: light thrown back by the toy", [rgb(report.fit.bounce)]),
+      ...report.fit.share.map((share, i) => row(`f: share of light ${i} in the plate`, [rgb(share)]))])));
+}
+
+function showSkipped() {
+  const lists = data.presets.map(preset => el("div", {}, el("b", {}, preset.report.preset),
+    el("ul", {}, entry(preset).skipped.map(({ what, why }) => el("li", {}, `${what}: ${why}`)))));
+  const wasOpen = at("skipped").querySelector("details")?.open ?? false;
+  at("skipped").replaceChildren(el("details", { open: wasOpen, style: "margin: 0" },
+    el("summary", {}, "Work left out of this frame, and why"), el("div", { class: "columns" }, lists)));
+}
+
+function showWarnings() {
+  const tell = warnings => data.presets.flatMap(preset => warnings(preset).map(text => [text, preset.report.preset]));
+  const all = [...tell(preset => preset.report.warnings), ...tell(preset => entry(preset).warnings)];
+  at("warnings").replaceChildren(...unique(all.map(([text]) => text)).map(text => {
+    const presets = unique(all.filter(([other]) => other === text).map(([, preset]) => preset));
+    const whose = presets.length < data.presets.length ? `${presets.join(", ")}: ` : "";
+    return el("p", { class: "note" }, `Warning: ${whose}${text}`);
+  }));
+}
+
