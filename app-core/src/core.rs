@@ -203,7 +203,7 @@ impl Core {
             .unwrap_or_default())
     }
 
-    /// Waits for the device and returns what was learned from the real shadow, once anything was.
+    /// Waits for the device and returns what the model learned from the real shadow, once anything was.
     ///
     /// # Errors
     /// When the device is lost.
@@ -274,7 +274,7 @@ impl Core {
         Ok(work.read_map(&self.gpu, map)?)
     }
 
-    /// The plan of the latest retargeted frame, once there was one.
+    /// The model's plan of the latest retargeted frame, once there was one.
     #[must_use]
     pub fn plan(&self) -> Option<&Plan> {
         self.stage

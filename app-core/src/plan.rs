@@ -28,7 +28,7 @@ const FIT_WORKGROUP: u32 = 256;
 /// Which of the two paths a pass belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
-    /// Once, when the place, the physical pose or the camera is new.
+    /// When the place, the camera or the clip is new.
     Capture,
     /// For every picture.
     Frame,

@@ -14,7 +14,7 @@ struct Globals {
   clip_from_receiver: mat3x3f,
   // Homogeneous: (position, 1) or (unit direction to the light, 0), in plane space.
   lights: array<vec4f, MAX_LIGHTS>,
-  // Near end of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
+  // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,
   camera_in_plane: vec3f,
   n_lights: u32,

@@ -17,7 +17,12 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     let code = run(
         toolchain,
         "replay",
-        &["--out".into(), out.clone().into_os_string()],
+        &[
+            "--preset".into(),
+            "flat,paper,balanced".into(),
+            "--out".into(),
+            out.clone().into_os_string(),
+        ],
     )?;
     if code == ExitCode::SUCCESS {
         println!("To see it, open {}", from_here(&out.join("index.html")).display());

@@ -25,7 +25,7 @@ const CSV_FILE: &str = "bench.csv";
 
 /// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table and as bench.csv.
 #[derive(Parser)]
-#[command(name = "bench")]
+#[command(name = "bench", bin_name = "cargo xtask bench")]
 struct Args {
     /// Folders of sessions [default: the bundled one]
     sessions: Vec<PathBuf>,

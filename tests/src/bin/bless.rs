@@ -12,7 +12,7 @@ use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
 
 /// Rewrite the golden pictures from what the presets make on the software adapter.
 #[derive(Parser)]
-#[command(name = "bless")]
+#[command(name = "bless", bin_name = "cargo xtask bless")]
 struct Args {
     /// Only goldens whose name contains this [default: all]
     #[arg(default_value = "")]

@@ -26,7 +26,7 @@ const RESULTS: &str = "target/replay";
 /// Replay a recorded session: one picture per frame, report.json with times, passes and, where there is a truth, errors,
 /// and index.html to look at it all.
 #[derive(Parser)]
-#[command(name = "replay")]
+#[command(name = "replay", bin_name = "cargo xtask replay")]
 struct Args {
     /// Folder of the session [default: the bundled one]
     session: Option<PathBuf>,

@@ -53,16 +53,23 @@ fn unmoved_shadow_passes_the_frame_through() {
 }
 
 #[test]
-fn pixels_beside_the_receiver_pass_through() {
+fn beside_the_receiver_only_the_toy_goes() {
     let (mut region, mut pictures, shown) = scene();
     region.half_extent_m.x = 0.105;
-    pictures.seen = Raster::from_fn(SIZE, |_| 0.0);
+    // Even rows are clear of the toy, odd ones are not.
+    pictures.seen = Raster::from_fn(SIZE, |at| f64::from(1 - at.y % 2));
     let picture = picture(&region, &pictures, &shown);
     for row in 0..SIZE.y {
         // The receiver ends 10.5 pixels from the middle, which is at 30.5.
-        for (column, is_beside) in [(20, false), (40, false), (19, true), (41, true)] {
+        for column in [19, 41] {
             let at = UVec2::new(column, row);
-            assert_eq!(picture.at(at) == pictures.frame.at(at), is_beside, "{at}");
+            let bare = pictures.plate.at(at) * shown.solution.gain;
+            let expected = if row % 2 == 0 { pictures.frame.at(at) } else { bare };
+            assert!((picture.at(at) - expected).abs().max_element() < 1e-12, "{at}");
+        }
+        for column in [20, 40] {
+            let at = UVec2::new(column, row);
+            assert_eq!(picture.at(at) == pictures.frame.at(at), row % 2 == 0, "{at}");
         }
     }
 }
