@@ -34,6 +34,8 @@ pub(crate) struct Visibilities {
 /// Everything of the region's size, and what was learned.
 pub(crate) struct Capture {
     pub(crate) plan: Plan,
+    /// What `globals` holds.
+    pub(crate) known: Globals,
     pub(crate) globals: wgpu::Buffer,
     pub(crate) solution: wgpu::Buffer,
     pub(crate) grid: wgpu::Buffer,
@@ -60,6 +62,7 @@ impl Capture {
         let target = |label, format| texture(gpu, label, region_px, (format, 1));
         let n_cells = n_pyramid_cells(plan.grid.size);
         Self {
+            known: *globals,
             globals: gpu.uniform("globals", globals),
             solution: gpu.buffer(
                 "fit",

@@ -1,8 +1,10 @@
 //! The maps between input and picture, read back for reports and tests.
 
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use wgpu::TextureFormat;
 
 use crate::capture::Capture;
+use crate::gpu::layout::{Fit, Globals};
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
 use crate::published::Published;
@@ -27,6 +29,9 @@ pub enum Map {
     Ambient,
     /// The filled grid of residuals in rgb, in plates; alpha is 1.
     Residual,
+    /// Share f of the plate's radiance that all lights give together, in rgb, at the ambient maps' size; 0 beside the
+    /// receiver.
+    Share,
     /// The paper's mask 3a, the physical toy, in r.
     Masks,
     /// The paper's masks: r is the shadow to sample from (3c), g the real shadow (3b).
@@ -52,6 +57,7 @@ impl Map {
         Self::Visibility,
         Self::Ambient,
         Self::Residual,
+        Self::Share,
         Self::Masks,
         Self::Eligible,
         Self::Warp,
@@ -84,11 +90,30 @@ impl Capture {
             Map::Visibility => read_texture(gpu, &self.shown.lights),
             Map::Ambient => read_texture(gpu, &self.shown.ambient),
             Map::Residual => self.read_cells(gpu),
+            Map::Share => self.read_share(gpu),
             Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
                 return Ok(None);
             }
         };
         map.map(Some)
+    }
+
+    /// The lights' share, worked out here from what was fitted: no pass has it as a texture.
+    fn read_share(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.solution)?);
+        let size = self.plan.ambient_px;
+        let scale = self.plan.region.size_px.as_vec2() / size.as_vec2();
+        let texel = |y: u32, x: u32| {
+            let region_px = (UVec2::new(x, y).as_vec2() + 0.5) * scale;
+            share_at(&self.known, &fit, region_px).extend(1.0).to_array()
+        };
+        let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (y, x)));
+        let texels = texels.map(|(y, x)| texel(y, x)).collect();
+        Ok(FloatMap {
+            width: size.x,
+            height: size.y,
+            texels,
+        })
     }
 
     fn read_cells(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
@@ -102,6 +127,32 @@ impl Capture {
             texels,
         })
     }
+}
+
+/// Sum over lights of share falloff / (1 - sum share + sum share falloff), with the falloff cos / d^2 against the
+/// reference point, as the shaders' model has it.
+fn share_at(known: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
+    let [x, y, z] = known.plane_from_region_px.map(Vec4::from_array);
+    let at = (x * region_px.x + y * region_px.y + z).truncate();
+    let in_plane = Vec2::new(at.x, at.y) / at.z;
+    if at.z <= 0.0 || in_plane.abs().cmpgt(Vec2::from_array(known.half_extent_m)).any() {
+        return Vec3::ZERO;
+    }
+    let (mut direct, mut total) = (Vec3::ZERO, Vec3::ONE);
+    for (light, share) in known.lights.iter().zip(&fit.share).take(known.n_lights as usize) {
+        let light = Vec4::from_array(*light);
+        let distance = |p: Vec2| light.truncate().distance(Vec3::new(p.x, 0.0, p.y));
+        let reference = Vec2::from_array(known.reference_in_plane);
+        let falloff = if light.w == 0.0 {
+            1.0
+        } else {
+            (distance(reference) / distance(in_plane)).powi(3)
+        };
+        let share = Vec4::from_array(*share).truncate();
+        direct += share * falloff;
+        total += share * (falloff - 1.0);
+    }
+    direct / total
 }
 
 impl Published {

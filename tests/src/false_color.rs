@@ -144,6 +144,12 @@ pub fn describe(map: Map) -> Option<Shown> {
             "What the model of light and shadow leaves unexplained, as a fraction of the plate.",
             Some(("\u{2212}0.1: darker than modelled", "+0.1: brighter", SIGNED_RAMP)),
         ),
+        Map::Share => (
+            "share",
+            "Share of the lights (f)",
+            "How much of the table's light comes from the listed lights, for red, green and blue; the rest is ambient.",
+            None,
+        ),
         Map::Masks => ("mask", "Object mask (3a)", "White: the real toy.", None),
         Map::Eligible => (
             "eligible",

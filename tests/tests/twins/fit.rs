@@ -111,3 +111,26 @@ fn toy() {
         Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), 1e-3);
     }
 }
+
+/// The map is worked out in 32 bits from the fit that the references are fed with.
+#[test]
+fn share_of_the_lights_over_the_receiver() {
+    for run in runs() {
+        let size = run.share.size();
+        let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
+        let expected = Raster::from_fn(size, |texel| {
+            let Some(in_plane) = run.region.receiver_point(centre_px(texel) * scale) else {
+                return DVec3::ZERO;
+            };
+            let shares = run.solution.shares.iter().enumerate();
+            let direct: DVec3 = shares
+                .map(|(i, share)| *share * run.region.falloff(i, in_plane))
+                .sum();
+            direct / run.solution.plate_falloff(&run.region, in_plane)
+        });
+        for (actual, expected) in run.share.texels().iter().zip(expected.texels()) {
+            let error = (actual - expected).abs().max_element();
+            assert!(error < 1e-4, "{}: {actual}, not {expected}", run.stand.setup.name);
+        }
+    }
+}

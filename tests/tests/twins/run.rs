@@ -36,6 +36,8 @@ pub(crate) struct Run {
     pub(crate) solution: Solution,
     /// Filled residuals, and their certainty.
     pub(crate) residual: Raster<DVec4>,
+    /// The lights' share of the plate's radiance.
+    pub(crate) share: Raster<DVec3>,
     /// Codes of the finished picture, within the region.
     pub(crate) picture: Raster<[u8; 4]>,
 }
@@ -96,6 +98,7 @@ impl Run {
             shown_ambient: visible(map(Map::Ambient)?),
             solution: solution(&fit, stand.setup.lights.len()),
             residual: map(Map::Residual)?,
+            share: map(Map::Share)?.map(DVec4::truncate),
             picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
             stand,
             plan,
