@@ -146,7 +146,7 @@ impl Core {
     /// Takes a scene; what was learned of another is forgotten.
     ///
     /// # Errors
-    /// When it has no receiver, a plate is not of its size, or that size is out of range.
+    /// When it has no receiver, a plate is not of its size, or that size is out of range or of the device's memory.
     pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
         if scene.receivers.is_empty() {
             return Err(CoreError::NoReceiver);
@@ -159,20 +159,27 @@ impl Core {
         for plate in &scene.plates {
             check_size("plate", &scene, &plate.image)?;
         }
-        self.stage = Some(Stage::new(&self.gpu, scene, preset)?);
+        self.stage = None;
+        let stage = Stage::new(&self.gpu, scene, preset)?;
+        self.gpu.check()?;
+        self.stage = Some(stage);
         Ok(())
     }
 
     /// Makes the picture of one frame.
     ///
     /// # Errors
-    /// When there is no scene, or the camera's picture is not of its size.
+    /// When there is no scene, the camera's picture is not of its size, or the device refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
         let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
         check_size("camera frame", stage.scene(), &input.image)?;
         let mut encoder = Encoder::new(&self.gpu);
         let report = stage.encode(&self.gpu, &mut encoder, input)?;
         self.stamps = encoder.submit(&self.gpu);
+        if let Err(refused) = self.gpu.check() {
+            stage.forget();
+            return Err(refused.into());
+        }
         Ok(report)
     }
 

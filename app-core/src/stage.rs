@@ -127,6 +127,11 @@ impl Stage {
         self.learned.as_ref().map(|learned| &learned.work)
     }
 
+    /// Drops what was learned, so that the next frame learns anew.
+    pub(crate) fn forget(&mut self) {
+        self.learned = None;
+    }
+
     /// Replaces visibilities in what follows, where anything was learned.
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
         if let Some(learned) = &mut self.learned {

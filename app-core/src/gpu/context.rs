@@ -1,5 +1,7 @@
 //! The device: asked for with the limits of a phone, whatever the machine could offer.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use thiserror::Error;
 
 /// Which graphics adapter to use.
@@ -32,6 +34,12 @@ pub enum GpuError {
         /// What the driver said.
         reason: String,
     },
+    /// The device refused work: out of memory, most often.
+    #[error("the device refused work: {reason}")]
+    Refused {
+        /// What the driver said first.
+        reason: String,
+    },
     /// The device was lost, or a read-back failed.
     #[error("reading back from the device: {reason}")]
     ReadBack {
@@ -48,6 +56,8 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     has_timestamps: bool,
+    /// The first thing the device refused since it was last asked.
+    refused: Arc<Mutex<Option<String>>>,
 }
 
 /// The limits that every phone we aim at has; tests run under them too.
@@ -91,13 +101,27 @@ impl Gpu {
                 adapter: info.name.clone(),
                 reason: e.to_string(),
             })?;
+        // Without a handler a picture too large for the device's memory would end the program.
+        let refused = Arc::new(Mutex::new(None));
+        let first = Arc::clone(&refused);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert_with(|| error.to_string());
+        }));
         Ok(Self {
+            refused,
             adapter,
             device,
             queue,
             info,
             has_timestamps,
         })
+    }
+
+    /// Fails once for what the device refused since the last call.
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        let first = self.refused.lock().unwrap_or_else(PoisonError::into_inner).take();
+        first.map_or(Ok(()), |reason| Err(GpuError::Refused { reason }))
     }
 
     /// Name of the adapter and of its driver, for reports.

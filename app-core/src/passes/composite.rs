@@ -57,16 +57,6 @@ impl Composite {
             Stream::new(5, VertexFormat::Float32x3),
         ];
         let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
-        let shape = |depth| RenderShape {
-            targets: &[Some(wgpu::ColorTargetState {
-                format: PICTURE_FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            n_samples: N_SAMPLES,
-            depth: Some(depth),
-            constants: &[],
-        };
         let receiver = Stages {
             vertex: "vs_fullscreen",
             fragment: "fs_receiver",
@@ -78,8 +68,8 @@ impl Composite {
             buffers: &buffers,
         };
         Self {
-            receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &shape(behind_all())),
-            toy: gpu.render_pipeline(&COMPOSITE, &module, &toy, &shape(nearest_surface())),
+            receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &picture_shape(behind_all())),
+            toy: gpu.render_pipeline(&COMPOSITE, &module, &toy, &picture_shape(nearest_surface())),
             linear: gpu.linear_sampler(),
         }
     }
@@ -152,6 +142,22 @@ fn shared(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, inputs: &CompositeInputs<'
 fn set_groups(render: &mut wgpu::RenderPass<'_>, [shared, own]: &[wgpu::BindGroup; 2]) {
     render.set_bind_group(GROUP_GLOBALS, shared, &[]);
     render.set_bind_group(GROUP_PASS, own, &[]);
+}
+
+const PICTURE_TARGETS: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu::ColorTargetState {
+    format: PICTURE_FORMAT,
+    blend: None,
+    write_mask: wgpu::ColorWrites::ALL,
+})];
+
+/// For pipelines that draw the region's picture.
+pub(crate) fn picture_shape(depth: DepthStencilState) -> RenderShape<'static> {
+    RenderShape {
+        targets: &PICTURE_TARGETS,
+        n_samples: N_SAMPLES,
+        depth: Some(depth),
+        constants: &[],
+    }
 }
 
 /// For what is drawn before all else and hides nothing.

@@ -4,10 +4,10 @@ use wgpu::{StoreOp, VertexFormat};
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::{Encoder, resolved};
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface, view};
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, Stages, nearest_surface, view};
 use crate::gpu::shaders::RETARGET;
 
-use super::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT, behind_all};
+use super::composite::{CompositeTargets, behind_all, picture_shape};
 use super::toy_mesh::{Stream, ToyMesh};
 
 pub(crate) struct Retarget {
@@ -35,16 +35,6 @@ impl Retarget {
             Stream::new(1, VertexFormat::Float32x3),
         ];
         let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
-        let shape = |depth| RenderShape {
-            targets: &[Some(wgpu::ColorTargetState {
-                format: PICTURE_FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            n_samples: N_SAMPLES,
-            depth: Some(depth),
-            constants: &[],
-        };
         let receiver = Stages {
             vertex: "vs_fullscreen",
             fragment: "fs_receiver",
@@ -56,8 +46,8 @@ impl Retarget {
             buffers: &buffers,
         };
         Self {
-            receiver: gpu.render_pipeline(&RETARGET, &module, &receiver, &shape(behind_all())),
-            toy: gpu.render_pipeline(&RETARGET, &module, &toy, &shape(nearest_surface())),
+            receiver: gpu.render_pipeline(&RETARGET, &module, &receiver, &picture_shape(behind_all())),
+            toy: gpu.render_pipeline(&RETARGET, &module, &toy, &picture_shape(nearest_surface())),
             linear: gpu.linear_sampler(),
         }
     }
