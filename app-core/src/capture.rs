@@ -53,6 +53,7 @@ pub(crate) struct Capture {
     light_points: Vec<Vec<glam::Vec4>>,
     light_targets: Vec<OcclusionTargets>,
     ambient_targets: OcclusionTargets,
+    ambient_directions: Vec<glam::Vec4>,
 }
 
 impl Capture {
@@ -97,6 +98,7 @@ impl Capture {
                 .map(|light| OcclusionTargets::new(gpu, region_px, light.n_points))
                 .collect(),
             ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, plan.n_ambient_directions),
+            ambient_directions: ambient_directions(plan.n_ambient_directions),
             light_points,
             plan,
         }
@@ -206,11 +208,10 @@ impl Capture {
         if let Some(injected) = &outputs.injected {
             outputs.lights.encode_copy(encoder, injected);
         }
-        let directions = ambient_directions(self.plan.n_ambient_directions);
         let caster = Caster {
             toy,
             positions,
-            points: &directions,
+            points: &self.ambient_directions,
         };
         passes
             .ambient

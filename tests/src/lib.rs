@@ -8,6 +8,7 @@ pub mod golden;
 pub mod metrics;
 pub mod output;
 pub mod page;
+pub mod program;
 pub mod progress;
 pub mod reference;
 pub mod replay;

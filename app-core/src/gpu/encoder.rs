@@ -67,17 +67,12 @@ impl Encoder {
         depth: Option<&wgpu::TextureView>,
         keep_depth: wgpu::StoreOp,
     ) -> wgpu::RenderPass<'a> {
-        let path = self.path;
-        let timed = self.timer.as_mut().and_then(|timer| timer.next(path, pass));
-        let stamps = self
-            .timer
-            .as_ref()
-            .zip(timed)
-            .map(|(timer, first)| wgpu::RenderPassTimestampWrites {
-                query_set: &timer.queries,
-                beginning_of_pass_write_index: Some(first),
-                end_of_pass_write_index: Some(first + 1),
-            });
+        let timed = self.timer.as_mut().and_then(|timer| timer.next(self.path, pass));
+        let stamps = timed.map(|(query_set, first)| wgpu::RenderPassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        });
         self.raw.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(pass),
             color_attachments: colors,
@@ -119,17 +114,12 @@ impl Encoder {
         groups: &[(u32, &wgpu::BindGroup)],
         workgroups: [u32; 3],
     ) {
-        let path = self.path;
-        let timed = self.timer.as_mut().and_then(|timer| timer.next(path, pass));
-        let stamps = self
-            .timer
-            .as_ref()
-            .zip(timed)
-            .map(|(timer, first)| wgpu::ComputePassTimestampWrites {
-                query_set: &timer.queries,
-                beginning_of_pass_write_index: Some(first),
-                end_of_pass_write_index: Some(first + 1),
-            });
+        let timed = self.timer.as_mut().and_then(|timer| timer.next(self.path, pass));
+        let stamps = timed.map(|(query_set, first)| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        });
         let mut compute = self.raw.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(pass),
             timestamp_writes: stamps,
@@ -169,12 +159,13 @@ impl Encoder {
 }
 
 impl Timer {
-    fn next(&mut self, path: Path, pass: &'static str) -> Option<u32> {
+    /// Where the stamps of the next pass go: its first of two places; none when all are taken.
+    fn next(&mut self, path: Path, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
         let index = u32::try_from(self.passes.len())
             .ok()
             .filter(|index| *index < MAX_TIMED)?;
         self.passes.push((path, pass));
-        Some(2 * index)
+        Some((&self.queries, 2 * index))
     }
 }
 

@@ -15,6 +15,7 @@ use clap::Parser;
 use harness::bench::{Options, Row, bench, csv, table};
 use harness::files::Folder;
 use harness::output::{make_folder, remove_file, write_whole};
+use harness::program::exit_code;
 
 /// The session that comes with the project.
 const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
@@ -50,19 +51,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Drivers and parsers may speak in several lines.
-            let message = format!("{error:#}")
-                .lines()
-                .map(str::trim)
-                .collect::<Vec<_>>()
-                .join(" ");
-            let _ = writeln!(io::stderr(), "error: {message}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {

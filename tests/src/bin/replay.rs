@@ -14,6 +14,7 @@ use app_core::wgpu;
 use clap::Parser;
 use harness::files::Folder;
 use harness::page::PAGE_FILE;
+use harness::program::exit_code;
 use harness::progress::{Progress, Quiet, on_stderr};
 use harness::replay::{Options, REPORT_FILE, replay};
 use harness::report::Report;
@@ -48,19 +49,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Drivers and parsers may speak in several lines.
-            let message = format!("{error:#}")
-                .lines()
-                .map(str::trim)
-                .collect::<Vec<_>>()
-                .join(" ");
-            let _ = writeln!(io::stderr(), "error: {message}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run(&Args::parse()))
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
