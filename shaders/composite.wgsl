@@ -107,7 +107,7 @@ struct Surface {
 
 @vertex
 fn vs_toy(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_plane * vec4f(in.in_plane, 1.0), in.in_plane, in.normal, in.uv, in.color,
+  return Surface(globals.clip_from_stage * vec4f(in.in_plane, 1.0), in.in_plane, in.normal, in.uv, in.color,
     in.physical_in_plane, in.physical_normal);
 }
 
@@ -161,7 +161,7 @@ fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> ve
 fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
   let across = cross(dpdx(in_plane), dpdy(in_plane));
   let outward = unit_normal(across * sign(dot(across, normal)));
-  return dot(outward, normalize(globals.camera_in_plane - in_plane));
+  return dot(outward, normalize(globals.camera_in_stage - in_plane));
 }
 
 @fragment
@@ -171,7 +171,7 @@ fn fs_toy(in: Surface) -> @location(0) vec4f {
   let physical_normal = unit_normal(in.physical_normal);
   let physical_facing = facing(in.physical_in_plane, physical_normal);
   let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
-  let clip = globals.clip_from_plane * vec4f(in.physical_in_plane, 1.0);
+  let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
   let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
   let pixel = camera_color(clip, region_px, base, physical_normal);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);

@@ -5,7 +5,7 @@
 
 @vertex
 fn vs_object(@location(0) in_plane: vec3f) -> @builtin(position) vec4f {
-  return globals.clip_from_plane * vec4f(in_plane, 1.0);
+  return globals.clip_from_stage * vec4f(in_plane, 1.0);
 }
 
 @fragment

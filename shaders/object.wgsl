@@ -19,7 +19,7 @@ struct Surface {
 
 @vertex
 fn vs_project(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_plane * vec4f(in.in_plane, 1.0), in.normal, in.uv, in.color);
+  return Surface(globals.clip_from_stage * vec4f(in.in_plane, 1.0), in.normal, in.uv, in.color);
 }
 
 struct ObjectTexel {

@@ -53,7 +53,7 @@ struct Surface {
 
 @vertex
 fn vs_toy(@location(0) in_plane: vec3f, @location(1) physical_in_plane: vec3f) -> Surface {
-  return Surface(globals.clip_from_plane * vec4f(in_plane, 1.0), globals.clip_from_plane * vec4f(physical_in_plane, 1.0));
+  return Surface(globals.clip_from_stage * vec4f(in_plane, 1.0), globals.clip_from_stage * vec4f(physical_in_plane, 1.0));
 }
 
 @fragment

@@ -92,7 +92,7 @@ impl View {
 
     /// Clip space of `rect` from plane space; depth is reversed and endless.
     #[must_use]
-    pub fn clip_from_plane(&self, rect: &PixelRect) -> DMat4 {
+    pub fn clip_from_stage(&self, rect: &PixelRect) -> DMat4 {
         let k = &self.intrinsics;
         let size = rect.size_px.as_dvec2();
         let centre = DVec2::new(k.cx_px, k.cy_px) - rect.origin_px.as_dvec2();
@@ -125,7 +125,7 @@ impl View {
 
     /// The camera's centre, in plane space.
     #[must_use]
-    pub fn camera_in_plane(&self) -> DVec3 {
+    pub fn camera_in_stage(&self) -> DVec3 {
         self.camera_from_plane.inverse().w_axis.truncate()
     }
 
@@ -140,7 +140,7 @@ impl View {
     /// What the shaders know of the scene.
     #[must_use]
     pub fn globals(&self, rect: &PixelRect, place: &Place<'_>) -> Globals {
-        let clip_from_plane = self.clip_from_plane(rect);
+        let clip_from_stage = self.clip_from_stage(rect);
         let receiver_column = |column: DVec4| DVec3::new(column.x, column.y, column.w);
         let mut lights = [[0.0; 4]; MAX_LIGHTS];
         for (slot, light) in lights.iter_mut().zip(place.lights) {
@@ -151,12 +151,12 @@ impl View {
         #[allow(clippy::cast_precision_loss, reason = "a few pixels")]
         let fade = |is_inner: bool| if is_inner { BORDER_PX as f32 } else { 0.0 };
         Globals {
-            clip_from_plane: clip_from_plane.as_mat4().to_cols_array_2d(),
+            clip_from_stage: clip_from_stage.as_mat4().to_cols_array_2d(),
             plane_from_region_px: columns(self.plane_from_region_px(rect)),
             clip_from_receiver: columns(DMat3::from_cols(
-                receiver_column(clip_from_plane.x_axis),
-                receiver_column(clip_from_plane.z_axis),
-                receiver_column(clip_from_plane.w_axis),
+                receiver_column(clip_from_stage.x_axis),
+                receiver_column(clip_from_stage.z_axis),
+                receiver_column(clip_from_stage.w_axis),
             )),
             lights,
             border_px: [
@@ -165,7 +165,7 @@ impl View {
                 fade(end_px.x < self.image_px.x),
                 fade(end_px.y < self.image_px.y),
             ],
-            camera_in_plane: self.camera_in_plane().as_vec3().to_array(),
+            camera_in_stage: self.camera_in_stage().as_vec3().to_array(),
             #[allow(clippy::cast_possible_truncation, reason = "at most MAX_LIGHTS")]
             n_lights: n_lights as u32,
             reference_in_plane: place.reference_in_plane.as_vec2().to_array(),

@@ -241,7 +241,7 @@ impl Stage {
         if self.plate_image(&input.world_from_camera).is_none() {
             return warned(Warning::NoPlate);
         }
-        if self.view(&input.world_from_camera).camera_in_plane().y <= 0.0 {
+        if self.view(&input.world_from_camera).camera_in_stage().y <= 0.0 {
             return warned(Warning::CameraBelowReceiver);
         }
         let reach = self.reach(input.shown_pose.clip, &input.world_from_camera)?;

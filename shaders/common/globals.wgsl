@@ -7,7 +7,7 @@ const MAX_LIGHTS: u32 = 4u;
 
 struct Globals {
   // Clip space of the region; depth is reversed: 1 at the near plane, 0 at infinity.
-  clip_from_plane: mat4x4f,
+  clip_from_stage: mat4x4f,
   // Homography: (x, z, w) of the receiver point seen at (u, v, 1); w > 0 in front of the camera.
   plane_from_region_px: mat3x3f,
   // Homography: clip (x, y, w) of the receiver point (x, z, 1); w is the depth in metres.
@@ -16,7 +16,7 @@ struct Globals {
   lights: array<vec4f, MAX_LIGHTS>,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,
-  camera_in_plane: vec3f,
+  camera_in_stage: vec3f,
   n_lights: u32,
   // Where the lights' shares are stated: the receiver under the toy.
   reference_in_plane: vec2f,

@@ -22,12 +22,12 @@ pub type Mat3Columns = [[f32; 4]; 3];
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Globals {
-    pub clip_from_plane: [[f32; 4]; 4],
+    pub clip_from_stage: [[f32; 4]; 4],
     pub plane_from_region_px: Mat3Columns,
     pub clip_from_receiver: Mat3Columns,
     pub lights: [[f32; 4]; MAX_LIGHTS],
     pub border_px: [f32; 4],
-    pub camera_in_plane: [f32; 3],
+    pub camera_in_stage: [f32; 3],
     pub n_lights: u32,
     pub reference_in_plane: [f32; 2],
     pub half_extent_m: [f32; 2],

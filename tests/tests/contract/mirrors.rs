@@ -71,12 +71,12 @@ macro_rules! mirror {
 pub(crate) fn mirrors() -> Vec<Mirror> {
     vec![
         mirror!(Globals {
-            clip_from_plane,
+            clip_from_stage,
             plane_from_region_px,
             clip_from_receiver,
             lights,
             border_px,
-            camera_in_plane,
+            camera_in_stage,
             n_lights,
             reference_in_plane,
             half_extent_m,

@@ -35,9 +35,9 @@ fn pixels_and_plane_are_inverse() {
 #[test]
 fn clip_space_is_the_region_with_reversed_depth() {
     let rig = Rig::new(DVec3::ZERO);
-    let clip_from_plane = rig.view().clip_from_plane(&RECT);
+    let clip_from_stage = rig.view().clip_from_stage(&RECT);
     for point in points_on_plane().chain(TOY.corners()) {
-        let clip = clip_from_plane * point.extend(1.0);
+        let clip = clip_from_stage * point.extend(1.0);
         let ndc = clip.truncate() / clip.w;
         let px = (ndc.truncate() * DVec2::new(0.5, -0.5) + 0.5) * RECT.size_px.as_dvec2();
         assert!((px + RECT.origin_px.as_dvec2() - rig.pixel(point)).length() < 1e-9);
@@ -54,7 +54,7 @@ fn the_camera_is_where_it_was_put() {
     let mut rig = Rig::new(DVec3::ZERO);
     let eye = DVec3::new(0.3, 0.7, -0.5);
     rig.place_camera(eye, DVec3::ZERO);
-    assert!((rig.view().camera_in_plane() - eye).length() < 1e-12);
+    assert!((rig.view().camera_in_stage() - eye).length() < 1e-12);
 }
 
 /// The shaders work in f32, and ten kilometres from the world's origin f32 steps are a millimetre.
@@ -69,7 +69,7 @@ fn far_from_the_origin_nothing_changes() {
         far.globals(&region, &lights(&far)),
     );
     let px = |globals: &Globals, point: DVec3| {
-        let clip = Mat4::from_cols_array_2d(&globals.clip_from_plane) * point.as_vec3().extend(1.0);
+        let clip = Mat4::from_cols_array_2d(&globals.clip_from_stage) * point.as_vec3().extend(1.0);
         clip.truncate().truncate() / clip.w * 0.5 * region.size_px.as_vec2()
     };
     for point in points_on_plane().chain(TOY.corners()) {
@@ -78,7 +78,7 @@ fn far_from_the_origin_nothing_changes() {
     for (here, there) in a.lights.into_iter().zip(b.lights) {
         assert!((Vec4::from(here) - Vec4::from(there)).length() < 1e-6);
     }
-    assert!((Vec3::from(a.camera_in_plane) - Vec3::from(b.camera_in_plane)).length() < 1e-6);
+    assert!((Vec3::from(a.camera_in_stage) - Vec3::from(b.camera_in_stage)).length() < 1e-6);
 }
 
 #[test]
