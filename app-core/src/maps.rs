@@ -13,7 +13,8 @@ use crate::work::Model;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {
-    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy.
+    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy, b where it shows the
+    /// receiver well clear of the toy.
     Evidence,
     /// Base colour of the physical toy, linear; alpha is its coverage.
     ObjectBase,
