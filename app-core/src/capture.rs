@@ -9,13 +9,14 @@ use crate::gpu::layout::{Globals, Subject};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
-use crate::passes::composite::{N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
 use crate::passes::fit::{Fit, FitInputs, FitShared};
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::residual::ResidualInputs;
+use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::Passes;
 use crate::plan::Plan;
@@ -47,8 +48,7 @@ pub(crate) struct Capture {
     pub(crate) object_depth: Texture,
     pub(crate) evidence: Texture,
     pub(crate) appearance: Texture,
-    pub(crate) samples: Texture,
-    pub(crate) samples_depth: Texture,
+    pub(crate) toy: ToyTargets,
     pub(crate) picture: Texture,
     light_points: Vec<Vec<glam::Vec4>>,
     light_targets: Vec<OcclusionTargets>,
@@ -84,13 +84,7 @@ impl Capture {
             object_depth: target("object depth", TextureFormat::Depth32Float),
             evidence: target("evidence", EVIDENCE_FORMAT),
             appearance: target("appearance", APPEARANCE_FORMAT),
-            samples: texture(gpu, "composite samples", region_px, (PICTURE_FORMAT, N_SAMPLES)),
-            samples_depth: texture(
-                gpu,
-                "composite depth",
-                region_px,
-                (TextureFormat::Depth32Float, N_SAMPLES),
-            ),
+            toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
                 .lights

@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Placement;
 use crate::passes::appearance::Appearance;
-use crate::passes::composite::{Composite, CompositeInputs, CompositeTargets};
+use crate::passes::composite::{Composite, CompositeInputs};
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
 use crate::passes::fit::Fit;
@@ -13,6 +13,7 @@ use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
+use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
 use crate::plan::Plan;
@@ -34,6 +35,7 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) toy: Toy,
     pub(crate) composite: Composite,
 }
 
@@ -57,7 +59,8 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
-            composite: Composite::new(gpu),
+            toy: Toy::new(gpu, plan.n_toy_draws),
+            composite: Composite::new(gpu, plan.n_toy_draws),
         }
     }
 
@@ -71,6 +74,15 @@ impl Passes {
         pictures: &Pictures<'_>,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let inputs = ToyInputs {
+            globals: &capture.globals,
+            solution: &capture.solution,
+            appearance: &capture.appearance.view,
+            object_depth: &capture.object_depth.view,
+            object_base: &capture.object_base.view,
+            object_normal: &capture.object_normal.view,
+        };
+        self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
             globals: &capture.globals,
             solution: &capture.solution,
@@ -83,17 +95,10 @@ impl Passes {
             physical_ambient: &capture.physical.ambient.view,
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
-            appearance: &capture.appearance.view,
-            object_depth: &capture.object_depth.view,
-            object_base: &capture.object_base.view,
-            object_normal: &capture.object_normal.view,
+            toy: &capture.toy,
         };
-        let targets = CompositeTargets {
-            samples: &capture.samples.view,
-            depth: &capture.samples_depth.view,
-            picture: &capture.picture.view,
-        };
-        self.composite.encode(gpu, encoder, toy, &inputs, &targets);
+        self.composite
+            .encode(gpu, encoder, &inputs, &capture.picture.view);
     }
 }
 

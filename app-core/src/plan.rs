@@ -74,6 +74,8 @@ pub struct Plan {
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
     pub ambient_px: UVec2,
+    /// Draws of the shown toy, each by a part of a pixel beside the others.
+    pub n_toy_draws: u32,
     /// Grid of the residual.
     pub grid: Grid,
     /// Steps of the fit.
@@ -149,6 +151,10 @@ const PASSES: &[PlannedPass] = &[
     },
     PlannedPass {
         name: "visibility",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "toy",
         path: Path::Frame,
     },
     PlannedPass {
@@ -238,6 +244,7 @@ impl Plan {
             lights,
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
+            n_toy_draws: settings.n_toy_draws,
             grid: Grid {
                 size: [size_px.x.div_ceil(cell_px), size_px.y.div_ceil(cell_px)],
                 cell_px,
