@@ -11,12 +11,13 @@ use crate::knowledge::Knowledge;
 use crate::learner::Learner;
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
-use crate::passes::composite::{N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::estimate::Detail;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::plate::PLATE_FORMAT;
+use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::Passes;
 use crate::plan::{Change, Plan};
@@ -49,8 +50,7 @@ pub(crate) struct Capture {
     /// The same, with an estimate where nothing was.
     pub(crate) estimated: Option<Texture>,
     pub(crate) appearance: Texture,
-    pub(crate) samples: Texture,
-    pub(crate) samples_depth: Texture,
+    pub(crate) toy: ToyTargets,
     pub(crate) picture: Texture,
     pub(crate) light_points: Vec<Vec<glam::Vec4>>,
     light_targets: Vec<OcclusionTargets>,
@@ -78,13 +78,7 @@ impl Capture {
                 .is_plate_estimated
                 .then(|| target("estimated plate", PLATE_FORMAT)),
             appearance: target("appearance", APPEARANCE_FORMAT),
-            samples: texture(gpu, "composite samples", region_px, (PICTURE_FORMAT, N_SAMPLES)),
-            samples_depth: texture(
-                gpu,
-                "composite depth",
-                region_px,
-                (TextureFormat::Depth32Float, N_SAMPLES),
-            ),
+            toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
                 .lights

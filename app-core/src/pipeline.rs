@@ -6,7 +6,7 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Placement;
 use crate::knowledge::Knowledge;
 use crate::passes::appearance::Appearance;
-use crate::passes::composite::{Composite, CompositeInputs, CompositeTargets};
+use crate::passes::composite::{Composite, CompositeInputs};
 use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
@@ -17,6 +17,7 @@ use crate::passes::occlusion::Occlusion;
 use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
+use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
 use crate::plan::Plan;
@@ -55,6 +56,7 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) toy: Toy,
     pub(crate) composite: Composite,
 }
 
@@ -80,7 +82,8 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
-            composite: Composite::new(gpu),
+            toy: Toy::new(gpu, plan.n_toy_draws),
+            composite: Composite::new(gpu, plan.n_toy_draws),
         }
     }
 
@@ -101,6 +104,15 @@ impl Passes {
         frame: &wgpu::TextureView,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let inputs = ToyInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            appearance: &capture.appearance.view,
+            object_depth: &capture.object_depth.view,
+            object_base: &capture.object_base.view,
+            object_normal: &capture.object_normal.view,
+        };
+        self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
@@ -113,17 +125,10 @@ impl Passes {
             physical_ambient: &capture.physical.ambient.view,
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
-            appearance: &capture.appearance.view,
-            object_depth: &capture.object_depth.view,
-            object_base: &capture.object_base.view,
-            object_normal: &capture.object_normal.view,
+            toy: &capture.toy,
         };
-        let targets = CompositeTargets {
-            samples: &capture.samples.view,
-            depth: &capture.samples_depth.view,
-            picture: &capture.picture.view,
-        };
-        self.composite.encode(gpu, encoder, toy, &inputs, &targets);
+        self.composite
+            .encode(gpu, encoder, &inputs, &capture.picture.view);
     }
 }
 

@@ -95,6 +95,8 @@ pub struct Plan {
     pub n_receivers: u32,
     /// Whether what no plate shows is estimated.
     pub is_plate_estimated: bool,
+    /// Draws of the shown toy, each by a part of a pixel beside the others.
+    pub n_toy_draws: u32,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -182,6 +184,10 @@ const PASSES: &[PlannedPass] = &[
     },
     PlannedPass {
         name: "visibility",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "toy",
         path: Path::Frame,
     },
     PlannedPass {
@@ -280,6 +286,7 @@ impl Plan {
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
+            n_toy_draws: settings.n_toy_draws,
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             fit_stride_px,

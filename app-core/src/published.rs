@@ -11,12 +11,12 @@ use crate::gpu::texture::{Texture, TextureShape};
 use crate::inject::Injected;
 use crate::light_points::light_in_plane;
 use crate::passes::box_filter::BoxFilter;
-use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
 use crate::passes::masks::{MASKS_FORMAT, Masks};
 use crate::passes::pcss::{PCSS_FORMAT, Pcss};
 use crate::passes::plate::{PLATE_FORMAT, Plate};
-use crate::passes::retarget::{Retarget, RetargetInputs};
+use crate::passes::retarget::{N_SAMPLES, Retarget, RetargetInputs, RetargetTargets};
 use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::warp::{WARP_FORMAT, Warp};
@@ -209,7 +209,7 @@ impl Published {
             visibility: &self.visibility.view,
             terms: &self.filtered_terms.view,
         };
-        let targets = CompositeTargets {
+        let targets = RetargetTargets {
             samples: &self.samples.view,
             depth: &self.samples_depth.view,
             picture: &self.picture.view,

@@ -36,7 +36,7 @@ const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const PIXEL: &str = wgsl!("common/pixel");
 const PUBLISHED: &str = wgsl!("common/published");
-const TOY: &str = wgsl!("common/toy");
+const TOY_LIGHT: &str = wgsl!("common/toy_light");
 
 pub(crate) const OBJECT: Shader = Shader {
     name: "object",
@@ -65,7 +65,7 @@ pub(crate) const VISIBILITY: Shader = Shader {
 };
 pub(crate) const FIT_SUMS: Shader = Shader {
     name: "fit",
-    parts: &[GLOBALS, FIT, FIT_STEP, MODEL, TOY, PIXEL, wgsl!("fit")],
+    parts: &[GLOBALS, FIT, FIT_STEP, MODEL, TOY_LIGHT, PIXEL, wgsl!("fit")],
     entry_points: &["cs_accumulate"],
 };
 pub(crate) const FIT_SOLVE: Shader = Shader {
@@ -98,21 +98,15 @@ pub(crate) const FILL: Shader = Shader {
     parts: &[GRID, wgsl!("fill")],
     entry_points: &["cs_pull_push"],
 };
+pub(crate) const TOY: Shader = Shader {
+    name: "toy",
+    parts: &[GLOBALS, FIT, TOY_LIGHT, MATERIAL, DEPTH, wgsl!("toy")],
+    entry_points: &["vs_toy", "fs_toy"],
+};
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
-    parts: &[
-        GLOBALS,
-        FIT,
-        MODEL,
-        TOY,
-        GRID,
-        CELLS,
-        MATERIAL,
-        DEPTH,
-        FULLSCREEN,
-        wgsl!("composite"),
-    ],
-    entry_points: &["vs_fullscreen", "fs_receiver", "vs_toy", "fs_toy"],
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, CELLS, FULLSCREEN, wgsl!("composite")],
+    entry_points: &["vs_fullscreen", "fs_compose"],
 };
 pub(crate) const PRESENT: Shader = Shader {
     name: "present",
@@ -159,5 +153,5 @@ pub(crate) const RETARGET: Shader = Shader {
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
     OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, PLATE, LIT, ESTIMATE, FIT_SUMS, FIT_SOLVE, RESIDUAL,
-    FILL, COMPOSITE, PRESENT, MASKS, ELIGIBLE, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
+    FILL, TOY, COMPOSITE, PRESENT, MASKS, ELIGIBLE, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
 ];

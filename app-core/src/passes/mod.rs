@@ -20,6 +20,7 @@ pub(crate) mod present;
 pub(crate) mod residual;
 pub(crate) mod retarget;
 pub(crate) mod search;
+pub(crate) mod toy;
 pub(crate) mod toy_mesh;
 pub(crate) mod visibility;
 pub(crate) mod warp;

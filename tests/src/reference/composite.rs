@@ -1,4 +1,4 @@
-//! Twin of `fs_receiver` in `composite.wgsl`: the picture where it shows the receiver.
+//! Twin of `composite.wgsl`: the picture where it shows the receiver.
 
 use glam::{DVec3, DVec4, UVec2};
 

@@ -322,7 +322,7 @@ fn toy_equations(
     equations
 }
 
-/// Twin of `common/toy.wgsl`: constant, vertical gradient, cosine to each light.
+/// Twin of `common/toy_light.wgsl`: constant, vertical gradient, cosine to each light.
 #[must_use]
 pub fn toy_columns(region: &Region, normal: DVec3, in_plane: DVec3) -> Vec<f64> {
     let cosines = region.lights.iter().map(|light| {

@@ -52,7 +52,7 @@ fn what_belongs_to_the_place_is_not_on_the_frame_path() {
     let plan = plan([640, 360], &[10.0]);
     assert_eq!(
         names(&plan, Path::Frame),
-        ["occlusion", "visibility", "composite", "present"]
+        ["occlusion", "visibility", "toy", "composite", "present"]
     );
     let capture = names(&plan, Path::Capture);
     let place = |name: &str| capture.iter().position(|pass| *pass == name).unwrap();

@@ -1,0 +1,125 @@
+// The toy in the pose to be shown, drawn with its camera pixels.
+//
+// Its surface takes the camera's pixels where the camera saw that point in the physical pose, scaled by how the fitted light
+// falls on the turned surface; what was hidden takes the model's base colour under the fitted light.
+// Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
+//
+// Reads: both poses, materials, the toy's own colours, the physical toy, the fit. Writes: linear radiance, premultiplied;
+// the resolve makes alpha the coverage.
+
+@group(1) @binding(0) var appearance: texture_2d<f32>;
+@group(1) @binding(1) var object_depth: texture_depth_2d;
+@group(1) @binding(2) var object_base: texture_2d<f32>;
+@group(1) @binding(3) var object_normal: texture_2d<f32>;
+// By which the whole picture is moved, in pixels to the right and down.
+@group(1) @binding(4) var<uniform> offset_px: vec2f;
+
+// A turned surface is never made more than this much brighter or darker than its camera pixel.
+const MAX_TURN: f32 = 4.0;
+// Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
+// a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
+const STRETCH_ALL: f32 = 0.3;
+const STRETCH_NONE: f32 = 0.1;
+// Difference of base colours, against the lighter one, from which two points of the model are of two materials.
+const OTHER_MATERIAL: f32 = 0.25;
+// Cosine between two normals below which they are of two sides.
+const OTHER_SIDE_COSINE: f32 = 0.9;
+// Weight of colours carried past the outline, against those of the surface itself.
+const CARRIED_WEIGHT: f32 = 1e-3;
+
+struct Vertex {
+  @location(0) in_plane: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_plane: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+struct Surface {
+  @builtin(position) clip: vec4f,
+  @location(0) in_plane: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_plane: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+@vertex
+fn vs_toy(in: Vertex) -> Surface {
+  var clip = globals.clip_from_stage * vec4f(in.in_plane, 1.0);
+  clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
+  return Surface(clip, in.in_plane, in.normal, in.uv, in.color, in.physical_in_plane, in.physical_normal);
+}
+
+fn largest(c: vec3f) -> f32 {
+  return max(c.r, max(c.g, c.b));
+}
+
+fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
+  var sum = vec3f(0.0);
+  for (var i = 0u; i < 2u + globals.n_lights; i++) { sum += fit.toy[i].rgb * toy_column(i, normal, in_plane); }
+  return fit.gain.rgb * max(sum, vec3f(0.0));
+}
+
+// Whether the camera sees another side of the toy at `texel`: turned away and of another colour. Either alone is common
+// on one surface, at a fold or in a pattern.
+fn is_other_side(texel: vec2u, base: vec3f, normal: vec3f) -> bool {
+  let other = textureLoad(object_base, texel, 0).rgb;
+  let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
+  return is_other_color && dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE;
+}
+
+// The camera's colour of a point of the physical toy, alpha 0 where something hides it.
+//
+// Of the four pixels around it only those count that show its own surface and side, or that lie beyond the toy's
+// outline where `appearance` carried its colours.
+fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> vec4f {
+  let depth = clip.z / clip.w;
+  let at = region_px - 0.5;
+  let low = floor(at);
+  let t = at - low;
+  let last = globals.region_size_px - 1.0;
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < 4u; k++) {
+    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
+    let tap = low + corner;
+    if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
+    let texel = vec2u(tap);
+    let surface = textureLoad(object_depth, texel, 0);
+    if surface > depth && !is_same_surface(surface, depth) { continue; }
+    if surface > 0.0 && is_other_side(texel, base, normal) { continue; }
+    let color = textureLoad(appearance, texel, 0);
+    let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
+    let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
+    sum += weight * vec4f(color.rgb, 1.0);
+  }
+  if sum.a == 0.0 { return sum; }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
+fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
+  let across = cross(dpdx(in_plane), dpdy(in_plane));
+  let outward = unit_normal(across * sign(dot(across, normal)));
+  return dot(outward, normalize(globals.camera_in_stage - in_plane));
+}
+
+@fragment
+fn fs_toy(in: Surface) -> @location(0) vec4f {
+  let base = base_color(in.uv, in.color);
+  let normal = unit_normal(in.normal);
+  let physical_normal = unit_normal(in.physical_normal);
+  let physical_facing = facing(in.physical_in_plane, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
+  let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
+  let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
+  let pixel = camera_color(clip, region_px, base, physical_normal);
+  let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
+  let lit = toy_radiance_over_base(normal, in.in_plane);
+  let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);
+  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
+  let carried = pixel.rgb * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
+  return vec4f(mix(base * lit, carried, seen), 1.0);
+}
