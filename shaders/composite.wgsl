@@ -35,6 +35,9 @@ const RESIDUAL_HALF: f32 = 0.5;
 const UNKNOWN_NONE: f32 = 0.15;
 const UNKNOWN_ALL: f32 = 0.3;
 
+// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own colour.
+const SHADOW_EVENNESS: f32 = 0.4;
+const OBJECT_EVENNESS: f32 = 0.2;
 // Distance over which the toy's colours bleed into a pixel beside it.
 const BLEED_PX: f32 = 6.0;
 // Deviation from the model, in plates, up to which a pixel that the toy has left is as it should be, and from which it is
@@ -72,6 +75,14 @@ fn own_share(texel: vec2u, evident: vec4f, deviation: f32) -> f32 {
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
+// Whether a residual may be a shadow: all channels are darker, and none much more than the others.
+fn shadow_likeness(residual: vec3f) -> f32 {
+  let least = -largest(residual);
+  let most = largest(-residual);
+  if least <= 0.0 { return 0.0; }
+  return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
+}
+
 fn receiver(position: vec4f) -> vec4f {
   let texel = vec2u(position.xy);
   let at = position.xy;
@@ -96,9 +107,10 @@ fn receiver(position: vec4f) -> vec4f {
   let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_EVIDENCE)));
   let seen = own_share(texel, evident, deviation);
+  let is_object = is_unknown * (1.0 - shadow_likeness(pooled));
   let keep = seen * max(1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most), is_unknown);
   let made = lit * max(after + residual, vec3f(0.0));
-  let kept = f + lit * (after - before);
+  let kept = mix(f + lit * (after - before), f, is_object);
   let inside = max(inside_border(at), 1.0 - seen);
   return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
 }

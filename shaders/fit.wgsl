@@ -59,6 +59,8 @@ struct Observation {
   visibility: vec4f,
   // 0 where it is no evidence.
   weight: vec3f,
+  // The plate there is an estimate, made with the levels as they were.
+  is_estimated: bool,
 }
 
 fn observe(texel: vec2u) -> Observation {
@@ -72,6 +74,7 @@ fn observe(texel: vec2u) -> Observation {
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
+  seen.is_estimated = plate_texel.a < 1.0;
   seen.weight = evident * plate_texel.a * is_evidence(seen.frame, seen.plate);
   return seen;
 }
@@ -103,9 +106,12 @@ fn levels_equation(seen: Observation, channel: u32) -> Equation {
   eq.columns[0] = b * ambient_model(seen.point, seen.ambient)[channel];
   var predicted = eq.columns[0];
   for (var i = 0u; i < globals.n_lights; i++) {
-    eq.columns[2u + i] = b * light_share(i, seen.point)[channel] * seen.visibility[i];
-    predicted += fit.level[i][channel] * eq.columns[2u + i];
+    let column = b * light_share(i, seen.point)[channel] * seen.visibility[i];
+    predicted += fit.level[i][channel] * column;
+    if !seen.is_estimated { eq.columns[2u + i] = column; }
   }
+  // It tells the exposure alone.
+  if seen.is_estimated { eq.columns[0] = predicted; }
   let gain = fit.gain[channel];
   eq.weight = seen.weight[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
