@@ -3,7 +3,7 @@
 Object space: metres, +Y up, the figure looks along +Z and stands on y = 0.
 """
 from glb import Clip, Joint, Material, write_glb
-from solids import bead, loft
+from solids import bead, checked, loft
 from toy import cm, rings, turn
 
 BOXY = 7.0  # exponent of the blocks' outlines
@@ -62,4 +62,4 @@ def clips():
 def write(path):
     """Writes the figure as a glTF binary."""
     materials = [Material("beech", (0.7, 0.52, 0.34)), Material("coral", (0.62, 0.16, 0.1)), Material("teal", (0.06, 0.28, 0.3)), Material("soot", (0.04, 0.038, 0.036))]
-    write_glb(path, carve(), joints(), materials, clips())
+    write_glb(path, checked(carve()), joints(), materials, clips())

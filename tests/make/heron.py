@@ -3,7 +3,7 @@
 Object space: metres, +Y up, the heron looks along +Z and stands on y = 0.
 """
 from glb import Clip, Joint, Material, write_glb
-from solids import bead, loft
+from solids import bead, checked, loft
 from toy import cm, mix, rings, turn
 
 NECK = [(0, 8.6, 2.4), (0, 10.6, 3.3), (0, 12.6, 2.7), (0, 14.4, 2.9)]
@@ -73,4 +73,4 @@ def clips():
 def write(path):
     """Writes the heron as a glTF binary."""
     materials = [Material("slate", (0.23, 0.3, 0.38)), Material("chalk", (0.72, 0.7, 0.66)), Material("night", (0.03, 0.035, 0.05)), Material("straw", (0.72, 0.4, 0.08))]
-    write_glb(path, trunk() + limbs(), joints(), materials, clips())
+    write_glb(path, checked(trunk() + limbs()), joints(), materials, clips())

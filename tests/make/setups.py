@@ -62,10 +62,10 @@ REST = (
           lights=(Bulb(186.0, 47.0, 1.0, 0.015, 0.25, AMBER), Bulb(250.0, 55.0, 0.8, 0.03, 0.18, BLUE),
                   Bulb(75.0, 50.0, 1.3, 0.008, 0.18, GREEN), Bulb(330.0, 60.0, 1.1, 0.05, 0.15, ROSE))),
     scene("patches", "A table of saturated patches from nearly black to nearly white.", receivers=(PATCHES,)),
-    scene("lifted", "The toy hangs 4 cm above the table.", lift=0.04, eye=(0.05, 0.25, 0.35), target=(0.05, 0.05, 0.0)),
+    scene("lifted", "The toy hangs 4 cm above the table.", lift=0.04, eye=(0.05, 0.26, 0.39), target=(0.05, 0.065, 0.0)),
     scene("environment-even", "Broad uneven surroundings, no dominant light: none is listed.", sky="overcast", lights=()),
     scene("contact", "A foot leaves the table; the surroundings give most of the light.", lights=(Bulb(share=0.3),),
-          poses=(("Step", 0.25), ("Step", 0.5), ("Step", 1.3)), eye=(-0.06, 0.13, 0.3), target=(0.0, 0.045, 0.0)),
+          poses=(("Step", 0.25), ("Step", 0.5), ("Step", 1.3)), eye=(-0.06, 0.17, 0.33), target=(0.0, 0.05, 0.0)),
     scene("orbit-calm", "Twelve frames of a slowly moving camera; the shown pose stays the same.", views=orbit(12, 96.0, 90.0), plates=(0, 11),
           poses=(("Look", 1.8),) * 12, rate=60.0, receivers=(TILES,)),
 )
