@@ -67,7 +67,7 @@ class Photographer:
     """Receivers, lights and cameras of one setup; `shoot` puts a posed toy there and takes the picture."""
 
     def __init__(self, setup, spp):
-        self.setup, self.passes = setup, max(1, round(spp / SAMPLES_A_PASS))
+        self.setup, self.passes = setup, setup.effort * max(1, round(spp / SAMPLES_A_PASS))
         self.folder = tempfile.TemporaryDirectory()
         self.parts = {"type": "scene"} | {f"receiver_{k}": self.receiver(r) for k, r in enumerate(setup.receivers)}
         self.parts |= {"sky": self.sky(), "integrator": {"type": "path", "max_depth": PATH_DEPTH, "rr_depth": 1000}}

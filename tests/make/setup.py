@@ -134,6 +134,7 @@ class Setup:
     plates: tuple = (0,)  # views that have a plate
     plate_gains: tuple = ()  # per plate and channel, linear
     frame_gains: tuple = ()  # per frame and channel, linear; the truth has its frame's
+    effort: int = 1  # samples a pixel relative to other sessions, where the light is hard to find
     same_noise: bool = False  # one seed for all truths, so that what stands still stays equal
 
     def cameras(self):

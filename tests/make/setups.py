@@ -21,7 +21,7 @@ def scene(name, description, **changes):
 
 
 AMBER, BLUE, GREEN, ROSE = (1.25, 0.92, 0.55), (0.7, 0.95, 1.4), (0.8, 1.12, 0.75), (1.2, 0.8, 1.0)
-WALL_VIEW = {"eye": (0.075, 0.175, 0.33), "target": (-0.025, 0.055, -0.02), "lights": (Bulb(52.0, 38.0, radius=0.01),), "yaw": -30.0}
+WALL_VIEW = {"eye": (0.075, 0.175, 0.33), "target": (-0.025, 0.055, -0.02), "lights": (Bulb(52.0, 38.0, radius=0.01),), "yaw": -30.0, "effort": 2}
 BACK_WALL = Receiver("wall", "uniform", half_extent=(0.6, 0.4), tint=(0.85, 0.87, 0.9), upright=True, place=(0.0, -0.115))
 TURNED_WALL = Receiver("wall", "uniform", half_extent=(0.065, 0.05), tint=(0.75, 0.3, 0.22), upright=True, place=(-0.075, -0.085), turn=30.0)
 ARC = orbit(6, 120.0, 55.0)
@@ -39,10 +39,10 @@ NEEDED_FIRST = (
     scene("no-plate", "No photograph of the table without the toy.", plates=()),
     scene("orbit-exposure", "A moving camera; each plate and frame has its own exposure and white balance.", plates=(0, 5),
           plate_gains=gains(2, 5), frame_gains=gains(6, 6), **ORBIT),
-    scene("intruder", "A hand that the plate has not seen lies on the table, partly in the toy's shadow.", hand=(0.205, 0.03, -12.0),
+    scene("intruder", "A hand that the plate has not seen lies on the table, partly in the toy's shadow.", hand=(0.17, 0.045, -20.0),
           eye=(0.07, 0.26, 0.36), target=(0.07, 0.035, 0.0)),
     scene("environment-lobe", "A room with one dominant bright lobe, listed as a light, and broad uneven surroundings.", sky="window",
-          lights=(Glow(186.0, 48.0, 14.0, 0.5),)),
+          lights=(Glow(186.0, 48.0, 14.0, 0.5),), effort=4),
 )
 
 RADII = tuple(
@@ -63,7 +63,7 @@ REST = (
                   Bulb(75.0, 50.0, 1.3, 0.008, 0.18, GREEN), Bulb(330.0, 60.0, 1.1, 0.05, 0.15, ROSE))),
     scene("patches", "A table of saturated patches from nearly black to nearly white.", receivers=(PATCHES,)),
     scene("lifted", "The toy hangs 4 cm above the table.", lift=0.04, eye=(0.05, 0.26, 0.39), target=(0.05, 0.065, 0.0)),
-    scene("environment-even", "Broad uneven surroundings, no dominant light: none is listed.", sky="overcast", lights=()),
+    scene("environment-even", "Broad uneven surroundings, no dominant light: none is listed.", sky="overcast", lights=(), effort=4),
     scene("contact", "A foot leaves the table; the surroundings give most of the light.", lights=(Bulb(share=0.3),),
           poses=(("Step", 0.25), ("Step", 0.5), ("Step", 1.3)), eye=(-0.06, 0.17, 0.33), target=(0.0, 0.05, 0.0)),
     scene("orbit-calm", "Twelve frames of a slowly moving camera; the shown pose stays the same.", views=orbit(12, 96.0, 90.0), plates=(0, 11),
