@@ -16,7 +16,6 @@ mi.set_variant("llvm_ad_rgb")
 PATH_DEPTH = 5
 GRAIN_DEGREES = 24.0  # turn of the table's picture
 SAMPLES_A_PASS = 64  # a square, as the multijitter sampler wants; keeps a pass within memory
-POINT_RADIUS = 0.0005  # of the sphere that stands for a light without size, metres
 PLATE_LEVEL = 1.0  # irradiance of the table below the light, over pi
 
 
@@ -82,17 +81,21 @@ class Photographer:
         return {"type": "rectangle", "to_world": flat, "bsdf": {"type": "twosided", "bsdf": matt} if receiver.upright else matt}
 
     def bulbs(self, power):
-        """Spheres, each with the radiance that gives the table's origin its share of the plate's level; the first times `power`."""
+        """Spheres or points that give the table's origin their shares of the plate's level; the first times `power`."""
         out = {}
         for k, light in enumerate(self.setup.lights):
             if isinstance(light, Glow):
                 continue
-            position, radius = light.centre(), max(light.radius, POINT_RADIUS)
+            position, radius = light.centre(), light.radius
             distance = np.linalg.norm(position)
+            colour = PLATE_LEVEL * light.share * np.array(light.colour) * (power if k == 0 else 1.0)
+            if radius == 0:
+                intensity = np.pi * colour * distance**3 / position[1]
+                out[f"bulb_{k}"] = {"type": "point", "position": position.tolist(), "intensity": {"type": "rgb", "value": intensity.tolist()}}
+                continue
             form_factor = radius**2 / distance**2 * position[1] / distance
-            radiance = PLATE_LEVEL * light.share / form_factor * np.array(light.colour) * (power if k == 0 else 1.0)
-            out[f"bulb_{k}"] = {"type": "sphere", "center": position.tolist(), "radius": radius,
-                                "emitter": {"type": "area", "radiance": {"type": "rgb", "value": radiance.tolist()}}}
+            glow = {"type": "area", "radiance": {"type": "rgb", "value": (colour / form_factor).tolist()}}
+            out[f"bulb_{k}"] = {"type": "sphere", "center": position.tolist(), "radius": radius, "emitter": glow}
         return out
 
     def sky(self):
