@@ -2,7 +2,7 @@
 //
 // Receiver: frame = plate gain (A + bounce (1 - A) + sum_i share_i falloff_i (V_i - A) / plate_falloff)
 // is linear in (gain, gain bounce, gain share_i), with plate_falloff taken from the step before.
-// Toy: frame = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0)).
+// Toy: frame = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0) V_i), V_i with the toy's shadow on itself.
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
 // before. Sums run over pixels here and over workgroups in `fit_solve`.
 //
@@ -19,6 +19,8 @@
 @group(1) @binding(7) var ambient_sampler: sampler;
 @group(1) @binding(8) var object_base: texture_2d<f32>;
 @group(1) @binding(9) var object_normal: texture_2d<f32>;
+// Each light's cosine times its visibility.
+@group(1) @binding(10) var object_received: texture_2d<f32>;
 
 const WORKGROUP: u32 = 256u;
 // Upper triangle of the symmetric matrix row by row, then the right-hand side.
@@ -28,7 +30,7 @@ const N_PART: u32 = 9u;
 const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
-// As above for the toy, whose shadows on itself and curved faces the model does not know.
+// As above for the toy, of whose light from itself and curved faces the model does not know.
 const TOY_CAUCHY_SCALE: f32 = 0.12;
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
@@ -81,11 +83,11 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   if textureLoad(evidence, texel, 0).g == 0.0 { return eq; }
   let normal = textureLoad(object_normal, texel, 0).xyz;
   eq.value = f[channel];
-  var predicted = 0.0;
-  for (var i = 0u; i < 2u + globals.n_lights; i++) {
-    eq.columns[i] = base[channel] * toy_column(i, normal, vec3f(globals.reference_in_plane.x, 0.0, globals.reference_in_plane.y));
-    predicted += fit.toy[i][channel] * eq.columns[i];
-  }
+  let received = textureLoad(object_received, texel, 0);
+  eq.columns[0] = base[channel];
+  eq.columns[1] = base[channel] * normal.y;
+  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * received[i]; }
+  let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
   eq.weight = is_evidence(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
   return eq;

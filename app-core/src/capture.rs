@@ -8,16 +8,17 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, Subject};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::light_points::ambient_directions;
-use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
+use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
 use crate::passes::fit::{Fit, FitInputs, FitShared};
-use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
+use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::residual::ResidualInputs;
+use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
 use crate::passes::toy::ToyTargets;
-use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
 use crate::plan::Plan;
 
@@ -45,9 +46,13 @@ pub(crate) struct Capture {
     pub(crate) shown: Visibilities,
     pub(crate) object_base: Texture,
     pub(crate) object_normal: Texture,
+    pub(crate) object_received: Texture,
     pub(crate) object_depth: Texture,
     pub(crate) evidence: Texture,
     pub(crate) appearance: Texture,
+    pub(crate) appearance_lit: Texture,
+    pub(crate) physical_self_shadow: SelfShadowMaps,
+    pub(crate) shown_self_shadow: SelfShadowMaps,
     pub(crate) toy: ToyTargets,
     pub(crate) picture: Texture,
     light_points: Vec<Vec<glam::Vec4>>,
@@ -81,9 +86,13 @@ impl Capture {
             shown: visibilities(gpu, &plan),
             object_base: target("object base", BASE_FORMAT),
             object_normal: target("object normal", NORMAL_FORMAT),
+            object_received: target("object received", RECEIVED_FORMAT),
             object_depth: target("object depth", TextureFormat::Depth32Float),
             evidence: target("evidence", EVIDENCE_FORMAT),
             appearance: target("appearance", APPEARANCE_FORMAT),
+            appearance_lit: target("appearance lit", LIT_FORMAT),
+            physical_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
+            shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
@@ -107,12 +116,20 @@ impl Capture {
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
     ) {
+        let physical = (toy, &toy.physical);
+        self.encode_self_shadow(gpu, encoder, passes, physical, &self.physical_self_shadow);
+        let inputs = ObjectInputs {
+            globals: &self.globals,
+            toy,
+            self_shadow: &self.physical_self_shadow,
+        };
         let outputs = ObjectOutputs {
             base: &self.object_base.view,
             normal: &self.object_normal.view,
+            received: &self.object_received.view,
             depth: &self.object_depth.view,
         };
-        passes.object.encode(gpu, encoder, &self.globals, toy, &outputs);
+        passes.object.encode(gpu, encoder, &inputs, &outputs);
         passes
             .evidence
             .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
@@ -136,6 +153,7 @@ impl Capture {
             ambient: &self.physical.ambient.view,
             object_base: &self.object_base.view,
             object_normal: &self.object_normal.view,
+            object_received: &self.object_received.view,
         };
         passes
             .fit
@@ -166,13 +184,38 @@ impl Capture {
         frame: &wgpu::TextureView,
     ) {
         let inputs = AppearanceInputs {
+            globals: &self.globals,
+            solution: &self.solution,
             frame,
             evidence: &self.evidence.view,
             object_depth: &self.object_depth.view,
+            object_normal: &self.object_normal.view,
+            object_received: &self.object_received.view,
+        };
+        let outputs = AppearanceOutputs {
+            color: &self.appearance.view,
+            lit: &self.appearance_lit.view,
+        };
+        passes.appearance.encode(gpu, encoder, &inputs, &outputs);
+    }
+
+    /// Encodes the shadow that the toy casts on itself in a pose.
+    pub(crate) fn encode_self_shadow(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        (toy, pose): (&ToyMesh, &PoseBuffers),
+        maps: &SelfShadowMaps,
+    ) {
+        let shadowed = Shadowed {
+            toy,
+            pose,
+            light_points: &self.light_points,
         };
         passes
-            .appearance
-            .encode(gpu, encoder, &self.globals, &inputs, &self.appearance.view);
+            .self_shadow
+            .encode(gpu, encoder, &self.plan.self_shadow, &shadowed, maps);
     }
 
     /// Encodes visibility and ambient visibility of the toy at `positions`.

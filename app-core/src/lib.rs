@@ -13,6 +13,7 @@ pub mod frame;
 pub mod gpu;
 pub mod inject;
 pub mod light_points;
+pub mod light_tiles;
 pub mod maps;
 pub mod plan;
 pub mod preset;

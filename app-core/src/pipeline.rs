@@ -13,6 +13,7 @@ use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
+use crate::passes::self_shadow::SelfShadow;
 use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
@@ -27,6 +28,7 @@ pub(crate) struct VisibilityPasses {
 
 /// Every pass that a plan runs.
 pub(crate) struct Passes {
+    pub(crate) self_shadow: SelfShadow,
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
@@ -46,6 +48,7 @@ impl Passes {
             visibility: Visibility::new(gpu, n_points, channel, format),
         };
         Self {
+            self_shadow: SelfShadow::new(gpu),
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
@@ -74,13 +77,17 @@ impl Passes {
         pictures: &Pictures<'_>,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let shown = (toy, &toy.shown);
+        capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
         let inputs = ToyInputs {
             globals: &capture.globals,
             solution: &capture.solution,
             appearance: &capture.appearance.view,
+            appearance_lit: &capture.appearance_lit.view,
             object_depth: &capture.object_depth.view,
             object_base: &capture.object_base.view,
             object_normal: &capture.object_normal.view,
+            self_shadow: &capture.shown_self_shadow,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {

@@ -9,6 +9,7 @@ use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, neare
 use crate::gpu::shaders::TOY;
 use crate::gpu::texture::{Texture, TextureShape};
 
+use super::self_shadow::{GROUP_SELF_SHADOW, SelfShadowMaps};
 use super::toy_mesh::{Stream, ToyMesh};
 
 /// Format of premultiplied radiance: the resolve averages linear light, and a rim has as many steps as the inside.
@@ -34,9 +35,11 @@ pub(crate) struct ToyInputs<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) solution: &'a wgpu::Buffer,
     pub(crate) appearance: &'a wgpu::TextureView,
+    pub(crate) appearance_lit: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
     pub(crate) object_base: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
+    pub(crate) self_shadow: &'a SelfShadowMaps,
 }
 
 /// Textures of the region's size: two multisampled ones that stay on the chip, and one for each draw.
@@ -123,6 +126,7 @@ impl Toy {
                 (1, inputs.solution.as_entire_binding()),
             ],
         );
+        let self_shadow = inputs.self_shadow.bind(gpu, &self.pipeline);
         let materials = toy.material_groups(gpu, &self.pipeline);
         for (drawn, offset) in targets.views().into_iter().zip(&self.offsets) {
             let own = self.own_inputs(gpu, inputs, offset);
@@ -131,6 +135,7 @@ impl Toy {
             render.set_pipeline(&self.pipeline);
             render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
             render.set_bind_group(GROUP_PASS, &own, &[]);
+            render.set_bind_group(GROUP_SELF_SHADOW, &self_shadow, &[]);
             toy.draw_parts(&mut render, &[&toy.shown, &toy.physical], &materials);
         }
     }
@@ -143,7 +148,8 @@ impl Toy {
                 (1, view(inputs.object_depth)),
                 (2, view(inputs.object_base)),
                 (3, view(inputs.object_normal)),
-                (4, offset.as_entire_binding()),
+                (4, view(inputs.appearance_lit)),
+                (5, offset.as_entire_binding()),
             ],
         )
     }
