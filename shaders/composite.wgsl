@@ -21,6 +21,9 @@
 @group(1) @binding(11) var toy_1: texture_2d<f32>;
 @group(1) @binding(12) var toy_2: texture_2d<f32>;
 @group(1) @binding(13) var toy_3: texture_2d<f32>;
+// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+@group(1) @binding(14) var toy_moved: texture_2d<f32>;
+@group(1) @binding(15) var motion: texture_2d<f32>;
 
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
@@ -56,7 +59,16 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-fn receiver(position: vec4f) -> vec4f {
+struct Receiver {
+  color: vec3f,
+  frame: vec3f,
+  // By what the model has changed since the frame, where the receiver shows.
+  change: vec3f,
+  // How far the frame may stand where it shows the toy as well: 1 where the change is little.
+  keep_mixed: f32,
+}
+
+fn receiver(position: vec4f) -> Receiver {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let image_texel = texel + vec2u(globals.region_origin_px);
@@ -65,7 +77,7 @@ fn receiver(position: vec4f) -> vec4f {
   let b = textureLoad(plate, image_texel, 0).rgb;
   let seen = textureLoad(evidence, texel, 0).r;
   // Beyond the receiver nothing changes but that the real toy goes.
-  if !point.is_hit { return vec4f(mix(fit.gain.rgb * b, f, seen), 1.0); }
+  if !point.is_hit { return Receiver(mix(fit.gain.rgb * b, f, seen), f, vec3f(0.0), 1.0 - seen); }
   let uv = at / globals.region_size_px;
   let before = receiver_model(point.in_plane, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
@@ -74,11 +86,13 @@ fn receiver(position: vec4f) -> vec4f {
   let change = abs(after - before);
   let most = largest(change);
   let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
-  let keep = seen * (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most));
+  let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
+  let keep = seen * is_near;
   let made = b * max(after + residual, vec3f(0.0));
   let kept = f + b * (after - before);
   let inside = max(inside_border(at), 1.0 - seen);
-  return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
+  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, b * (after - before),
+    (1.0 - seen) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {
@@ -87,9 +101,30 @@ fn drawn_toy(texel: vec2u) -> vec4f {
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
+// 1 where everything in and around a pixel is as the camera saw it.
+fn stillness(texel: vec2i) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(motion, other, 0).r));
+    }
+  }
+  return 1.0 - most;
+}
+
 @fragment
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
-  let toy = drawn_toy(vec2u(position.xy));
-  if toy.a == 1.0 { return toy; }
-  return vec4f((1.0 - toy.a) * receiver(position).rgb + toy.rgb, 1.0);
+  let texel = vec2u(position.xy);
+  let toy = drawn_toy(texel);
+  let still = stillness(vec2i(texel));
+  if toy.a == 1.0 {
+    let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+    return vec4f(mix(toy.rgb, frame_color, still), 1.0);
+  }
+  let behind = receiver(position);
+  let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
 }

@@ -10,7 +10,7 @@
 
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;
-@group(1) @binding(2) var object_base: texture_2d<f32>;
+@group(1) @binding(2) var appearance_base: texture_2d<f32>;
 @group(1) @binding(3) var object_normal: texture_2d<f32>;
 @group(1) @binding(4) var appearance_lit: texture_2d<f32>;
 // By which the whole picture is moved, in pixels to the right and down.
@@ -26,6 +26,9 @@ const STRETCH_NONE: f32 = 0.1;
 const OTHER_MATERIAL: f32 = 0.25;
 // Cosine between two normals below which they are of two sides.
 const OTHER_SIDE_COSINE: f32 = 0.9;
+// Change of the light on a surface, against the light, that does not show, and that does.
+const SAME_LIGHT: f32 = 0.02;
+const OTHER_LIGHT: f32 = 0.08;
 // Weight of colours carried past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
@@ -59,12 +62,12 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-// Whether the camera sees another side of the toy at `texel`: turned away and of another colour. Either alone is common
-// on one surface, at a fold or in a pattern.
-fn is_other_side(texel: vec2u, base: vec3f, normal: vec3f) -> bool {
-  let other = textureLoad(object_base, texel, 0).rgb;
+// Whether the camera's colour at `texel` is of another side of the toy: turned away and of another colour. Either alone is
+// common on one surface, at a fold or in a pattern; beyond the outline there is no normal to tell.
+fn is_other_side(texel: vec2u, is_beyond: bool, base: vec3f, normal: vec3f) -> bool {
+  let other = textureLoad(appearance_base, texel, 0).rgb;
   let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
-  return is_other_color && dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE;
+  return is_other_color && (is_beyond || dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE);
 }
 
 // A camera pixel as it would be under the light `lit`, both over base colour.
@@ -97,7 +100,7 @@ fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
     if surface > point.depth && !is_same_surface(surface, point.depth) { continue; }
-    if surface > 0.0 && is_other_side(texel, point.base, point.normal) { continue; }
+    if is_other_side(texel, surface == 0.0, point.base, point.normal) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
@@ -114,17 +117,40 @@ fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_stage - in_plane));
 }
 
+// How far the light on a surface is from what it was. A pixel at a fold shows several sides: that of them counts which is
+// most alike.
+fn light_change(texel: vec2i, lit: vec3f) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var least = 1.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let was_lit = textureLoad(appearance_lit, clamp(texel + vec2i(x, y), vec2i(0), last), 0).rgb;
+      let brighter = max(largest(was_lit), largest(lit));
+      if brighter > 0.0 { least = min(least, largest(abs(lit - was_lit)) / brighter); }
+    }
+  }
+  return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
+}
+
+struct Drawn {
+  @location(0) radiance: vec4f,
+  // Where it shows what the camera did not see in this place.
+  @location(1) moved: vec4f,
+}
+
 @fragment
-fn fs_toy(in: Surface) -> @location(0) vec4f {
+fn fs_toy(in: Surface) -> Drawn {
   let base = base_color(in.uv, in.color);
   let normal = unit_normal(in.normal);
   let physical_normal = unit_normal(in.physical_normal);
   let physical_facing = facing(in.physical_in_plane, physical_normal);
   let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
-  let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
+  let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(normal, in.in_plane));
-  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, region_px, base, physical_normal), lit);
+  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base, physical_normal), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  return vec4f(mix(base * lit, pixel.rgb, seen), 1.0);
+  let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_plane, 1.0)), physical_px);
+  let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
+  return Drawn(vec4f(mix(base * lit, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
 }

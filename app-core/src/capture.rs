@@ -13,6 +13,7 @@ use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
 use crate::passes::fit::{Fit, FitInputs, FitShared};
+use crate::passes::motion::MotionTargets;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::residual::ResidualInputs;
@@ -51,8 +52,10 @@ pub(crate) struct Capture {
     pub(crate) evidence: Texture,
     pub(crate) appearance: Texture,
     pub(crate) appearance_lit: Texture,
+    pub(crate) appearance_base: Texture,
     pub(crate) physical_self_shadow: SelfShadowMaps,
     pub(crate) shown_self_shadow: SelfShadowMaps,
+    pub(crate) motion: MotionTargets,
     pub(crate) toy: ToyTargets,
     pub(crate) picture: Texture,
     light_points: Vec<Vec<glam::Vec4>>,
@@ -91,8 +94,10 @@ impl Capture {
             evidence: target("evidence", EVIDENCE_FORMAT),
             appearance: target("appearance", APPEARANCE_FORMAT),
             appearance_lit: target("appearance lit", LIT_FORMAT),
+            appearance_base: target("appearance base", BASE_FORMAT),
             physical_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
+            motion: MotionTargets::new(gpu, region_px),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
@@ -191,10 +196,12 @@ impl Capture {
             object_depth: &self.object_depth.view,
             object_normal: &self.object_normal.view,
             object_received: &self.object_received.view,
+            object_base: &self.object_base.view,
         };
         let outputs = AppearanceOutputs {
             color: &self.appearance.view,
             lit: &self.appearance_lit.view,
+            base: &self.appearance_base.view,
         };
         passes.appearance.encode(gpu, encoder, &inputs, &outputs);
     }

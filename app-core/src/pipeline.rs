@@ -9,6 +9,7 @@ use crate::passes::composite::{Composite, CompositeInputs};
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
 use crate::passes::fit::Fit;
+use crate::passes::motion::Motion;
 use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
 use crate::passes::present::{Present, PresentInputs};
@@ -37,6 +38,7 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) motion: Motion,
     pub(crate) toy: Toy,
     pub(crate) composite: Composite,
 }
@@ -62,6 +64,7 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
+            motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
             composite: Composite::new(gpu, plan.n_toy_draws),
         }
@@ -79,13 +82,15 @@ impl Passes {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
         let shown = (toy, &toy.shown);
         capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
+        self.motion
+            .encode(gpu, encoder, &capture.globals, toy, &capture.motion);
         let inputs = ToyInputs {
             globals: &capture.globals,
             solution: &capture.solution,
             appearance: &capture.appearance.view,
             appearance_lit: &capture.appearance_lit.view,
             object_depth: &capture.object_depth.view,
-            object_base: &capture.object_base.view,
+            appearance_base: &capture.appearance_base.view,
             object_normal: &capture.object_normal.view,
             self_shadow: &capture.shown_self_shadow,
         };
@@ -103,6 +108,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
+            motion: &capture.motion.moved.view,
         };
         self.composite
             .encode(gpu, encoder, &inputs, &capture.picture.view);

@@ -203,6 +203,10 @@ const PASSES: &[PlannedPass] = &[
         path: Path::Frame,
     },
     PlannedPass {
+        name: "motion",
+        path: Path::Frame,
+    },
+    PlannedPass {
         name: "toy",
         path: Path::Frame,
     },

@@ -33,6 +33,7 @@ const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
+const MOVED: &str = wgsl!("common/moved");
 const PIXEL: &str = wgsl!("common/pixel");
 const PUBLISHED: &str = wgsl!("common/published");
 const SELF_SHADOW_MAPS: &str = wgsl!("common/self_shadow");
@@ -89,6 +90,11 @@ pub(crate) const FILL: Shader = Shader {
     parts: &[GRID, wgsl!("fill")],
     entry_points: &["cs_pull_push"],
 };
+pub(crate) const MOTION: Shader = Shader {
+    name: "motion",
+    parts: &[GLOBALS, MOVED, wgsl!("motion")],
+    entry_points: &["vs_physical", "fs_motion"],
+};
 pub(crate) const TOY: Shader = Shader {
     name: "toy",
     parts: &[
@@ -99,6 +105,7 @@ pub(crate) const TOY: Shader = Shader {
         SELF_SHADOW_MAPS,
         MATERIAL,
         DEPTH,
+        MOVED,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
@@ -162,6 +169,7 @@ pub const ALL: &[Shader] = &[
     FIT_SOLVE,
     RESIDUAL,
     FILL,
+    MOTION,
     TOY,
     COMPOSITE,
     PRESENT,

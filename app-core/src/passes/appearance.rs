@@ -7,6 +7,8 @@ use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, view};
 use crate::gpu::shaders::APPEARANCE;
 
+use super::object::BASE_FORMAT;
+
 /// Format of the colours: as the camera's, so that its codes come through unrounded.
 pub(crate) const APPEARANCE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 
@@ -25,12 +27,14 @@ pub(crate) struct AppearanceInputs<'a> {
     pub(crate) object_depth: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
     pub(crate) object_received: &'a wgpu::TextureView,
+    pub(crate) object_base: &'a wgpu::TextureView,
 }
 
 /// Textures of the region's size.
 pub(crate) struct AppearanceOutputs<'a> {
     pub(crate) color: &'a wgpu::TextureView,
     pub(crate) lit: &'a wgpu::TextureView,
+    pub(crate) base: &'a wgpu::TextureView,
 }
 
 impl Appearance {
@@ -41,7 +45,11 @@ impl Appearance {
             buffers: &[],
         };
         let shape = RenderShape {
-            targets: &[Some(APPEARANCE_FORMAT.into()), Some(LIT_FORMAT.into())],
+            targets: &[
+                Some(APPEARANCE_FORMAT.into()),
+                Some(LIT_FORMAT.into()),
+                Some(BASE_FORMAT.into()),
+            ],
             n_samples: 1,
             depth: None,
             constants: &[],
@@ -74,9 +82,10 @@ impl Appearance {
                 (2, view(inputs.object_depth)),
                 (3, view(inputs.object_normal)),
                 (4, view(inputs.object_received)),
+                (5, view(inputs.object_base)),
             ],
         );
-        let targets = [outputs.color, outputs.lit].map(|view| Some(cleared(view)));
+        let targets = [outputs.color, outputs.lit, outputs.base].map(|view| Some(cleared(view)));
         let mut render = encoder.render(APPEARANCE.name, &targets, None, StoreOp::Discard);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);

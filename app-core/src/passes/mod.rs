@@ -10,6 +10,7 @@ pub(crate) mod evidence;
 pub(crate) mod fill;
 pub(crate) mod fit;
 pub(crate) mod masks;
+pub(crate) mod motion;
 pub(crate) mod object;
 pub(crate) mod occlusion;
 pub(crate) mod pcss;

@@ -9,6 +9,7 @@ use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, neare
 use crate::gpu::shaders::TOY;
 use crate::gpu::texture::{Texture, TextureShape};
 
+use super::motion::MOVED_FORMAT;
 use super::self_shadow::{GROUP_SELF_SHADOW, SelfShadowMaps};
 use super::toy_mesh::{Stream, ToyMesh};
 
@@ -37,7 +38,7 @@ pub(crate) struct ToyInputs<'a> {
     pub(crate) appearance: &'a wgpu::TextureView,
     pub(crate) appearance_lit: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
-    pub(crate) object_base: &'a wgpu::TextureView,
+    pub(crate) appearance_base: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
     pub(crate) self_shadow: &'a SelfShadowMaps,
 }
@@ -48,6 +49,9 @@ pub(crate) struct ToyTargets {
     depth: Texture,
     first: Texture,
     others: Vec<Texture>,
+    moved_samples: Texture,
+    /// Where it shows what the camera did not see in that place.
+    pub(crate) moved: Texture,
 }
 
 impl ToyTargets {
@@ -64,6 +68,8 @@ impl ToyTargets {
             others: (1..n_draws)
                 .map(|_| Texture::target(gpu, "toy", shape(FORMAT, 1)))
                 .collect(),
+            moved_samples: Texture::target(gpu, "toy moved samples", shape(MOVED_FORMAT, N_SAMPLES)),
+            moved: Texture::target(gpu, "toy moved", shape(MOVED_FORMAT, 1)),
         }
     }
 
@@ -96,7 +102,7 @@ impl Toy {
             buffers: &buffers,
         };
         let shape = RenderShape {
-            targets: &[Some(FORMAT.into())],
+            targets: &[Some(FORMAT.into()), Some(MOVED_FORMAT.into())],
             n_samples: N_SAMPLES,
             depth: Some(nearest_surface()),
             constants: &[],
@@ -130,7 +136,10 @@ impl Toy {
         let materials = toy.material_groups(gpu, &self.pipeline);
         for (drawn, offset) in targets.views().into_iter().zip(&self.offsets) {
             let own = self.own_inputs(gpu, inputs, offset);
-            let colors = [Some(resolved(&targets.samples.view, drawn))];
+            let colors = [
+                Some(resolved(&targets.samples.view, drawn)),
+                Some(resolved(&targets.moved_samples.view, &targets.moved.view)),
+            ];
             let mut render = encoder.render(TOY.name, &colors, Some(&targets.depth.view), StoreOp::Discard);
             render.set_pipeline(&self.pipeline);
             render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
@@ -146,7 +155,7 @@ impl Toy {
             &[
                 (0, view(inputs.appearance)),
                 (1, view(inputs.object_depth)),
-                (2, view(inputs.object_base)),
+                (2, view(inputs.appearance_base)),
                 (3, view(inputs.object_normal)),
                 (4, view(inputs.appearance_lit)),
                 (5, offset.as_entire_binding()),

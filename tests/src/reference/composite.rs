@@ -46,7 +46,8 @@ pub struct Shown {
     pub cell_px: u32,
 }
 
-/// Linear colour of the receiver at `texel` of the region.
+/// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
+/// pixel too near to the toy to be evidence is its own.
 #[must_use]
 pub fn receiver_color(
     region: &Region,
@@ -54,7 +55,7 @@ pub fn receiver_color(
     shown: &Shown,
     constants: &CompositeConstants,
     texel: UVec2,
-) -> DVec3 {
+) -> [DVec3; 2] {
     let at = centre_px(texel);
     let (frame, plate, seen) = (
         pictures.frame.at(texel),
@@ -62,7 +63,7 @@ pub fn receiver_color(
         pictures.seen.at(texel),
     );
     let Some(in_plane) = region.receiver_point(at) else {
-        return (shown.solution.gain * plate).lerp(frame, seen);
+        return [(shown.solution.gain * plate).lerp(frame, seen), frame];
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         let ambient = coarse_at(ambient, region, at);
@@ -78,11 +79,12 @@ pub fn receiver_color(
     let pooled = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
     let made = plate * (after + pooled).max(DVec3::ZERO);
     let kept = frame + plate * (after - before);
-    let keep = seen * (1.0 - smoothstep(constants.keep_all, constants.keep_none, change));
+    let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
 
     // What hides the receiver must go even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO)
+    let laid = frame.lerp(made.lerp(kept, seen * near), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.

@@ -56,6 +56,7 @@ fn what_belongs_to_the_place_is_not_on_the_frame_path() {
             "occlusion",
             "visibility",
             "self_shadow",
+            "motion",
             "toy",
             "composite",
             "present"
