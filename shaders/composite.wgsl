@@ -21,6 +21,9 @@
 @group(1) @binding(11) var toy_1: texture_2d<f32>;
 @group(1) @binding(12) var toy_2: texture_2d<f32>;
 @group(1) @binding(13) var toy_3: texture_2d<f32>;
+// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+@group(1) @binding(14) var toy_moved: texture_2d<f32>;
+@group(1) @binding(15) var motion: texture_2d<f32>;
 
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
@@ -40,7 +43,7 @@ const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
 // Distance over which the toy's colours bleed into a pixel beside it.
 const BLEED_PX: f32 = 6.0;
-// Deviation from the model, in plates, up to which a pixel that the toy has left is as it should be, and from which it is
+// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from which it is
 // what bled into it.
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
@@ -56,22 +59,23 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-// Whether the shown toy is not beside this pixel.
-fn is_left(texel: vec2i) -> bool {
+// Whether the toy's surface beside this pixel is no longer in its place.
+fn has_moved_beside(texel: vec2i) -> bool {
   let last = vec2i(globals.region_size_px) - 1;
-  var nearest = 0.0;
-  for (var k = 0u; k < 8u; k++) {
+  var most = 0.0;
+  for (var k = 0u; k < 16u; k++) {
     let turn = f32(k) * 0.78539816;
-    let tap = clamp(texel + vec2i(round(BLEED_PX * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
-    nearest = max(nearest, textureLoad(toy_0, tap, 0).a);
+    let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
+    let tap = clamp(texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
+    most = max(most, textureLoad(motion, tap, 0).r);
   }
-  return nearest == 0.0;
+  return most > 0.0;
 }
 
-// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has gone, and left its colour.
+// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
 fn own_share(texel: vec2u, evident: vec4f, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
-  if evident.b == 1.0 || !is_left(vec2i(texel)) { return 1.0; }
+  if evident.b == 1.0 || !has_moved_beside(vec2i(texel)) { return 1.0; }
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
@@ -83,7 +87,16 @@ fn shadow_likeness(residual: vec3f) -> f32 {
   return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
-fn receiver(position: vec4f) -> vec4f {
+struct Receiver {
+  color: vec3f,
+  frame: vec3f,
+  // By what the model has changed since the frame, where the receiver shows.
+  change: vec3f,
+  // How far the frame may stand where it shows the toy as well: 1 where the change is little.
+  keep_mixed: f32,
+}
+
+fn receiver(position: vec4f) -> Receiver {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let image_texel = texel + vec2u(globals.region_origin_px);
@@ -93,9 +106,9 @@ fn receiver(position: vec4f) -> vec4f {
   let lit = fit.gain.rgb * b.rgb;
   let evident = textureLoad(evidence, texel, 0);
   // Nothing is known of what is behind.
-  if b.a == 0.0 { return vec4f(f, 1.0); }
+  if b.a == 0.0 { return Receiver(f, f, vec3f(0.0), 1.0); }
   // Beyond the receivers nothing changes but that the real toy goes.
-  if !is_hit(point) { return vec4f(mix(lit, f, evident.r), 1.0); }
+  if !is_hit(point) { return Receiver(mix(lit, f, evident.r), f, vec3f(0.0), 1.0 - evident.r); }
   let uv = at / globals.region_size_px;
   let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
@@ -105,14 +118,16 @@ fn receiver(position: vec4f) -> vec4f {
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
+  let is_object = is_unknown * (1.0 - shadow_likeness(pooled));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_EVIDENCE)));
   let seen = own_share(texel, evident, deviation);
-  let is_object = is_unknown * (1.0 - shadow_likeness(pooled));
-  let keep = seen * max(1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most), is_unknown);
+  let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
   let kept = mix(f + lit * (after - before), f, is_object);
+  let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);
-  return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
+  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
+    (1.0 - seen) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {
@@ -121,9 +136,30 @@ fn drawn_toy(texel: vec2u) -> vec4f {
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
+// 1 where everything in and around a pixel is as the camera saw it.
+fn stillness(texel: vec2i) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(motion, other, 0).r));
+    }
+  }
+  return 1.0 - most;
+}
+
 @fragment
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
-  let toy = drawn_toy(vec2u(position.xy));
-  if toy.a == 1.0 { return toy; }
-  return vec4f((1.0 - toy.a) * receiver(position).rgb + toy.rgb, 1.0);
+  let texel = vec2u(position.xy);
+  let toy = drawn_toy(texel);
+  let still = stillness(vec2i(texel));
+  if toy.a == 1.0 {
+    let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+    return vec4f(mix(toy.rgb, frame_color, still), 1.0);
+  }
+  let behind = receiver(position);
+  let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
 }

@@ -4,15 +4,17 @@
 // falls on the turned surface; what was hidden takes the model's base colour under the fitted light.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
-// Reads: both poses, materials, the toy's own colours, the physical toy, the fit. Writes: linear radiance, premultiplied;
+// Reads: both poses, materials, the toy's own colours and the light they were seen under, the physical toy, the fit, depth
+// maps from the lights. Writes: linear radiance, premultiplied;
 // the resolve makes alpha the coverage.
 
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;
-@group(1) @binding(2) var object_base: texture_2d<f32>;
+@group(1) @binding(2) var appearance_base: texture_2d<f32>;
 @group(1) @binding(3) var object_normal: texture_2d<f32>;
+@group(1) @binding(4) var appearance_lit: texture_2d<f32>;
 // By which the whole picture is moved, in pixels to the right and down.
-@group(1) @binding(4) var<uniform> offset_px: vec2f;
+@group(1) @binding(5) var<uniform> offset_px: vec2f;
 
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
 const MAX_TURN: f32 = 4.0;
@@ -24,6 +26,9 @@ const STRETCH_NONE: f32 = 0.1;
 const OTHER_MATERIAL: f32 = 0.25;
 // Cosine between two normals below which they are of two sides.
 const OTHER_SIDE_COSINE: f32 = 0.9;
+// Change of the light on a surface, against the light, that does not show, and that does.
+const SAME_LIGHT: f32 = 0.02;
+const OTHER_LIGHT: f32 = 0.08;
 // Weight of colours carried past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
@@ -57,27 +62,33 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
-  var sum = vec3f(0.0);
-  for (var i = 0u; i < 2u + globals.n_lights; i++) { sum += fit.toy[i].rgb * toy_column(i, normal, in_plane); }
-  return fit.gain.rgb * max(sum, vec3f(0.0));
-}
-
-// Whether the camera sees another side of the toy at `texel`: turned away and of another colour. Either alone is common
-// on one surface, at a fold or in a pattern.
-fn is_other_side(texel: vec2u, base: vec3f, normal: vec3f) -> bool {
-  let other = textureLoad(object_base, texel, 0).rgb;
+// Whether the camera's colour at `texel` is of another side of the toy: turned away and of another colour. Either alone is
+// common on one surface, at a fold or in a pattern; beyond the outline there is no normal to tell.
+fn is_other_side(texel: vec2u, is_beyond: bool, base: vec3f, normal: vec3f) -> bool {
+  let other = textureLoad(appearance_base, texel, 0).rgb;
   let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
-  return is_other_color && dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE;
+  return is_other_color && (is_beyond || dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE);
 }
 
-// The camera's colour of a point of the physical toy, alpha 0 where something hides it.
+// A camera pixel as it would be under the light `lit`, both over base colour.
+fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
+  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
+  return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
+}
+
+struct PhysicalPoint {
+  depth: f32,
+  region_px: vec2f,
+  base: vec3f,
+  normal: vec3f,
+}
+
+// The camera's colour of a point of the physical toy under the light `lit`, alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and side, or that lie beyond the toy's
 // outline where `appearance` carried its colours.
-fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> vec4f {
-  let depth = clip.z / clip.w;
-  let at = region_px - 0.5;
+fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
+  let at = point.region_px - 0.5;
   let low = floor(at);
   let t = at - low;
   let last = globals.region_size_px - 1.0;
@@ -88,12 +99,12 @@ fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> ve
     if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
-    if surface > depth && !is_same_surface(surface, depth) { continue; }
-    if surface > 0.0 && is_other_side(texel, base, normal) { continue; }
+    if surface > point.depth && !is_same_surface(surface, point.depth) { continue; }
+    if is_other_side(texel, surface == 0.0, point.base, point.normal) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
-    sum += weight * vec4f(color.rgb, 1.0);
+    sum += weight * vec4f(relit(color.rgb, lit, textureLoad(appearance_lit, texel, 0).rgb), 1.0);
   }
   if sum.a == 0.0 { return sum; }
   return vec4f(sum.rgb / sum.a, 1.0);
@@ -106,20 +117,41 @@ fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_stage - in_plane));
 }
 
+// How far the light on a surface is from what it was. A pixel at a fold shows several sides: that of them counts which is
+// most alike.
+fn light_change(texel: vec2i, lit: vec3f) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var least = 1.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let was_lit = textureLoad(appearance_lit, clamp(texel + vec2i(x, y), vec2i(0), last), 0).rgb;
+      let brighter = max(largest(was_lit), largest(lit));
+      if brighter > 0.0 { least = min(least, largest(abs(lit - was_lit)) / brighter); }
+    }
+  }
+  return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
+}
+
+struct Drawn {
+  @location(0) radiance: vec4f,
+  // Where it shows what the camera did not see in this place.
+  @location(1) moved: vec4f,
+}
+
 @fragment
-fn fs_toy(in: Surface) -> @location(0) vec4f {
+fn fs_toy(in: Surface) -> Drawn {
   let base = base_color(in.uv, in.color);
   let normal = unit_normal(in.normal);
   let physical_normal = unit_normal(in.physical_normal);
   let physical_facing = facing(in.physical_in_plane, physical_normal);
   let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
-  let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
-  let pixel = camera_color(clip, region_px, base, physical_normal);
+  let physical_px = region_px(clip);
+  let lit = toy_radiance_over_base(normal, light_received(normal, in.in_plane));
+  let unseen = fit.gain.rgb * base * lit;
+  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base, physical_normal), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  let lit = toy_radiance_over_base(normal, in.in_plane);
-  let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);
-  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
-  let carried = pixel.rgb * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
-  return vec4f(mix(base * lit, carried, seen), 1.0);
+  let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_plane, 1.0)), physical_px);
+  let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
+  return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
 }

@@ -48,6 +48,7 @@ impl Learner<'_> {
             ambient: &capture.physical.ambient.view,
             object_base: &capture.object_base.view,
             object_normal: &capture.object_normal.view,
+            object_received: &capture.object_received.view,
         };
         let task = FitTask {
             subject,

@@ -14,6 +14,7 @@ pub mod gpu;
 pub mod grids;
 pub mod inject;
 pub mod light_points;
+pub mod light_tiles;
 pub mod maps;
 pub mod outline;
 pub mod plan;

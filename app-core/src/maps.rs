@@ -18,6 +18,8 @@ pub enum Map {
     Evidence,
     /// Base colour of the physical toy, linear; alpha is its coverage.
     ObjectBase,
+    /// Cosine to each light times its visibility, on the physical toy, light 0 in r.
+    ObjectReceived,
     /// The toy's own colours, linear, carried past its outline; alpha is 1 where there is one.
     Appearance,
     /// Visibility of each light with the physical toy, light 0 in r.
@@ -54,6 +56,7 @@ impl Map {
     pub const ALL: &[Self] = &[
         Self::Evidence,
         Self::ObjectBase,
+        Self::ObjectReceived,
         Self::Appearance,
         Self::PhysicalVisibility,
         Self::PhysicalAmbient,
@@ -89,6 +92,7 @@ impl Model {
         let map = match map {
             Map::Evidence => read_texture(gpu, &capture.evidence),
             Map::ObjectBase => read_texture(gpu, &capture.object_base),
+            Map::ObjectReceived => read_texture(gpu, &capture.object_received),
             Map::Appearance => read_texture(gpu, &capture.appearance),
             Map::PhysicalVisibility => read_texture(gpu, &capture.physical.lights),
             Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient),

@@ -12,11 +12,13 @@ use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
 use crate::passes::fit::Fit;
 use crate::passes::lit::Lit;
+use crate::passes::motion::Motion;
 use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
 use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
+use crate::passes::self_shadow::SelfShadow;
 use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
@@ -46,6 +48,7 @@ impl EstimatePasses {
 
 /// Every pass that a plan runs.
 pub(crate) struct Passes {
+    pub(crate) self_shadow: SelfShadow,
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
@@ -56,6 +59,7 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) motion: Motion,
     pub(crate) toy: Toy,
     pub(crate) composite: Composite,
 }
@@ -67,6 +71,7 @@ impl Passes {
             visibility: Visibility::new(gpu, n_points, channel, format),
         };
         Self {
+            self_shadow: SelfShadow::new(gpu),
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
@@ -82,6 +87,7 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
+            motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
             composite: Composite::new(gpu, plan.n_toy_draws),
         }
@@ -104,13 +110,19 @@ impl Passes {
         frame: &wgpu::TextureView,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let shown = (toy, &toy.shown);
+        capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
+        self.motion
+            .encode(gpu, encoder, &capture.globals, toy, &capture.motion);
         let inputs = ToyInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
             appearance: &capture.appearance.view,
+            appearance_lit: &capture.appearance_lit.view,
             object_depth: &capture.object_depth.view,
-            object_base: &capture.object_base.view,
+            appearance_base: &capture.appearance_base.view,
             object_normal: &capture.object_normal.view,
+            self_shadow: &capture.shown_self_shadow,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
@@ -126,6 +138,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
+            motion: &capture.motion.moved.view,
         };
         self.composite
             .encode(gpu, encoder, &inputs, &capture.picture.view);

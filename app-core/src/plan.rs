@@ -3,7 +3,7 @@
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
 //! A plan holds what the scene needs and names what it leaves out, with the reason.
 
-use glam::UVec2;
+use glam::{DMat4, DVec3, UVec2};
 use wgpu::TextureFormat;
 
 use crate::gpu::layout::MAX_LIGHTS;
@@ -78,6 +78,45 @@ pub struct LightPlan {
     pub n_points: usize,
 }
 
+/// How the toy's shadow on itself is made: an atlas of depth maps, one for each point of each light.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SelfShadowPlan {
+    /// One entry a light.
+    pub n_points: Vec<usize>,
+    /// Tiles along each side of the atlas.
+    pub n_columns: u32,
+    /// Texels along each side of a tile.
+    pub tile_px: u32,
+}
+
+impl SelfShadowPlan {
+    fn new(lights: &[LightPlan], settings: &Settings) -> Self {
+        let n_points: Vec<usize> = lights
+            .iter()
+            .map(|light| light.n_points.min(settings.n_self_shadow_points))
+            .collect();
+        let n_tiles: usize = n_points.iter().sum();
+        Self {
+            n_columns: (1..).find(|n| (n * n) as usize >= n_tiles).unwrap_or(1),
+            n_points,
+            tile_px: settings.self_shadow_tile_px,
+        }
+    }
+
+    /// From the clip space of tile `index`, of which the part `used` along each side is drawn to, to that of the atlas.
+    #[must_use]
+    pub fn atlas_from_tile(&self, index: u32, used: f64) -> DMat4 {
+        let side = 1.0 / f64::from(self.n_columns);
+        let middle = |place: u32| side * f64::from(2 * place + 1) - 1.0;
+        let at = DVec3::new(
+            middle(index % self.n_columns),
+            -middle(index / self.n_columns),
+            0.0,
+        );
+        DMat4::from_translation(at) * DMat4::from_scale(DVec3::new(used * side, used * side, 1.0))
+    }
+}
+
 /// What is allocated and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -97,6 +136,8 @@ pub struct Plan {
     pub is_plate_estimated: bool,
     /// Draws of the shown toy, each by a part of a pixel beside the others.
     pub n_toy_draws: u32,
+    /// The toy's shadow on itself.
+    pub self_shadow: SelfShadowPlan,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -131,15 +172,15 @@ pub struct LeftOut {
 
 const PASSES: &[PlannedPass] = &[
     PlannedPass {
+        name: "self_shadow",
+        path: Path::Capture,
+    },
+    PlannedPass {
         name: "object",
         path: Path::Capture,
     },
     PlannedPass {
         name: "evidence",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "appearance",
         path: Path::Capture,
     },
     PlannedPass {
@@ -179,11 +220,23 @@ const PASSES: &[PlannedPass] = &[
         path: Path::Capture,
     },
     PlannedPass {
+        name: "appearance",
+        path: Path::Capture,
+    },
+    PlannedPass {
         name: "occlusion",
         path: Path::Frame,
     },
     PlannedPass {
         name: "visibility",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "self_shadow",
+        path: Path::Frame,
+    },
+    PlannedPass {
+        name: "motion",
         path: Path::Frame,
     },
     PlannedPass {
@@ -281,12 +334,12 @@ impl Plan {
                 _ => TextureFormat::Rgba16Float,
             },
             left_out: left_out(facts, &lights),
-            lights,
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
             n_toy_draws: settings.n_toy_draws,
+            self_shadow: SelfShadowPlan::new(&lights, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             fit_stride_px,
@@ -296,6 +349,7 @@ impl Plan {
                 .filter(|pass| !(facts.is_plate_complete && ESTIMATE_PASSES.contains(&pass.name)))
                 .copied()
                 .collect(),
+            lights,
         }
     }
 }

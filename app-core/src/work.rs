@@ -139,7 +139,7 @@ impl Model {
             capture.encode_levels(gpu, encoder, passes, knowledge, pictures.frame);
         }
         if change >= Change::Picture {
-            capture.encode_appearance(gpu, encoder, passes, pictures.frame);
+            capture.encode_appearance(gpu, encoder, passes, (knowledge, pictures.frame));
         }
         encoder.path = Path::Frame;
         passes.encode_frame(gpu, encoder, (capture, knowledge), toy, pictures.frame);

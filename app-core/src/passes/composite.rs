@@ -30,6 +30,7 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) visibility: &'a wgpu::TextureView,
     pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) toy: &'a ToyTargets,
+    pub(crate) motion: &'a wgpu::TextureView,
 }
 
 impl Composite {
@@ -75,6 +76,8 @@ impl Composite {
                 (11, view(toy_1)),
                 (12, view(toy_2)),
                 (13, view(toy_3)),
+                (14, view(&inputs.toy.moved.view)),
+                (15, view(inputs.motion)),
             ],
         );
         encoder.fullscreen(

@@ -28,6 +28,7 @@ pub(crate) struct FitInputs<'a> {
     pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) object_base: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
+    pub(crate) object_received: &'a wgpu::TextureView,
 }
 
 impl Fit {
@@ -126,6 +127,7 @@ impl Fit {
                 (7, wgpu::BindingResource::Sampler(&self.linear)),
                 (8, view(inputs.object_base)),
                 (9, view(inputs.object_normal)),
+                (10, view(inputs.object_received)),
             ],
         )
     }

@@ -9,6 +9,8 @@ use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, neare
 use crate::gpu::shaders::TOY;
 use crate::gpu::texture::{Texture, TextureShape};
 
+use super::motion::MOVED_FORMAT;
+use super::self_shadow::{GROUP_SELF_SHADOW, SelfShadowMaps};
 use super::toy_mesh::{Stream, ToyMesh};
 
 /// Format of premultiplied radiance: the resolve averages linear light, and a rim has as many steps as the inside.
@@ -34,9 +36,11 @@ pub(crate) struct ToyInputs<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) solution: &'a wgpu::Buffer,
     pub(crate) appearance: &'a wgpu::TextureView,
+    pub(crate) appearance_lit: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
-    pub(crate) object_base: &'a wgpu::TextureView,
+    pub(crate) appearance_base: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
+    pub(crate) self_shadow: &'a SelfShadowMaps,
 }
 
 /// Textures of the region's size: two multisampled ones that stay on the chip, and one for each draw.
@@ -45,6 +49,9 @@ pub(crate) struct ToyTargets {
     depth: Texture,
     first: Texture,
     others: Vec<Texture>,
+    moved_samples: Texture,
+    /// Where it shows what the camera did not see in that place.
+    pub(crate) moved: Texture,
 }
 
 impl ToyTargets {
@@ -61,6 +68,8 @@ impl ToyTargets {
             others: (1..n_draws)
                 .map(|_| Texture::target(gpu, "toy", shape(FORMAT, 1)))
                 .collect(),
+            moved_samples: Texture::target(gpu, "toy moved samples", shape(MOVED_FORMAT, N_SAMPLES)),
+            moved: Texture::target(gpu, "toy moved", shape(MOVED_FORMAT, 1)),
         }
     }
 
@@ -93,7 +102,7 @@ impl Toy {
             buffers: &buffers,
         };
         let shape = RenderShape {
-            targets: &[Some(FORMAT.into())],
+            targets: &[Some(FORMAT.into()), Some(MOVED_FORMAT.into())],
             n_samples: N_SAMPLES,
             depth: Some(nearest_surface()),
             constants: &[],
@@ -123,14 +132,19 @@ impl Toy {
                 (1, inputs.solution.as_entire_binding()),
             ],
         );
+        let self_shadow = inputs.self_shadow.bind(gpu, &self.pipeline);
         let materials = toy.material_groups(gpu, &self.pipeline);
         for (drawn, offset) in targets.views().into_iter().zip(&self.offsets) {
             let own = self.own_inputs(gpu, inputs, offset);
-            let colors = [Some(resolved(&targets.samples.view, drawn))];
+            let colors = [
+                Some(resolved(&targets.samples.view, drawn)),
+                Some(resolved(&targets.moved_samples.view, &targets.moved.view)),
+            ];
             let mut render = encoder.render(TOY.name, &colors, Some(&targets.depth.view), StoreOp::Discard);
             render.set_pipeline(&self.pipeline);
             render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
             render.set_bind_group(GROUP_PASS, &own, &[]);
+            render.set_bind_group(GROUP_SELF_SHADOW, &self_shadow, &[]);
             toy.draw_parts(&mut render, &[&toy.shown, &toy.physical], &materials);
         }
     }
@@ -141,9 +155,10 @@ impl Toy {
             &[
                 (0, view(inputs.appearance)),
                 (1, view(inputs.object_depth)),
-                (2, view(inputs.object_base)),
+                (2, view(inputs.appearance_base)),
                 (3, view(inputs.object_normal)),
-                (4, offset.as_entire_binding()),
+                (4, view(inputs.appearance_lit)),
+                (5, offset.as_entire_binding()),
             ],
         )
     }

@@ -53,7 +53,8 @@ pub struct Shown {
     pub grids: Vec<PlaneGrid>,
 }
 
-/// Linear colour of the receiver at `texel` of the region.
+/// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
+/// pixel too near to the toy to be evidence is its own.
 #[must_use]
 pub fn receiver_color(
     region: &Region,
@@ -61,7 +62,7 @@ pub fn receiver_color(
     shown: &Shown,
     constants: &CompositeConstants,
     texel: UVec2,
-) -> DVec3 {
+) -> [DVec3; 2] {
     let at = centre_px(texel);
     let (frame, plate, seen) = (
         pictures.frame.at(texel),
@@ -70,7 +71,7 @@ pub fn receiver_color(
     );
     let lit = shown.solution.gain * plate;
     let Some(point) = region.receiver_point(at) else {
-        return lit.lerp(frame, seen);
+        return [lit.lerp(frame, seen), frame];
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         let ambient = coarse_at(ambient, region, at);
@@ -88,12 +89,12 @@ pub fn receiver_color(
     let unknown = smoothstep(constants.unknown_none, constants.unknown_all, pooled.abs().max_element());
     let made = lit * (after + residual).max(DVec3::ZERO);
     let kept = frame + lit * (after - before);
-    let own = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
-    let keep = seen * own.max(unknown);
+    let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
 
     // What hides the receiver must go even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO)
+    let laid = frame.lerp(made.lerp(kept, seen * near), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.

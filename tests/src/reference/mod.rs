@@ -15,6 +15,7 @@ pub mod pcss;
 pub mod raster;
 pub mod residual;
 pub mod search;
+pub mod self_shadow;
 pub mod visibility;
 
 use std::str::FromStr;

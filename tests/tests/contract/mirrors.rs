@@ -99,6 +99,12 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
         }),
         mirror!(Grid { size, cell_px, _pad }),
         mirror!(LightPoints { points }),
+        mirror!(SelfShadow {
+            atlas_from_stage,
+            first_tile,
+            n_tiles,
+            texel_m
+        }),
         mirror!(Material { base_color_linear }),
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
@@ -123,6 +129,7 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
 pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_LIGHTS", layout::MAX_LIGHTS),
     ("N_COLUMNS", layout::N_COLUMNS),
+    ("MAX_TILES", layout::MAX_TILES),
     ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
     ("SUBJECT_TOY", layout::Subject::Toy as usize),
 ];

@@ -15,4 +15,5 @@ mod place;
 mod published;
 mod residual;
 mod run;
+mod self_shadow;
 mod toy;

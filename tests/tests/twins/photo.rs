@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 use harness::reference::fit::toy_columns;
 use harness::reference::model::{Region, Solution, centre_px};
 use harness::reference::raster::Raster;
+use harness::reference::self_shadow::received;
 use harness::reference::visibility::visibility_map;
 
 use crate::place::{Stand, ambient_points};
@@ -75,9 +76,14 @@ fn unmodelled(at: DVec2) -> DVec3 {
 
 fn toy_color(stand: &Stand, region: &Region, solution: &Solution, texel: UVec2) -> Option<DVec3> {
     let (origin, direction) = stand.camera_ray(centre_px(texel));
-    let hit = stand.occluder(&stand.physical).nearest(origin, direction)?;
+    let occluder = stand.occluder(&stand.physical);
+    let hit = occluder.nearest(origin, direction)?;
     let normal = stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-    let columns = toy_columns(region, normal, origin + hit.distance * direction);
+    let in_plane = origin + hit.distance * direction;
+    let n_lights = region.lights.len();
+    let light_points: Vec<_> = (0..n_lights).map(|i| stand.light_points(i, N_POINTS)).collect();
+    let received = received(region, &occluder, &light_points, in_plane, normal);
+    let columns = toy_columns(normal, received, n_lights);
     let light: DVec3 = columns
         .iter()
         .zip(&solution.toy)
