@@ -1,5 +1,5 @@
-// The real shadow warped to the animated pose: for each texel of the new shadow, where in the frame its vertex's real
-// shadow lies.
+// The real shadow of one light warped to the animated pose: for each texel of the new shadow, where in the frame its
+// vertex's real shadow lies.
 //
 // The animated mesh, flattened from the light, is the geometry; the flattened physical mesh gives the texture
 // coordinates. Where several parts of the toy shade one texel the one closest to the light stays.
@@ -12,12 +12,18 @@ struct Warped {
   // Homogeneous, so that the division comes after the interpolation.
   @location(0) source: vec3f,
   @location(1) height_m: f32,
+  @location(2) @interpolate(flat) light: u32,
 }
 
 @vertex
-fn vs_warp(@location(0) shown_in_plane: vec3f, @location(1) physical_in_plane: vec3f) -> Warped {
-  let source = globals.clip_from_receiver * flatten(published.light, physical_in_plane);
-  return Warped(clip_from_flattened(flatten(published.light, shown_in_plane)), source, shown_in_plane.y);
+fn vs_warp(
+  @location(0) shown_in_plane: vec3f,
+  @location(1) physical_in_plane: vec3f,
+  @builtin(instance_index) light: u32,
+) -> Warped {
+  let at = globals.lights[light];
+  let source = globals.clip_from_receiver * flatten(at, physical_in_plane);
+  return Warped(clip_from_flattened(flatten(at, shown_in_plane)), source, shown_in_plane.y, light);
 }
 
 struct WarpTexel {
@@ -31,6 +37,7 @@ fn fs_source(in: Warped) -> WarpTexel {
   let ndc = in.source.xy / in.source.z;
   let region_px = (ndc * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
   // Heights below a light map to (0, 1], the light itself to 1: the highest occluder wins under `Greater`.
-  let reach_m = select(1.0, published.light.y, published.light.w > 0.0);
+  let at = globals.lights[in.light];
+  let reach_m = select(1.0, at.y, at.w > 0.0);
   return WarpTexel(vec4f(region_px, in.height_m, 1.0), saturate(in.height_m / reach_m));
 }

@@ -72,6 +72,13 @@ pub enum Warning {
         /// Energy of the lights' columns over that of the plate.
         contrast: f32,
     },
+    /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
+    NothingToSample,
+    /// New shadows overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
+    OverlapUnseen {
+        /// The lights that alone are hidden there, by their place among those that are used.
+        lights: Vec<usize>,
+    },
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
     /// The camera's centre is not above the receiver.
@@ -105,6 +112,17 @@ impl fmt::Display for Warning {
                 f,
                 "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
             ),
+            Self::NothingToSample => {
+                f.write_str("no umbra of the real shadow is seen: no new shadow is drawn, for want of samples")
+            }
+            Self::OverlapUnseen { lights } => {
+                let names: Vec<_> = lights.iter().map(ToString::to_string).collect();
+                write!(
+                    f,
+                    "no place is seen that just lights {} do not reach: its shade is that of the closest other lights",
+                    names.join(" and ")
+                )
+            }
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")

@@ -180,6 +180,10 @@ const PUBLISHED_PASSES: &[PlannedPass] = &[
         path: Path::Capture,
     },
     PlannedPass {
+        name: "census",
+        path: Path::Capture,
+    },
+    PlannedPass {
         name: "warp",
         path: Path::Frame,
     },
@@ -205,7 +209,7 @@ const PUBLISHED_PASSES: &[PlannedPass] = &[
     },
 ];
 /// What a shadow of constant strength does without.
-const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
+const SAMPLING_PASSES: &[&str] = &["census", "search", "box_filter"];
 
 impl Plan {
     /// Plans a scene. Lights beyond the fourth are left out.
@@ -229,11 +233,7 @@ impl Plan {
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
-            visibility_format: match lights.len() {
-                0 | 1 => TextureFormat::R16Float,
-                2 => TextureFormat::Rg16Float,
-                _ => TextureFormat::Rgba16Float,
-            },
+            visibility_format: visibility_format(lights.len()),
             left_out: left_out(&lights),
             lights,
             n_ambient_directions: settings.n_ambient_directions,
@@ -256,6 +256,12 @@ impl Plan {
 pub struct PublishedPlan {
     /// The work region.
     pub region: PixelRect,
+    /// Lights whose shadows are moved, at most four.
+    pub n_lights: u32,
+    /// Sets of these lights, the empty one left out: each has an appearance of its own where its shadows overlap.
+    pub n_sets: u32,
+    /// Format of the visibility map, one channel a light.
+    pub visibility_format: TextureFormat,
     /// The passes in the order they run.
     pub passes: Vec<PlannedPass>,
     /// What the scene does not need.
@@ -263,7 +269,7 @@ pub struct PublishedPlan {
 }
 
 impl PublishedPlan {
-    /// Plans a scene.
+    /// Plans a scene. Lights beyond the fourth are left out.
     #[must_use]
     pub fn new(facts: &SceneFacts, settings: &PublishedSettings) -> Self {
         let is_constant = settings.constant_ratio.is_some();
@@ -274,8 +280,13 @@ impl PublishedPlan {
                 why: "the preset's shadow is constant",
             });
         }
+        let lights = facts.penumbra_px.iter().take(MAX_LIGHTS);
+        let n_lights = lights.fold(0, |n_lights, _| n_lights + 1);
         Self {
             region: facts.region,
+            n_lights,
+            n_sets: (1 << n_lights) - 1,
+            visibility_format: visibility_format(facts.penumbra_px.len()),
             passes: PUBLISHED_PASSES
                 .iter()
                 .filter(|pass| !(is_constant && SAMPLING_PASSES.contains(&pass.name)))
@@ -283,6 +294,15 @@ impl PublishedPlan {
                 .collect(),
             left_out,
         }
+    }
+}
+
+/// The narrowest format of a visibility map that has a channel a light.
+fn visibility_format(n_lights: usize) -> TextureFormat {
+    match n_lights {
+        0 | 1 => TextureFormat::R16Float,
+        2 => TextureFormat::Rg16Float,
+        _ => TextureFormat::Rgba16Float,
     }
 }
 

@@ -87,11 +87,7 @@ impl Stage {
             .toy
             .pose(clip_time(&scene.physical_pose), &plane_from_object, &mut posed)?;
         let size_px = [scene.width_px, scene.height_px];
-        let most_lights = match preset.method() {
-            Method::Model(_) => MAX_LIGHTS,
-            Method::Published(_) => 1,
-        };
-        let (lights, standing_warnings) = standing::usable_lights(&scene, &plane_from_world, most_lights);
+        let (lights, standing_warnings) = standing::usable_lights(&scene, &plane_from_world, MAX_LIGHTS);
         let output = TextureShape {
             size_px,
             format: OUTPUT_FORMAT,
@@ -387,7 +383,7 @@ impl Stage {
         settings: &PublishedSettings,
     ) -> Work {
         let surface = self.scene.receivers[0].surface;
-        let uniform = published::uniform(&self.lights[0], &self.plane_from_world, surface, settings);
+        let uniform = published::uniform(&self.lights, surface, settings);
         Work::Published(Box::new(Published::new(gpu, plan, globals, &uniform, tallest_m)))
     }
 

@@ -1,10 +1,8 @@
 // Constants that the papers leave open, tuned as `preset.rs` says, and what the scene decides.
 
 struct Published {
-  // The light's centre, homogeneous, in plane space.
-  light: vec4f,
-  // Radius of the light's disc: metres for a sphere, slope for a directional light.
-  light_radius: f32,
+  // Radius of each light's disc: metres for a sphere, slope for a directional light.
+  light_radii: vec4f,
   // 1: the receiver is textured, shadow terms are ratios to the plate. 0: uniform, they are colours.
   is_textured: u32,
   // 0: search for real shadow. 1: a constant ratio.
@@ -20,6 +18,15 @@ struct Published {
   seam_px: i32,
   n_blocker_taps: u32,
   n_filter_taps: u32,
+  _pad: u32,
 }
 
 @group(0) @binding(2) var<uniform> published: Published;
+
+// A set of lights, those that do not reach a place: bit i stands for light i. 0 is a place in light.
+
+// How far the shade of the lights `has` is from that of the lights `wanted`: first by how many lights they differ, and
+// of two that differ by as many the one that hides no light too much is closer.
+fn unlikeness(wanted: u32, has: u32) -> u32 {
+  return 2u * countOneBits(wanted ^ has) + select(0u, 1u, (has & ~wanted) != 0u);
+}

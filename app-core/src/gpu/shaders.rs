@@ -113,9 +113,14 @@ pub(crate) const ELIGIBLE: Shader = Shader {
     parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("eligible")],
     entry_points: &["vs_fullscreen", "fs_mark"],
 };
+pub(crate) const CENSUS: Shader = Shader {
+    name: "census",
+    parts: &[wgsl!("census")],
+    entry_points: &["cs_count"],
+};
 pub(crate) const WARP: Shader = Shader {
     name: "warp",
-    parts: &[GLOBALS, PUBLISHED, FLATTEN, wgsl!("warp")],
+    parts: &[GLOBALS, FLATTEN, wgsl!("warp")],
     entry_points: &["vs_warp", "fs_source"],
 };
 pub(crate) const SEARCH: Shader = Shader {
@@ -142,5 +147,5 @@ pub(crate) const RETARGET: Shader = Shader {
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
     OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE,
-    PRESENT, MASKS, ELIGIBLE, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
+    PRESENT, MASKS, ELIGIBLE, CENSUS, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
 ];

@@ -8,40 +8,45 @@ use crate::gpu::shaders::BOX_FILTER;
 use super::search::TERM_FORMAT;
 
 pub(crate) struct BoxFilter {
-    rows: wgpu::RenderPipeline,
+    /// One a set of lights.
+    rows: Vec<wgpu::RenderPipeline>,
     columns: wgpu::RenderPipeline,
 }
 
 impl BoxFilter {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
-        let pipeline = |is_rows: f64| {
-            gpu.fullscreen_pipeline(&BOX_FILTER, "fs_sum", TERM_FORMAT, &[("IS_ROWS", is_rows)])
+    /// For the sets from 1 to `n_sets`.
+    pub(crate) fn new(gpu: &Gpu, n_sets: u32) -> Self {
+        let pipeline = |set: u32| {
+            let constants = [("SET", f64::from(set))];
+            gpu.fullscreen_pipeline(&BOX_FILTER, "fs_sum", TERM_FORMAT, &constants)
         };
         Self {
-            rows: pipeline(1.0),
-            columns: pipeline(0.0),
+            rows: (1..=n_sets).map(pipeline).collect(),
+            columns: pipeline(0),
         }
     }
 
-    /// Leaves the sums over the box in `sums`, by way of `between`.
+    /// Leaves each set's sums over the box in its layer of `sums`, by way of `between`.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         published: &wgpu::Buffer,
         terms: &wgpu::TextureView,
-        (between, sums): (&wgpu::TextureView, &wgpu::TextureView),
+        (between, sums): (&wgpu::TextureView, &[wgpu::TextureView]),
     ) {
-        for (pipeline, from, to) in [(&self.rows, terms, between), (&self.columns, between, sums)] {
-            let layout = |group| pipeline.get_bind_group_layout(group);
-            let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(2, published.as_entire_binding())]);
-            let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(from))]);
-            encoder.fullscreen(
-                BOX_FILTER.name,
-                pipeline,
-                &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
-                to,
-            );
+        for (rows, of_set) in self.rows.iter().zip(sums) {
+            for (pipeline, from, to) in [(rows, terms, between), (&self.columns, between, of_set)] {
+                let layout = |group| pipeline.get_bind_group_layout(group);
+                let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(2, published.as_entire_binding())]);
+                let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(from))]);
+                encoder.fullscreen(
+                    BOX_FILTER.name,
+                    pipeline,
+                    &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
+                    to,
+                );
+            }
         }
     }
 }

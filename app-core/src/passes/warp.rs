@@ -39,26 +39,23 @@ impl Warp {
         }
     }
 
-    /// Warps to the pose at `shown`; `depth` is of the region's size and not kept.
+    /// Warps the shadow of `light` to the pose at `shown`; `depth` is of the region's size and not kept.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        (globals, published): (&wgpu::Buffer, &wgpu::Buffer),
+        (globals, light): (&wgpu::Buffer, u32),
         (toy, shown): (&ToyMesh, &wgpu::Buffer),
         (warp, depth): (&wgpu::TextureView, &wgpu::TextureView),
     ) {
         let shared = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, globals.as_entire_binding()),
-                (2, published.as_entire_binding()),
-            ],
+            &[(0, globals.as_entire_binding())],
         );
         let mut render = encoder.render(WARP.name, &[Some(cleared(warp))], Some(depth), StoreOp::Discard);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
         render.set_vertex_buffer(1, toy.physical.positions.slice(..));
-        toy.draw_positions(&mut render, shown, 1);
+        toy.draw_instance(&mut render, shown, light);
     }
 }

@@ -23,8 +23,8 @@ pub struct Softness {
 }
 
 impl Softness {
-    /// Radius on the receiver of the shadow that a point at `height_m` casts of the light's disc; 0 from the light's
-    /// height on.
+    /// Radius on the receiver of the shadow that a point at `height_m` casts of the light's disc: at most that height,
+    /// which is where a disc fills more than 45 degrees around the vertical, or hangs no higher than the point.
     #[must_use]
     pub fn penumbra_radius_m(&self, height_m: f64) -> f64 {
         let above_m = if self.light.w == 0.0 {
@@ -32,10 +32,12 @@ impl Softness {
         } else {
             self.light.y - height_m
         };
-        if above_m > 0.0 {
+        if self.light_radius == 0.0 {
+            0.0
+        } else if above_m > self.light_radius {
             self.light_radius * height_m / above_m
         } else {
-            0.0
+            height_m
         }
     }
 }

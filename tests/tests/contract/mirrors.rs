@@ -102,8 +102,7 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
         mirror!(Material { base_color_linear }),
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
-            light,
-            light_radius,
+            light_radii,
             is_textured,
             is_constant,
             constant_ratio,
@@ -114,7 +113,8 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
             box_radius_px,
             seam_px,
             n_blocker_taps,
-            n_filter_taps
+            n_filter_taps,
+            _pad
         }),
     ]
 }

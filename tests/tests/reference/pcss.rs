@@ -74,8 +74,25 @@ fn point_light_keeps_the_edge_within_a_pixel() {
 }
 
 #[test]
+fn light_lower_than_the_toys_top_keeps_its_penumbra() {
+    // The edge lies under the light, the toy's top above it.
+    let tall = Softness {
+        tallest_m: 1.2,
+        ..bulb()
+    };
+    let near_edge = across(&tall).filter(|(beyond_px, _)| beyond_px.abs() < 0.5 * PENUMBRA_PX);
+    for (beyond_px, visibility) in near_edge {
+        assert!(visibility > 0.05 && visibility < 0.95, "{beyond_px} px: {visibility}");
+    }
+}
+
+#[test]
 fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     let bulb = bulb();
+    let point = Softness {
+        light_radius: 0.0,
+        ..bulb
+    };
     let sky = Softness {
         light: DVec4::new(0.6, 0.8, 0.0, 0.0),
         ..bulb
@@ -83,7 +100,11 @@ fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     for (softness, height_m, expected_m) in [
         (&bulb, 0.5, RADIUS_M),
         (&bulb, 0.8, 4.0 * RADIUS_M),
-        (&bulb, LIGHT_M, 0.0),
+        // As high as the light, higher, and so close under it that the disc fills the sky.
+        (&bulb, LIGHT_M, LIGHT_M),
+        (&bulb, 1.5, 1.5),
+        (&bulb, 0.99, 0.99),
+        (&point, LIGHT_M, 0.0),
         (&sky, 0.4, 0.5 * RADIUS_M),
     ] {
         let actual_m = softness.penumbra_radius_m(height_m);
