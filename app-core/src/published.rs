@@ -254,7 +254,9 @@ pub(crate) fn uniform(lights: &[Light], surface: Surface, settings: &PublishedSe
         light_radii,
         is_textured: u32::from(surface == Surface::Textured),
         is_constant: u32::from(settings.constant_ratio.is_some()),
-        constant_ratio: settings.constant_ratio.unwrap_or_default(),
+        constant_ratio: settings
+            .constant_ratio
+            .map_or(0.0, |of_all| ratio_per_light(of_all, lights.len())),
         eligible_margin_px: settings.eligible_margin_px,
         ring_step_px: settings.ring_step_px,
         n_ring_directions: settings.n_ring_directions,
@@ -265,6 +267,13 @@ pub(crate) fn uniform(lights: &[Light], surface: Surface, settings: &PublishedSe
         n_filter_taps: settings.n_filter_taps,
         _pad: 0,
     }
+}
+
+/// Each light's ratio, such that the product over all lights is `of_all`: shadows of AR products multiply.
+fn ratio_per_light(of_all: f32, n_lights: usize) -> f32 {
+    #[allow(clippy::cast_precision_loss, reason = "at most MAX_LIGHTS")]
+    let n_lights = n_lights.max(1) as f32;
+    of_all.powf(n_lights.recip())
 }
 
 /// Metres for a sphere, slope for a directional light.

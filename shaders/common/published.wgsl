@@ -7,6 +7,7 @@ struct Published {
   is_textured: u32,
   // 0: search for real shadow. 1: a constant ratio.
   is_constant: u32,
+  // Of one light.
   constant_ratio: f32,
   // Distance kept from the edges of the eligible shadow.
   eligible_margin_px: i32,
