@@ -1,7 +1,8 @@
 // Percentage-closer soft shadows of the animated toy, of each light, in the edge region.
 //
-// The kernel is a disc on the receiver, projected to the image. Its radius follows from the mean height of the blockers
-// around and the light's size; where all blocker taps agree there is no edge and nothing is filtered.
+// The kernel is a disc across the ray to the light, as it is in a shadow map, projected to the receiver and on to the
+// image. Its radius follows from the mean height of the blockers around and the light's size; where all blocker taps agree
+// there is no edge and nothing is filtered.
 //
 // Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], a channel a light.
 // Twin: reference/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
@@ -34,6 +35,14 @@ fn penumbra_radius_m(height_m: f32, light: u32) -> f32 {
 
 override TALLEST_M: f32 = 1.0;
 
+// A point of a disc across the ray to the light, moved along that ray onto the receiver: the disc's shadow is longer by
+// 1 / sine of the light's elevation, away from the light.
+fn slanted(disc: vec2f, in_plane: vec2f, light: u32) -> vec2f {
+  let at = globals.lights[light];
+  let to_light = normalize(at.xyz - at.w * vec3f(in_plane.x, 0.0, in_plane.y));
+  return disc + to_light.xz * (dot(to_light.xz, disc) / (to_light.y * (1.0 + to_light.y)));
+}
+
 fn visibility_at(texel: vec2i, in_plane: vec2f, half_pixel_m: f32, light: u32) -> f32 {
   let here = textureLoad(warp, texel, light, 0);
   // Never less than half a pixel, so that a hard edge is antialiased.
@@ -41,7 +50,8 @@ fn visibility_at(texel: vec2i, in_plane: vec2f, half_pixel_m: f32, light: u32) -
   var height_sum = 0.0;
   var n_blocked = 0.0;
   for (var k = 0u; k < published.n_blocker_taps; k++) {
-    let tap = warp_near(in_plane + reach_m * disc_point(k, published.n_blocker_taps), light);
+    let disc = reach_m * disc_point(k, published.n_blocker_taps);
+    let tap = warp_near(in_plane + slanted(disc, in_plane, light), light);
     height_sum += tap.a * tap.z;
     n_blocked += tap.a;
   }
@@ -50,7 +60,8 @@ fn visibility_at(texel: vec2i, in_plane: vec2f, half_pixel_m: f32, light: u32) -
   let radius_m = max(penumbra_radius_m(height_sum / n_blocked, light), half_pixel_m);
   var blocked = 0.0;
   for (var k = 0u; k < published.n_filter_taps; k++) {
-    blocked += warp_near(in_plane + radius_m * disc_point(k, published.n_filter_taps), light).a;
+    let disc = radius_m * disc_point(k, published.n_filter_taps);
+    blocked += warp_near(in_plane + slanted(disc, in_plane, light), light).a;
   }
   return 1.0 - blocked / f32(published.n_filter_taps);
 }

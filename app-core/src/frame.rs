@@ -75,9 +75,9 @@ pub enum Warning {
     /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
     NothingToSample,
     /// New shadows overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
-    OverlapUnseen {
-        /// The lights that alone are hidden there, by their place among those that are used.
-        lights: Vec<usize>,
+    OverlapsUnseen {
+        /// Each time the lights that do not reach such a place, while all others do, by their place among those in use.
+        lights: Vec<Vec<usize>>,
     },
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
@@ -112,21 +112,29 @@ impl fmt::Display for Warning {
                 f,
                 "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
             ),
-            Self::NothingToSample => {
-                f.write_str("no umbra of the real shadow is seen: no new shadow is drawn, for want of samples")
-            }
-            Self::OverlapUnseen { lights } => {
-                let names: Vec<_> = lights.iter().map(ToString::to_string).collect();
-                write!(
-                    f,
-                    "no place is seen that just lights {} do not reach: its shade is that of the closest other lights",
-                    names.join(" and ")
-                )
-            }
+            Self::NothingToSample => f.write_str(
+                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",
+            ),
+            Self::OverlapsUnseen { lights } => write!(
+                f,
+                "no place is seen that just these lights do not reach: {}; the new shadow has the shade of other lights \
+                 there",
+                lights
+                    .iter()
+                    .map(|set| sum_of(set))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
         }
     }
+}
+
+/// Lights as 0 + 1.
+fn sum_of(lights: &[usize]) -> String {
+    let names: Vec<_> = lights.iter().map(ToString::to_string).collect();
+    names.join(" + ")
 }

@@ -4,10 +4,10 @@ use wgpu::TextureFormat;
 
 use crate::capture::Pictures;
 use crate::frame::Warning;
-use crate::gpu::{Gpu, GpuError};
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, MAX_LIGHTS, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureLayers, TextureShape};
+use crate::gpu::{Gpu, GpuError};
 use crate::inject::Injected;
 use crate::maps::{FloatMap, Map};
 use crate::passes::box_filter::BoxFilter;
@@ -224,11 +224,15 @@ impl Published {
         }
         let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
         let unseen = needed.unwrap_or_default() & !seen;
-        let unseen = (1..=self.plan.n_sets).filter(|set| unseen >> set & 1 == 1);
-        Ok(unseen
-            .map(|set| Warning::OverlapUnseen {
-                lights: (0..MAX_LIGHTS).filter(|light| set >> light & 1 == 1).collect(),
-            })
+        let lights = |set: u32| (0..MAX_LIGHTS).filter(|light| set >> light & 1 == 1).collect();
+        let lights: Vec<_> = (1..=self.plan.n_sets)
+            .filter(|set| unseen >> set & 1 == 1)
+            .map(lights)
+            .collect();
+        let is_any = !lights.is_empty();
+        Ok(is_any
+            .then_some(Warning::OverlapsUnseen { lights })
+            .into_iter()
             .collect())
     }
 }

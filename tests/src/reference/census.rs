@@ -9,5 +9,7 @@ use super::sets::LightSet;
 #[must_use]
 pub fn seen_sets(eligible: &Raster<LightSet>) -> Vec<LightSet> {
     let seen: BTreeSet<LightSet> = eligible.texels().iter().copied().collect();
-    seen.into_iter().filter(|set| *set != LightSet::default()).collect()
+    seen.into_iter()
+        .filter(|set| *set != LightSet::default())
+        .collect()
 }

@@ -26,7 +26,8 @@ pub fn masks(
         is_clear.then(|| LightSet(hidden.fold(0, |set, (light, _)| set | 1 << light)))
     });
     let last = is_toy.size().as_ivec2() - 1;
-    let around = || (-margin_px..=margin_px).flat_map(|y| (-margin_px..=margin_px).map(move |x| IVec2::new(x, y)));
+    let around =
+        || (-margin_px..=margin_px).flat_map(|y| (-margin_px..=margin_px).map(move |x| IVec2::new(x, y)));
     let eligible = Raster::from_fn(is_toy.size(), |texel| {
         let near = around().map(|step| (texel.as_ivec2() + step).clamp(IVec2::ZERO, last).as_uvec2());
         let own = umbra.at(texel);

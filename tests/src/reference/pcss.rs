@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec2, DVec4, UVec2};
+use glam::{DVec2, DVec3, DVec4, UVec2, Vec3Swizzles};
 
 use super::model::{Region, centre_px};
 use super::raster::Raster;
@@ -23,6 +23,20 @@ pub struct Softness {
 }
 
 impl Softness {
+    /// Where a point of a disc around the ray from `in_plane` to the light, across that ray, lies on the receiver when it is
+    /// moved along the ray.
+    #[must_use]
+    pub fn slanted(&self, disc: DVec2, in_plane: DVec2) -> DVec2 {
+        let to_light = self.light.truncate() - self.light.w * DVec3::new(in_plane.x, 0.0, in_plane.y);
+        let (along, away_m) = to_light.xz().normalize_and_length();
+        if away_m == 0.0 {
+            return disc;
+        }
+        let sine = to_light.y / to_light.length();
+        let on_axis = disc.dot(along);
+        disc + (on_axis / sine - on_axis) * along
+    }
+
     /// Radius on the receiver of the shadow that a point at `height_m` casts of the light's disc: at most that height,
     /// which is where a disc fills more than 45 degrees around the vertical, or hangs no higher than the point.
     #[must_use]
@@ -59,7 +73,7 @@ pub fn soft_visibility(
         .plane_point(at + DVec2::X)
         .map_or(0.0, |next| 0.5 * next.distance(in_plane));
     let blockers = |radius_m: f64, n_taps| -> Vec<f64> {
-        let taps = (0..n_taps).map(|k| in_plane + radius_m * vogel(k, n_taps));
+        let taps = (0..n_taps).map(|k| in_plane + softness.slanted(radius_m * vogel(k, n_taps), in_plane));
         taps.filter_map(|tap| height_near(heights_m, region, tap))
             .collect()
     };

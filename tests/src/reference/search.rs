@@ -52,12 +52,7 @@ pub fn search(eligible: &Raster<LightSet>, seen: &[LightSet], start: &Start, rin
     Found { texel: None, n_taps }
 }
 
-fn search_sets(
-    eligible: &Raster<LightSet>,
-    accepted: &[LightSet],
-    start: &Start,
-    rings: &Rings,
-) -> Found {
+fn search_sets(eligible: &Raster<LightSet>, accepted: &[LightSet], start: &Start, rings: &Rings) -> Found {
     let is_eligible = |texel: &IVec2| {
         let is_inside = texel.cmpge(IVec2::ZERO).all() && texel.cmplt(eligible.size().as_ivec2()).all();
         is_inside && accepted.contains(&eligible.at(texel.as_uvec2()))

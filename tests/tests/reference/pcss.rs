@@ -82,7 +82,10 @@ fn light_lower_than_the_toys_top_keeps_its_penumbra() {
     };
     let near_edge = across(&tall).filter(|(beyond_px, _)| beyond_px.abs() < 0.5 * PENUMBRA_PX);
     for (beyond_px, visibility) in near_edge {
-        assert!(visibility > 0.05 && visibility < 0.95, "{beyond_px} px: {visibility}");
+        assert!(
+            visibility > 0.05 && visibility < 0.95,
+            "{beyond_px} px: {visibility}"
+        );
     }
 }
 

@@ -131,6 +131,9 @@ fn overlap_is_sampled_where_the_same_lights_overlap() {
     // The overlap is seen but out of reach.
     assert_eq!(found(&[(60, both), (38, first)], both).texel, Some(at(38)));
     // Nothing to sample anywhere costs nothing.
-    let nothing = Found { texel: None, n_taps: 0 };
+    let nothing = Found {
+        texel: None,
+        n_taps: 0,
+    };
     assert_eq!(found(&[], both), nothing);
 }

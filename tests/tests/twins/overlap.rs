@@ -104,7 +104,12 @@ fn overlap_that_was_never_seen_is_told_and_leaves_no_hole() {
     shot.learn(|[first, second, ..]| [first, if first < 1.0 { 1.0 } else { second }, 0.0, 1.0]);
     assert_eq!(shot.sets_of_terms(), before, "a hole");
     let warnings = shot.core.read_fit_warnings().unwrap();
-    assert_eq!(warnings, [Warning::OverlapUnseen { lights: vec![0, 1] }]);
+    assert_eq!(
+        warnings,
+        [Warning::OverlapsUnseen {
+            lights: vec![vec![0, 1]]
+        }]
+    );
 }
 
 #[test]

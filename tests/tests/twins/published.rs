@@ -126,7 +126,12 @@ fn layers(map: &Raster<DVec4>, size: UVec2) -> Vec<Raster<DVec4>> {
 }
 
 fn light_set(number: f64) -> LightSet {
-    LightSet((0..4).filter(|set| f64::from(*set) <= number).max().unwrap_or_default())
+    LightSet(
+        (0..4)
+            .filter(|set| f64::from(*set) <= number)
+            .max()
+            .unwrap_or_default(),
+    )
 }
 
 #[test]
