@@ -1,6 +1,6 @@
 //! The soft edge of a half plane, level, under a light.
 
-use glam::{DVec4, UVec2};
+use glam::{DVec2, DVec4, UVec2};
 use harness::reference::pcss::{Softness, soft_visibility};
 use harness::reference::raster::Raster;
 
@@ -30,7 +30,8 @@ fn bulb() -> Softness {
 fn across(softness: &Softness) -> impl Iterator<Item = (f64, f64)> {
     let region = flat::region(SIZE, vec![softness.light]);
     let heights_m = Raster::from_fn(SIZE, |at| (at.x < EDGE).then_some(HEIGHT_M));
-    (20..140_u32).map(move |x| {
+    // Slanted kernels stay within the region.
+    (30..140_u32).map(move |x| {
         let beyond_px = f64::from(x) + 0.5 - f64::from(EDGE);
         (
             beyond_px,
@@ -87,6 +88,27 @@ fn light_lower_than_the_toys_top_keeps_its_penumbra() {
             "{beyond_px} px: {visibility}"
         );
     }
+}
+
+#[test]
+fn disc_across_a_slanted_ray_is_longer_along_it() {
+    let low = Softness {
+        light: DVec4::new(0.0, 0.5, 0.75_f64.sqrt(), 0.0),
+        ..bulb()
+    };
+    // At one point of the receiver the same elevation.
+    let near = Softness {
+        light: DVec4::new(0.3, 0.5, 0.75_f64.sqrt(), 1.0),
+        ..bulb()
+    };
+    for (softness, in_plane) in [(low, DVec2::new(3.0, 7.0)), (near, DVec2::new(0.3, 0.0))] {
+        for (disc, expected) in [(DVec2::X, DVec2::X), (DVec2::Y, 2.0 * DVec2::Y)] {
+            let actual = softness.slanted(disc, in_plane);
+            assert!((actual - expected).length() < 1e-12, "{disc}: {actual}");
+        }
+    }
+    let under = DVec2::new(0.3, 0.75_f64.sqrt());
+    assert_eq!(near.slanted(DVec2::X, under), DVec2::X);
 }
 
 #[test]
