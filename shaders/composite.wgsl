@@ -1,12 +1,12 @@
 // The picture: plate times new shadow, real toy and real shadow gone, animated toy drawn with its camera pixels.
 //
-//   out = plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
-//   out = frame + plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame passes
+//   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
+//   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
+//                                     passes; also where the frame shows what the model cannot explain
 //
 // Reads: all that was captured, visibility and ambient of the animated pose. Writes: linear colour, opaque.
 // Twin: reference/composite.rs.
 
-@group(1) @binding(0) var<uniform> grid: Grid;
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
 @group(1) @binding(3) var plate: texture_2d<f32>;
@@ -26,6 +26,10 @@ const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Change of the model from which the pooled residual no longer holds at half its size.
 const RESIDUAL_HALF: f32 = 0.5;
+// Pooled residual, in plates, from which something unknown is seen, such as a hand or the shadow of a light that is not
+// listed, and from which nothing else counts: what the camera saw stays.
+const UNKNOWN_NONE: f32 = 0.15;
+const UNKNOWN_ALL: f32 = 0.3;
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
 const MAX_TURN: f32 = 4.0;
 // Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
@@ -38,20 +42,6 @@ const OTHER_MATERIAL: f32 = 0.25;
 const OTHER_SIDE_COSINE: f32 = 0.9;
 // Weight of colours carried past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
-
-fn pooled_residual(region_px: vec2f) -> vec3f {
-  let at = region_px / f32(grid.cell_px) - 0.5;
-  let low = floor(at);
-  let t = at - low;
-  var sum = vec3f(0.0);
-  for (var k = 0u; k < 4u; k++) {
-    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let cell = vec2u(clamp(low + corner, vec2f(0.0), vec2f(grid.size) - 1.0));
-    let weight = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    sum += weight * cells[cell.y * grid.size.x + cell.x].rgb;
-  }
-  return sum;
-}
 
 // 1 inside, falling to 0 at an inner border of the region.
 fn inside_border(region_px: vec2f) -> f32 {
@@ -67,21 +57,25 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let image_texel = texel + vec2u(globals.region_origin_px);
   let f = textureLoad(frame, image_texel, 0).rgb;
   let point = receiver_point(at);
-  let b = textureLoad(plate, image_texel, 0).rgb;
+  let b = textureLoad(plate, texel, 0);
+  let lit = fit.gain.rgb * b.rgb;
   let seen = textureLoad(evidence, texel, 0).r;
-  // Beyond the receiver nothing changes but that the real toy goes.
-  if !point.is_hit { return vec4f(mix(fit.gain.rgb * b, f, seen), 1.0); }
+  // Nothing is known of what is behind.
+  if b.a == 0.0 { return vec4f(f, 1.0); }
+  // Beyond the receivers nothing changes but that the real toy goes.
+  if !is_hit(point) { return vec4f(mix(lit, f, seen), 1.0); }
   let uv = at / globals.region_size_px;
-  let before = receiver_model(point.in_plane, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
+  let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
-  let after = receiver_model(point.in_plane, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
+  let after = receiver_model(point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
     textureLoad(visibility, texel, 0));
-  let change = abs(after - before);
-  let most = largest(change);
-  let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
-  let keep = seen * (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most));
-  let made = b * max(after + residual, vec3f(0.0));
-  let kept = f + b * (after - before);
+  let most = largest(abs(after - before));
+  let pooled = cell_at(point).rgb;
+  let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
+  let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
+  let keep = seen * max(1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most), is_unknown);
+  let made = lit * max(after + residual, vec3f(0.0));
+  let kept = f + lit * (after - before);
   let inside = max(inside_border(at), 1.0 - seen);
   return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
 }
@@ -114,7 +108,7 @@ fn vs_toy(in: Vertex) -> Surface {
 fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
   var sum = vec3f(0.0);
   for (var i = 0u; i < 2u + globals.n_lights; i++) { sum += fit.toy[i].rgb * toy_column(i, normal, in_plane); }
-  return max(sum, vec3f(0.0));
+  return fit.gain.rgb * max(sum, vec3f(0.0));
 }
 
 fn largest(c: vec3f) -> f32 {

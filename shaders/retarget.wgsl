@@ -49,12 +49,13 @@ fn sums_near(texel: vec2i, lights: u32) -> vec4f {
 
 // The receiver where the lights of a set are hidden and all others seen.
 fn shaded(texel: vec2i, lights: u32, lit: vec3f, b: vec3f) -> vec3f {
+  let is_textured = ((published.textured_receivers >> receiver_at(texel)) & 1u) != 0u;
   if published.is_constant == 1u { return pow(published.constant_ratio, f32(countOneBits(lights))) * b; }
   let sums = sums_near(texel, lights);
   // No sample in reach: the receiver stays lit rather than turning black.
   if sums.a == 0.0 { return lit; }
   let term = sums.rgb / sums.a;
-  return select(term, term * b, published.is_textured == 1u);
+  return select(term, term * b, is_textured);
 }
 
 // How much of all lights' discs is hidden for the lights of a set and seen for the others.
@@ -71,8 +72,10 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2i(position.xy);
   let image_texel = texel + vec2i(globals.region_origin_px);
   let f = textureLoad(frame, image_texel, 0).rgb;
-  let b = textureLoad(plate, image_texel, 0).rgb;
-  let lit = mix(f, b, cropped(texel));
+  let plate_texel = textureLoad(plate, texel, 0);
+  let b = plate_texel.rgb;
+  // What no plate shows stays as it is.
+  let lit = mix(f, b, cropped(texel) * plate_texel.a);
   let v = textureLoad(visibility, texel, 0);
   var color = weight(v, 0u) * lit;
   for (var lights = 1u; lights < 1u << globals.n_lights; lights++) {

@@ -1,20 +1,20 @@
 // The shadow term of each texel of the new shadows: the warped sample where the same lights are shadowed there, else the
 // closest such sample.
 //
-// Where no sample has the same lights, the closest of those sets that differ least will do: the papers name this as where
-// their method fails.
+// Where no sample of the receiver has the same lights, the closest of those sets that differ least will do, and where it
+// has no sample at all another receiver's: the papers name this as where their method fails.
 //
 // Reads: warp of each light, mask 3c and the sets that occur in it, frame, plate. Writes: term (ratio to the plate, or
-// colour), and the set of lights whose new shadows the texel lies in, 0 where nothing was found; taps taken.
+// colour), and the texel's label, 0 where nothing was found; taps taken.
 // Twin: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a ring, the
-// closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4 with its ratio the right way up: shadow over
+// closest wins, early exit), 4.6 (no sample until all masks agree), 2019, section 5.7 (each receiver by itself) and 3.4 with its ratio the right way up: shadow over
 // light at the sample.
 
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 @group(1) @binding(1) var eligible: texture_2d<u32>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
 @group(1) @binding(3) var plate: texture_2d<f32>;
-@group(1) @binding(4) var<storage, read> seen_sets: u32;
+@group(1) @binding(4) var<storage, read> seen_sets: array<u32, MAX_RECEIVERS>;
 
 struct Term {
   @location(0) term: vec4f,
@@ -27,20 +27,31 @@ struct Found {
   taps: u32,
 }
 
-// `accepted` has bit s where the set s will do.
-fn is_eligible(texel: vec2i, accepted: u32) -> bool {
-  let size = vec2i(textureDimensions(eligible));
-  if any(texel < vec2i(0)) || any(texel >= size) { return false; }
-  return ((accepted >> textureLoad(eligible, texel, 0).r) & 1u) != 0u;
+// What will do as a sample: its receiver, and bit s where the set s will.
+struct Wanted {
+  receiver: u32,
+  sets: u32,
 }
 
-fn term_at(texel: vec2i) -> vec3f {
-  let image_texel = texel + vec2i(globals.region_origin_px);
-  let shaded = textureLoad(frame, image_texel, 0).rgb;
-  if published.is_textured == 0u { return shaded; }
-  let lit = textureLoad(plate, image_texel, 0).rgb;
+fn is_eligible(texel: vec2i, wanted: Wanted) -> bool {
+  let size = vec2i(textureDimensions(eligible));
+  if any(texel < vec2i(0)) || any(texel >= size) { return false; }
+  let label = textureLoad(eligible, texel, 0).r;
+  return label / N_SETS == wanted.receiver && ((wanted.sets >> (label % N_SETS)) & 1u) != 0u;
+}
+
+fn ratio_at(texel: vec2i) -> vec3f {
+  let shaded = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
+  let lit = textureLoad(plate, texel, 0).rgb;
   // Black in the plate tells nothing of the shadow: no change. Nor does a shadow add light: noise in the dark would.
   return select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0));
+}
+
+// The term for a texel of `receiver` from a sample, of that receiver or `borrowed` from another.
+fn term_at(texel: vec2i, found: vec2i, receiver: u32, borrowed: bool) -> vec3f {
+  if ((published.textured_receivers >> receiver) & 1u) != 0u { return ratio_at(found); }
+  if borrowed { return ratio_at(found) * textureLoad(plate, texel, 0).rgb; }
+  return textureLoad(frame, found + vec2i(globals.region_origin_px), 0).rgb;
 }
 
 // Of the sets in `remaining`, those least unlike `wanted`.
@@ -58,11 +69,11 @@ fn closest_sets(wanted: u32, remaining: u32) -> u32 {
 }
 
 // Where the shadow of each light of the set came from, and rings around.
-fn search(texel: vec2i, lights: u32, accepted: u32) -> Found {
+fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
   for (var light = 0u; light < globals.n_lights; light++) {
     if ((lights >> light) & 1u) == 0u { continue; }
     let start = vec2i(floor(textureLoad(warp, texel, light, 0).xy));
-    if is_eligible(start, accepted) { return Found(start, true, 0u); }
+    if is_eligible(start, wanted) { return Found(start, true, 0u); }
   }
   var taps = 0u;
   for (var ring = 1u; ring <= published.n_rings; ring++) {
@@ -76,7 +87,7 @@ fn search(texel: vec2i, lights: u32, accepted: u32) -> Found {
         let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(published.n_ring_directions) * 6.2831853;
         let candidate = vec2i(floor(warped + f32(ring) * published.ring_step_px * vec2f(cos(turn), sin(turn))));
         taps++;
-        if is_eligible(candidate, accepted) {
+        if is_eligible(candidate, wanted) {
           let away = distance(vec2f(candidate) + 0.5, warped);
           if away < best {
             best = away;
@@ -97,16 +108,22 @@ fn fs_search(@builtin(position) at: vec4f) -> Term {
   for (var light = 0u; light < globals.n_lights; light++) {
     if textureLoad(warp, texel, light, 0).a > 0.0 { lights |= 1u << light; }
   }
+  if lights == 0u { return Term(vec4f(0.0), vec4f(0.0)); }
+  let receiver = receiver_at(texel);
   var taps = 0u;
-  if lights != 0u {
+  for (var k = 0u; k < globals.n_receivers; k++) {
+    let source = (receiver + k) % globals.n_receivers;
     // A set that occurs may still be out of reach, so that others get their turn.
-    var remaining = seen_sets;
+    var remaining = seen_sets[source];
     while remaining != 0u {
-      let accepted = closest_sets(lights, remaining);
-      let found = search(texel, lights, accepted);
+      let sets = closest_sets(lights, remaining);
+      let found = search(texel, lights, Wanted(source, sets));
       taps += found.taps;
-      if found.is_found { return Term(vec4f(term_at(found.texel), f32(lights)), vec4f(f32(taps))); }
-      remaining &= ~accepted;
+      if found.is_found {
+        let term = term_at(texel, found.texel, receiver, source != receiver);
+        return Term(vec4f(term, f32(label_of(receiver, lights))), vec4f(f32(taps)));
+      }
+      remaining &= ~sets;
     }
   }
   return Term(vec4f(0.0), vec4f(f32(taps)));

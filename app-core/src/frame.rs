@@ -50,8 +50,15 @@ pub struct FrameReport {
 pub enum Warning {
     /// No light is listed, and none is estimated: the camera frame passes through.
     NoLight,
-    /// No plate was taken from this frame's camera: the camera frame passes through.
+    /// There is no plate, and the preset cannot do without: the camera frame passes through.
     NoPlate,
+    /// There is no plate: the place without the toy is estimated from the frame.
+    PlateEstimated,
+    /// The plates show only a part of what is worked on; the rest is estimated from the frame.
+    PlatePartial {
+        /// Share that they show, from 0 to 1.
+        share: f64,
+    },
     /// More receivers than this version moves shadows on.
     ReceiversLeftOut {
         /// Those whose shadow stays as photographed.
@@ -74,10 +81,10 @@ pub enum Warning {
     },
     /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
     NothingToSample,
-    /// New shadows overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
-    OverlapsUnseen {
-        /// Each time the lights that do not reach such a place, while all others do, by their place among those in use.
-        lights: Vec<Vec<usize>>,
+    /// New shadows fall or overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
+    ShadowsUnseen {
+        /// What would have to be seen.
+        unseen: Vec<UnseenShadow>,
     },
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
@@ -90,8 +97,16 @@ impl fmt::Display for Warning {
         match self {
             Self::NoLight => f.write_str("no light is listed: the camera frame passes through"),
             Self::NoPlate => {
-                f.write_str("no plate was taken from this camera: the camera frame passes through")
+                f.write_str("there is no plate, which this preset needs: the camera frame passes through")
             }
+            Self::PlateEstimated => {
+                f.write_str("there is no plate: the place behind toy and shadow is estimated from the frame")
+            }
+            Self::PlatePartial { share } => write!(
+                f,
+                "the plates show {:.0} % of what is worked on: the rest is estimated from the frame",
+                100.0 * share
+            ),
             Self::ReceiversLeftOut { names } => {
                 write!(
                     f,
@@ -115,13 +130,12 @@ impl fmt::Display for Warning {
             Self::NothingToSample => f.write_str(
                 "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",
             ),
-            Self::OverlapsUnseen { lights } => write!(
+            Self::ShadowsUnseen { unseen } => write!(
                 f,
-                "no place is seen that just these lights do not reach: {}; the new shadow has the shade of other lights \
-                 there",
-                lights
+                "no real shadow is seen of {}: the new one there has the shade of others",
+                unseen
                     .iter()
-                    .map(|set| sum_of(set))
+                    .map(ToString::to_string)
                     .collect::<Vec<_>>()
                     .join(", ")
             ),
@@ -133,8 +147,23 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Lights as 0 + 1.
-fn sum_of(lights: &[usize]) -> String {
-    let names: Vec<_> = lights.iter().map(ToString::to_string).collect();
-    names.join(" + ")
+/// A place on a receiver that just some lights do not reach.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnseenShadow {
+    /// The receiver's place in the scene's list.
+    pub receiver: usize,
+    /// The lights, by their place among those in use.
+    pub lights: Vec<usize>,
+}
+
+impl fmt::Display for UnseenShadow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lights: Vec<_> = self.lights.iter().map(ToString::to_string).collect();
+        write!(
+            f,
+            "light {} alone on receiver {}",
+            lights.join(" + "),
+            self.receiver
+        )
+    }
 }

@@ -1,28 +1,30 @@
 //! The published method on one scene: its textures, its passes and the order they run in.
 
+mod uniform;
+mod unseen;
+
 use wgpu::TextureFormat;
 
 use crate::capture::Pictures;
-use crate::frame::Warning;
+use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{Globals, MAX_LIGHTS, Published as PublishedLayout};
+use crate::gpu::layout::{Globals, Published as PublishedLayout};
 use crate::gpu::texture::{Texture, TextureLayers, TextureShape};
-use crate::gpu::{Gpu, GpuError};
 use crate::inject::Injected;
-use crate::maps::{FloatMap, Map};
 use crate::passes::box_filter::BoxFilter;
-use crate::passes::census::{CENSUS_BYTES, Census};
+use crate::passes::census::{Census, SeenSets};
 use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
 use crate::passes::masks::{MASKS_FORMAT, Masks};
 use crate::passes::pcss::Pcss;
+use crate::passes::plate::{PLATE_FORMAT, Plate};
 use crate::passes::retarget::{Retarget, RetargetInputs};
 use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
-use crate::passes::warp::{WARP_FORMAT, Warp};
+use crate::passes::warp::{Shadow, WARP_FORMAT, Warp};
 use crate::plan::PublishedPlan;
-use crate::preset::PublishedSettings;
-use crate::scene::{Light, Surface};
+
+pub(crate) use uniform::uniform;
 
 /// The census is written and read on the device, cleared, and read back for warnings.
 const CENSUS_USAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_SRC);
@@ -31,6 +33,7 @@ const CENSUS_USAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu:
 pub(crate) struct Published {
     pub(crate) plan: PublishedPlan,
     pub(crate) picture: Texture,
+    pub(crate) plate: Texture,
     pub(crate) masks: Texture,
     pub(crate) eligible: Texture,
     pub(crate) taps: Texture,
@@ -41,7 +44,7 @@ pub(crate) struct Published {
     /// A layer a light.
     pub(crate) warp: TextureLayers,
     warp_depth: Texture,
-    /// Bit s where the set s of lights occurs in mask 3c.
+    /// A word a receiver: bit s where the set s of lights occurs in its mask 3c.
     pub(crate) seen_sets: wgpu::Buffer,
     pub(crate) terms: Texture,
     terms_between: Texture,
@@ -54,6 +57,7 @@ pub(crate) struct Published {
 }
 
 struct Passes {
+    plate: Plate,
     masks: Masks,
     eligible: Eligible,
     census: Census,
@@ -65,13 +69,12 @@ struct Passes {
 }
 
 impl Published {
-    /// Allocates what `plan` asks for. `tallest_m` bounds the height of the toy in any pose.
+    /// Allocates what `plan` asks for.
     pub(crate) fn new(
         gpu: &Gpu,
         plan: PublishedPlan,
         globals: &Globals,
         published: &PublishedLayout,
-        tallest_m: f64,
     ) -> Self {
         let shape = |format, n_samples| TextureShape {
             size_px: plan.region.size_px.to_array(),
@@ -85,11 +88,16 @@ impl Published {
             globals: gpu.uniform("globals", globals),
             published: gpu.uniform("published", published),
             is_constant: published.is_constant == 1,
+            plate: target("plate", PLATE_FORMAT, 1),
             masks: target("masks", MASKS_FORMAT, 1),
             eligible: target("eligible", ELIGIBLE_FORMAT, 1),
             warp: targets("warp", WARP_FORMAT, plan.n_lights),
             warp_depth: target("warp depth", TextureFormat::Depth32Float, 1),
-            seen_sets: gpu.buffer("seen sets", &CENSUS_BYTES, CENSUS_USAGE),
+            seen_sets: gpu.buffer(
+                "seen sets",
+                bytemuck::bytes_of(&SeenSets::default()),
+                CENSUS_USAGE,
+            ),
             terms: target("terms", TERM_FORMAT, 1),
             terms_between: target("terms between", TERM_FORMAT, 1),
             filtered_terms: targets("filtered terms", TERM_FORMAT, plan.n_sets),
@@ -100,21 +108,35 @@ impl Published {
             samples_depth: target("retarget depth", TextureFormat::Depth32Float, N_SAMPLES),
             picture: target("retarget", PICTURE_FORMAT, 1),
             passes: Passes {
+                plate: Plate::new(gpu),
                 masks: Masks::new(gpu),
                 eligible: Eligible::new(gpu),
                 census: Census::new(gpu),
                 warp: Warp::new(gpu),
                 search: Search::new(gpu),
-                box_filter: BoxFilter::new(gpu, plan.n_sets),
-                pcss: Pcss::new(gpu, tallest_m, plan.visibility_format),
+                box_filter: BoxFilter::new(gpu, plan.n_receivers, plan.n_sets),
+                pcss: Pcss::new(gpu, plan.visibility_format),
                 retarget: Retarget::new(gpu),
             },
             plan,
         }
     }
 
-    /// Encodes the masks of the physical pose.
-    pub(crate) fn encode_masks(&self, gpu: &Gpu, encoder: &mut Encoder, toy: &ToyMesh) {
+    /// Encodes the plate of this view, and the masks of the physical pose.
+    pub(crate) fn encode_view(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+    ) {
+        self.passes.plate.encode(
+            gpu,
+            encoder,
+            &self.globals,
+            (&pictures.plate_views, pictures.plates),
+            &self.plate.view,
+        );
         self.passes
             .masks
             .encode(gpu, encoder, &self.globals, toy, &self.masks.view);
@@ -145,9 +167,13 @@ impl Published {
     ) {
         for (light, layer) in (0..).zip(&self.warp.layers) {
             let targets = (layer, &self.warp_depth.view);
+            let shadow = Shadow {
+                light,
+                n_receivers: self.plan.n_receivers,
+            };
             self.passes
                 .warp
-                .encode(gpu, encoder, (&self.globals, light), shown, targets);
+                .encode(gpu, encoder, (&self.globals, shadow), shown, targets);
         }
         let shared = (&self.globals, &self.published);
         self.passes
@@ -180,7 +206,7 @@ impl Published {
                 eligible: &self.eligible.view,
                 seen_sets: &self.seen_sets,
                 frame: pictures.frame,
-                plate: pictures.plate,
+                plate: &self.plate.view,
             };
             self.passes
                 .search
@@ -188,7 +214,7 @@ impl Published {
             self.passes.box_filter.encode(
                 gpu,
                 encoder,
-                &self.published,
+                (&self.globals, &self.published),
                 &self.terms.view,
                 (&self.terms_between.view, &self.filtered_terms.layers),
             );
@@ -197,7 +223,7 @@ impl Published {
             globals: &self.globals,
             published: &self.published,
             frame: pictures.frame,
-            plate: pictures.plate,
+            plate: &self.plate.view,
             masks: &self.masks.view,
             eligible: &self.eligible.view,
             visibility: &self.visibility.view,
@@ -209,87 +235,5 @@ impl Published {
             picture: &self.picture.view,
         };
         self.passes.retarget.encode(gpu, encoder, toy, &inputs, &targets);
-    }
-}
-
-impl Published {
-    /// Waits for the device and returns what real shadow was not seen, for the pose shown last.
-    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
-        if self.is_constant {
-            return Ok(Vec::new());
-        }
-        let seen: u32 = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.seen_sets)?);
-        if seen == 0 {
-            return Ok(vec![Warning::NothingToSample]);
-        }
-        let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
-        let unseen = needed.unwrap_or_default() & !seen;
-        let lights = |set: u32| (0..MAX_LIGHTS).filter(|light| set >> light & 1 == 1).collect();
-        let lights: Vec<_> = (1..=self.plan.n_sets)
-            .filter(|set| unseen >> set & 1 == 1)
-            .map(lights)
-            .collect();
-        let is_any = !lights.is_empty();
-        Ok(is_any
-            .then_some(Warning::OverlapsUnseen { lights })
-            .into_iter()
-            .collect())
-    }
-}
-
-/// Bit s where a term stands for the set s.
-fn sets_in(terms: &FloatMap) -> u32 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "sets are whole numbers below 16"
-    )]
-    let sets = terms.texels.iter().map(|term| term[3] as u32);
-    sets.fold(0, |seen, set| seen | 1 << set) & !1
-}
-
-/// The shaders' view of the settings, and of what they must know of the lights besides where they are.
-pub(crate) fn uniform(lights: &[Light], surface: Surface, settings: &PublishedSettings) -> PublishedLayout {
-    let mut light_radii = [0.0; MAX_LIGHTS];
-    for (slot, light) in light_radii.iter_mut().zip(lights) {
-        *slot = disc_radius(light);
-    }
-    PublishedLayout {
-        light_radii,
-        is_textured: u32::from(surface == Surface::Textured),
-        is_constant: u32::from(settings.constant_ratio.is_some()),
-        constant_ratio: settings
-            .constant_ratio
-            .map_or(0.0, |of_all| ratio_per_light(of_all, lights.len())),
-        eligible_margin_px: settings.eligible_margin_px,
-        ring_step_px: settings.ring_step_px,
-        n_ring_directions: settings.n_ring_directions,
-        n_rings: settings.n_rings,
-        box_radius_px: settings.box_radius_px,
-        seam_px: settings.seam_px,
-        n_blocker_taps: settings.n_blocker_taps,
-        n_filter_taps: settings.n_filter_taps,
-        _pad: 0,
-    }
-}
-
-/// Each light's ratio, such that the product over all lights is `of_all`: shadows of AR products multiply.
-fn ratio_per_light(of_all: f32, n_lights: usize) -> f32 {
-    #[allow(clippy::cast_precision_loss, reason = "at most MAX_LIGHTS")]
-    let n_lights = n_lights.max(1) as f32;
-    of_all.powf(n_lights.recip())
-}
-
-/// Metres for a sphere, slope for a directional light.
-fn disc_radius(light: &Light) -> f32 {
-    let radius = match *light {
-        Light::Sphere { radius_m, .. } => radius_m,
-        Light::Directional {
-            angular_radius_rad, ..
-        } => angular_radius_rad.tan(),
-    };
-    #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
-    {
-        radius as f32
     }
 }

@@ -3,8 +3,10 @@
 struct Published {
   // Radius of each light's disc: metres for a sphere, slope for a directional light.
   light_radii: vec4f,
-  // 1: the receiver is textured, shadow terms are ratios to the plate. 0: uniform, they are colours.
-  is_textured: u32,
+  // Bounds the toy's height over each receiver, in metres.
+  tallest_m: vec4f,
+  // Bit k is 1 where receiver k is textured: its shadow terms are ratios to the plate. 0: uniform, they are colours.
+  textured_receivers: u32,
   // 0: search for real shadow. 1: a constant ratio.
   is_constant: u32,
   // Of one light.
@@ -25,6 +27,19 @@ struct Published {
 @group(0) @binding(2) var<uniform> published: Published;
 
 // A set of lights, those that do not reach a place: bit i stands for light i. 0 is a place in light.
+
+// Where a shadow is, in one number: the receiver and the lights that do not reach it; 0 where there is no shadow.
+const N_SETS: u32 = 16u;
+
+fn label_of(receiver: u32, lights: u32) -> u32 {
+  return select(receiver * N_SETS + lights, 0u, lights == 0u);
+}
+
+// The receiver that a texel shows; where there is only one, all belongs to it.
+fn receiver_at(texel: vec2i) -> u32 {
+  if globals.n_receivers == 1u { return 0u; }
+  return receiver_point(vec2f(texel) + 0.5).receiver;
+}
 
 // How far the shade of the lights `has` is from that of the lights `wanted`: first by how many lights they differ, and
 // of two that differ by as many the one that hides no light too much is closer.

@@ -25,6 +25,7 @@ macro_rules! wgsl {
 }
 
 const GLOBALS: &str = wgsl!("common/globals");
+const CELLS: &str = wgsl!("common/cells");
 const DEPTH: &str = wgsl!("common/depth");
 const FIT: &str = wgsl!("common/fit");
 const FIT_STEP: &str = wgsl!("common/fit_step");
@@ -77,6 +78,21 @@ pub(crate) const RESIDUAL: Shader = Shader {
     parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, wgsl!("residual")],
     entry_points: &["cs_pool"],
 };
+pub(crate) const PLATE: Shader = Shader {
+    name: "plate",
+    parts: &[GLOBALS, FULLSCREEN, wgsl!("plate")],
+    entry_points: &["vs_fullscreen", "fs_choose"],
+};
+pub(crate) const LIT: Shader = Shader {
+    name: "lit",
+    parts: &[GLOBALS, FIT, MODEL, GRID, wgsl!("lit")],
+    entry_points: &["cs_pool"],
+};
+pub(crate) const ESTIMATE: Shader = Shader {
+    name: "estimate",
+    parts: &[GLOBALS, FIT, MODEL, GRID, CELLS, FULLSCREEN, wgsl!("estimate")],
+    entry_points: &["vs_fullscreen", "fs_complete"],
+};
 pub(crate) const FILL: Shader = Shader {
     name: "fill",
     parts: &[GRID, wgsl!("fill")],
@@ -90,6 +106,7 @@ pub(crate) const COMPOSITE: Shader = Shader {
         MODEL,
         TOY,
         GRID,
+        CELLS,
         MATERIAL,
         DEPTH,
         FULLSCREEN,
@@ -115,12 +132,12 @@ pub(crate) const ELIGIBLE: Shader = Shader {
 };
 pub(crate) const CENSUS: Shader = Shader {
     name: "census",
-    parts: &[wgsl!("census")],
+    parts: &[GLOBALS, PUBLISHED, wgsl!("census")],
     entry_points: &["cs_count"],
 };
 pub(crate) const WARP: Shader = Shader {
     name: "warp",
-    parts: &[GLOBALS, FLATTEN, wgsl!("warp")],
+    parts: &[GLOBALS, PUBLISHED, FLATTEN, wgsl!("warp")],
     entry_points: &["vs_warp", "fs_source"],
 };
 pub(crate) const SEARCH: Shader = Shader {
@@ -146,6 +163,6 @@ pub(crate) const RETARGET: Shader = Shader {
 
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
-    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, FIT_SUMS, FIT_SOLVE, RESIDUAL, FILL, COMPOSITE,
-    PRESENT, MASKS, ELIGIBLE, CENSUS, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
+    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, PLATE, LIT, ESTIMATE, FIT_SUMS, FIT_SOLVE, RESIDUAL,
+    FILL, COMPOSITE, PRESENT, MASKS, ELIGIBLE, CENSUS, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
 ];

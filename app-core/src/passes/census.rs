@@ -4,13 +4,14 @@ use glam::UVec2;
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::MAX_RECEIVERS;
 use crate::gpu::pipeline::{GROUP_PASS, view};
 use crate::gpu::shaders::CENSUS;
 
 /// Invocations of a workgroup along each side.
 const WORKGROUP: u32 = 16;
-/// The word of the sets that were seen.
-pub(crate) const CENSUS_BYTES: [u8; 4] = [0; 4];
+/// A word a receiver, with bit s where the set s of lights was seen.
+pub(crate) type SeenSets = [u32; MAX_RECEIVERS];
 
 pub(crate) struct Census {
     pipeline: wgpu::ComputePipeline,

@@ -12,11 +12,10 @@ pub(crate) struct Pcss {
 }
 
 impl Pcss {
-    /// For a toy no taller than `tallest_m`, into a map of `format`.
-    pub(crate) fn new(gpu: &Gpu, tallest_m: f64, format: TextureFormat) -> Self {
-        let constants = [("TALLEST_M", tallest_m)];
+    /// Into a map of `format`.
+    pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
         Self {
-            pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", format, &constants),
+            pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", format, &[]),
         }
     }
 

@@ -129,17 +129,8 @@ impl ToyMesh {
         self.draw_instances(render, positions, 0..n_instances);
     }
 
-    /// Draws the whole mesh once, without materials, as the instance of that index; positions are in slot 0.
-    pub(crate) fn draw_instance(
-        &self,
-        render: &mut wgpu::RenderPass<'_>,
-        positions: &wgpu::Buffer,
-        index: u32,
-    ) {
-        self.draw_instances(render, positions, index..index + 1);
-    }
-
-    fn draw_instances(
+    /// Draws the whole mesh as the instances of these indices, without materials; positions are in slot 0.
+    pub(crate) fn draw_instances(
         &self,
         render: &mut wgpu::RenderPass<'_>,
         positions: &wgpu::Buffer,

@@ -103,7 +103,8 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
             light_radii,
-            is_textured,
+            tallest_m,
+            textured_receivers,
             is_constant,
             constant_ratio,
             eligible_margin_px,
