@@ -52,7 +52,7 @@ fn visibility_at(texel: vec2i, point: ReceiverPoint, half_pixel_m: f32, light: u
   var n_blocked = 0.0;
   for (var k = 0u; k < published.n_blocker_taps; k++) {
     let disc = reach_m * disc_point(k, published.n_blocker_taps);
-    let tap = warp_near(slanted(disc, point, light), light);
+    let tap = warp_near(ReceiverPoint(point.receiver, point.in_plane + disc), light);
     height_sum += tap.a * tap.z;
     n_blocked += tap.a;
   }

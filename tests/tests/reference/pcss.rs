@@ -35,7 +35,7 @@ fn across(softness: &Softness) -> impl Iterator<Item = (f64, f64)> {
         let beyond_px = f64::from(x) + 0.5 - f64::from(EDGE);
         (
             beyond_px,
-            soft_visibility(&heights_m, &region, softness, UVec2::new(x, 30)),
+            soft_visibility(&heights_m, &region, &[*softness], UVec2::new(x, 30)),
         )
     })
 }

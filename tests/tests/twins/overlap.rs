@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
-use app_core::frame::{FrameInput, Warning};
+use app_core::frame::{FrameInput, UnseenShadow, Warning};
 use app_core::gpu::AdapterChoice;
 use app_core::inject::InjectedVisibility;
 use app_core::maps::{FloatMap, Map};
@@ -104,12 +104,11 @@ fn overlap_that_was_never_seen_is_told_and_leaves_no_hole() {
     shot.learn(|[first, second, ..]| [first, if first < 1.0 { 1.0 } else { second }, 0.0, 1.0]);
     assert_eq!(shot.sets_of_terms(), before, "a hole");
     let warnings = shot.core.read_fit_warnings().unwrap();
-    assert_eq!(
-        warnings,
-        [Warning::OverlapsUnseen {
-            lights: vec![vec![0, 1]]
-        }]
-    );
+    let unseen = vec![UnseenShadow {
+        receiver: 0,
+        lights: vec![0, 1],
+    }];
+    assert_eq!(warnings, [Warning::ShadowsUnseen { unseen }]);
 }
 
 #[test]

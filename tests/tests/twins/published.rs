@@ -223,7 +223,7 @@ impl Published {
         };
         let heights_m = warp.map(|texel| (texel.w > 0.0).then_some(texel.z));
         let expected = Raster::from_fn(self.region.size_px, |texel| {
-            soft_visibility(&heights_m, &self.region, &softness, texel)
+            soft_visibility(&heights_m, &self.region, &[softness], texel)
         });
         let values = expected.texels();
         assert!(
