@@ -12,8 +12,8 @@ use crate::learner::Learner;
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
-use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::estimate::Detail;
+use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::motion::MotionTargets;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
@@ -101,7 +101,12 @@ impl Capture {
                 .iter()
                 .map(|light| OcclusionTargets::new(gpu, region_px, region_px, light.n_points))
                 .collect(),
-            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, region_px, plan.n_ambient_directions),
+            ambient_targets: OcclusionTargets::new(
+                gpu,
+                plan.ambient_px,
+                region_px,
+                plan.n_ambient_directions,
+            ),
             // Each receiver has its own hemisphere.
             ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
             stage_points: light_points
@@ -116,7 +121,12 @@ impl Capture {
     /// Follows the camera: the same textures show another part of another picture.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
         if plan.is_plate_estimated && self.estimated.is_none() {
-            self.estimated = Some(texture(gpu, "estimated plate", plan.region.size_px, (PLATE_FORMAT, 1)));
+            self.estimated = Some(texture(
+                gpu,
+                "estimated plate",
+                plan.region.size_px,
+                (PLATE_FORMAT, 1),
+            ));
         }
         self.plan = plan;
         self.known = *globals;

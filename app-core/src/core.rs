@@ -224,13 +224,15 @@ impl Core {
         Ok(Some(fit))
     }
 
-    /// Waits for the device and returns what the fit gives to worry about.
+    /// Waits for the device and returns what was learned that gives to worry about.
     ///
     /// # Errors
     /// When the device is lost.
     pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
         let Some(fit) = self.read_fit()? else {
-            return Ok(Vec::new());
+            let work = self.stage.as_ref().and_then(Stage::work);
+            let warnings = work.map(|work| work.read_warnings(&self.gpu)).transpose()?;
+            return Ok(warnings.unwrap_or_default());
         };
         let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
         let contrast = contrasts.copied().fold(0.0, f32::max);

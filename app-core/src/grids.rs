@@ -91,7 +91,6 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
         // A cell more or less is of no account: what lies beyond takes the value at the border.
         let slack = f64::from(grid.cell_m);
         let is_reached = rect.min.cmple(rect.max).all();
-        !is_reached
-            || (rect.min.cmpge(origin - slack).all() && rect.max.cmple(origin + size + slack).all())
+        !is_reached || (rect.min.cmpge(origin - slack).all() && rect.max.cmple(origin + size + slack).all())
     })
 }

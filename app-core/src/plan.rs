@@ -276,6 +276,10 @@ const PUBLISHED_PASSES: &[PlannedPass] = &[
         path: Path::Capture,
     },
     PlannedPass {
+        name: "census",
+        path: Path::Capture,
+    },
+    PlannedPass {
         name: "warp",
         path: Path::Frame,
     },
@@ -305,7 +309,7 @@ const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "appearance"];
 /// What a scene does without when one plate shows all of it.
 const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.
-const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
+const SAMPLING_PASSES: &[&str] = &["census", "search", "box_filter"];
 
 impl Plan {
     /// Plans a scene. Lights beyond the fourth are left out.
@@ -328,11 +332,7 @@ impl Plan {
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
-            visibility_format: match lights.len() {
-                0 | 1 => TextureFormat::R16Float,
-                2 => TextureFormat::Rg16Float,
-                _ => TextureFormat::Rgba16Float,
-            },
+            visibility_format: visibility_format(lights.len()),
             left_out: left_out(facts, &lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
@@ -387,6 +387,14 @@ pub fn runs(passes: &[PlannedPass], change: Change) -> impl Iterator<Item = (Pat
 pub struct PublishedPlan {
     /// The work region.
     pub region: PixelRect,
+    /// Lights whose shadows are moved, at most four.
+    pub n_lights: u32,
+    /// Receivers that they are moved on, each by itself.
+    pub n_receivers: u32,
+    /// Sets of these lights, the empty one left out: each has an appearance of its own where its shadows overlap.
+    pub n_sets: u32,
+    /// Format of the visibility map, one channel a light.
+    pub visibility_format: TextureFormat,
     /// The passes in the order they run.
     pub passes: Vec<PlannedPass>,
     /// What the scene does not need.
@@ -394,7 +402,7 @@ pub struct PublishedPlan {
 }
 
 impl PublishedPlan {
-    /// Plans a scene.
+    /// Plans a scene. Lights beyond the fourth are left out.
     #[must_use]
     pub fn new(facts: &SceneFacts, settings: &PublishedSettings) -> Self {
         let is_constant = settings.constant_ratio.is_some();
@@ -405,8 +413,14 @@ impl PublishedPlan {
                 why: "the preset's shadow is constant",
             });
         }
+        let lights = facts.penumbra_px.iter().take(MAX_LIGHTS);
+        let n_lights = lights.fold(0, |n_lights, _| n_lights + 1);
         Self {
             region: facts.region,
+            n_lights,
+            n_receivers: facts.n_receivers,
+            n_sets: (1 << n_lights) - 1,
+            visibility_format: visibility_format(facts.penumbra_px.len()),
             passes: PUBLISHED_PASSES
                 .iter()
                 .filter(|pass| !(is_constant && SAMPLING_PASSES.contains(&pass.name)))
@@ -414,6 +428,15 @@ impl PublishedPlan {
                 .collect(),
             left_out,
         }
+    }
+}
+
+/// The narrowest format of a visibility map that has a channel a light.
+fn visibility_format(n_lights: usize) -> TextureFormat {
+    match n_lights {
+        0 | 1 => TextureFormat::R16Float,
+        2 => TextureFormat::Rg16Float,
+        _ => TextureFormat::Rgba16Float,
     }
 }
 

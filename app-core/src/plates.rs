@@ -34,7 +34,11 @@ pub(crate) struct PlateChoice {
 /// Chooses from the scene's plates for a camera that looks at `toy_in_world`.
 pub(crate) fn choose(scene: &Scene, world_from_camera: &DMat4, toy_in_world: DVec3) -> PlateChoice {
     let plates = &scene.plates;
-    let is_same = |plate: &Plate| plate.world_from_camera.abs_diff_eq(*world_from_camera, SAME_CAMERA);
+    let is_same = |plate: &Plate| {
+        plate
+            .world_from_camera
+            .abs_diff_eq(*world_from_camera, SAME_CAMERA)
+    };
     if let Some(same) = plates.iter().position(is_same) {
         return PlateChoice {
             indices: vec![same],

@@ -110,7 +110,8 @@ pub struct Settings {
 /// The constants that the papers leave open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PublishedSettings {
-    /// Shadow over plate, for a shadow of constant strength; without it the real shadow is sampled.
+    /// Shadow over plate where no light reaches, for shadows of constant strength, each light's the same; without it the
+    /// real shadow is sampled.
     pub constant_ratio: Option<f32>,
     /// Distance kept from the edges of the eligible shadow.
     pub eligible_margin_px: i32,

@@ -10,7 +10,7 @@ use crate::clip_reach::ClipReach;
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{MAX_LIGHTS, MAX_RECEIVERS, PlateViews};
+use crate::gpu::layout::PlateViews;
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::grids::{grids_over, holds};
 use crate::inject::InjectedVisibility;
@@ -26,7 +26,7 @@ use crate::preset::{Method, Preset, PublishedSettings};
 use crate::published::{self, Published};
 use crate::region::{BORDER_PX, Bounds, PixelRect, PlaneRect};
 use crate::scene::{Image, Light, PoseTime, Receiver, Scene};
-use crate::standing::{Most, usable};
+use crate::standing::usable;
 use crate::toy::{ClipId, PosedMesh, ToyError};
 use crate::view::{Place, View};
 use crate::work::{Model, Work};
@@ -86,17 +86,7 @@ impl Stage {
             .toy
             .pose(clip_time(&scene.physical_pose), &stage_from_object, &mut posed)?;
         let size_px = [scene.width_px, scene.height_px];
-        let most = match preset.method() {
-            Method::Model(_) => Most {
-                lights: MAX_LIGHTS,
-                receivers: MAX_RECEIVERS,
-            },
-            Method::Published(_) => Most {
-                lights: 1,
-                receivers: 1,
-            },
-        };
-        let usable = usable(&scene, most);
+        let usable = usable(&scene);
         let output = TextureShape {
             size_px,
             format: OUTPUT_FORMAT,
@@ -343,7 +333,11 @@ impl Stage {
             return;
         };
         learned.world_from_camera = input.world_from_camera;
-        let size_px = moving_size(learned.work.region().size_px, &worked.region, worked.view.image_px);
+        let size_px = moving_size(
+            learned.work.region().size_px,
+            &worked.region,
+            worked.view.image_px,
+        );
         let region = worked.region.within(size_px, worked.view.image_px);
         match (&mut learned.work, self.preset.method()) {
             (Work::Model(model), Method::Model(settings)) => {
@@ -426,23 +420,19 @@ impl Stage {
             .iter()
             .map(|receiver| receiver.world_from_plane.inverse() * world_from_stage);
         planes
-            .flat_map(|plane_from_stage| points.iter().map(move |p| (plane_from_stage * p.as_dvec4()).as_vec4()))
+            .flat_map(|plane_from_stage| {
+                points
+                    .iter()
+                    .map(move |p| (plane_from_stage * p.as_dvec4()).as_vec4())
+            })
             .collect()
     }
 
     fn published(&self, gpu: &Gpu, settings: &PublishedSettings, region: PixelRect, worked: &Worked) -> Work {
         let plan = PublishedPlan::new(&self.facts(worked, region), settings);
         let globals = worked.view.globals(&region, &self.place());
-        let surface = self.scene.receivers[0].surface;
-        let stage_from_world = self.place().world_from_stage().inverse();
-        let uniform = published::uniform(&self.lights[0], &stage_from_world, surface, settings);
-        Work::Published(Box::new(Published::new(
-            gpu,
-            plan,
-            &globals,
-            &uniform,
-            worked.bounds.max.y,
-        )))
+        let uniform = published::uniform(&self.place(), &worked.bounds, settings);
+        Work::Published(Box::new(Published::new(gpu, plan, &globals, &uniform)))
     }
 
     fn place(&self) -> Place<'_> {

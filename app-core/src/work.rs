@@ -1,6 +1,7 @@
 //! The two ways to a picture behind one face: the model, and the published method.
 
 use crate::capture::{Capture, Pictures};
+use crate::frame::Warning;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Globals;
 use crate::gpu::texture::Texture;
@@ -112,6 +113,14 @@ impl Work {
         match self {
             Self::Model(model) => model.read_map(gpu, map),
             Self::Published(published) => published.read_map(gpu, map),
+        }
+    }
+
+    /// Waits for the device and returns what the published method lacks; the model tells by its fit.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+        match self {
+            Self::Model(_) => Ok(Vec::new()),
+            Self::Published(published) => published.read_warnings(gpu),
         }
     }
 }

@@ -178,9 +178,9 @@ pub struct Placement {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Published {
-    pub light: [f32; 4],
-    pub light_radius: f32,
-    pub is_textured: u32,
+    pub light_radii: [f32; MAX_LIGHTS],
+    pub tallest_m: [f32; MAX_RECEIVERS],
+    pub textured_receivers: u32,
     pub is_constant: u32,
     pub constant_ratio: f32,
     pub eligible_margin_px: i32,
@@ -191,6 +191,7 @@ pub struct Published {
     pub seam_px: i32,
     pub n_blocker_taps: u32,
     pub n_filter_taps: u32,
+    pub _pad: u32,
 }
 
 /// What is fitted: `SUBJECT_RECEIVER`, `SUBJECT_TOY` and `SUBJECT_LEVELS` in `common/fit_step.wgsl`.

@@ -128,7 +128,16 @@ pub(crate) const TOY: Shader = Shader {
 };
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
-    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, CELLS, FULLSCREEN, wgsl!("composite")],
+    parts: &[
+        GLOBALS,
+        FIT,
+        MODEL,
+        PIXEL,
+        GRID,
+        CELLS,
+        FULLSCREEN,
+        wgsl!("composite"),
+    ],
     entry_points: &["vs_fullscreen", "fs_compose"],
 };
 pub(crate) const PRESENT: Shader = Shader {
@@ -146,6 +155,11 @@ pub(crate) const ELIGIBLE: Shader = Shader {
     name: "eligible",
     parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("eligible")],
     entry_points: &["vs_fullscreen", "fs_mark"],
+};
+pub(crate) const CENSUS: Shader = Shader {
+    name: "census",
+    parts: &[GLOBALS, PUBLISHED, wgsl!("census")],
+    entry_points: &["cs_count"],
 };
 pub(crate) const WARP: Shader = Shader {
     name: "warp",
@@ -194,6 +208,7 @@ pub const ALL: &[Shader] = &[
     PRESENT,
     MASKS,
     ELIGIBLE,
+    CENSUS,
     WARP,
     SEARCH,
     BOX_FILTER,

@@ -78,7 +78,10 @@ impl Fit {
         });
         let globals = (0, shared.globals.as_entire_binding());
         let solution = (1, shared.solution.as_entire_binding());
-        let to_sum = gpu.bind(&self.sums.get_bind_group_layout(GROUP_GLOBALS), &[globals.clone(), solution]);
+        let to_sum = gpu.bind(
+            &self.sums.get_bind_group_layout(GROUP_GLOBALS),
+            &[globals.clone(), solution],
+        );
         let to_solve = gpu.bind(&self.solve.get_bind_group_layout(GROUP_GLOBALS), &[globals]);
         for step in 0..task.n_steps {
             let uniform = gpu.uniform("fit step", &fit_step(plan, &task, step));

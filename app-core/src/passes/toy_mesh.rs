@@ -131,9 +131,19 @@ impl ToyMesh {
         positions: &wgpu::Buffer,
         n_instances: u32,
     ) {
+        self.draw_instances(render, positions, 0..n_instances);
+    }
+
+    /// Draws the whole mesh as the instances of these indices, without materials; positions are in slot 0.
+    pub(crate) fn draw_instances(
+        &self,
+        render: &mut wgpu::RenderPass<'_>,
+        positions: &wgpu::Buffer,
+        instances: std::ops::Range<u32>,
+    ) {
         render.set_vertex_buffer(0, positions.slice(..));
         render.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.n_indices, 0, 0..n_instances);
+        render.draw_indexed(0..self.n_indices, 0, instances);
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.

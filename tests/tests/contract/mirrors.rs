@@ -108,9 +108,9 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
         mirror!(Material { base_color_linear }),
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
-            light,
-            light_radius,
-            is_textured,
+            light_radii,
+            tallest_m,
+            textured_receivers,
             is_constant,
             constant_ratio,
             eligible_margin_px,
@@ -120,7 +120,8 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
             box_radius_px,
             seam_px,
             n_blocker_taps,
-            n_filter_taps
+            n_filter_taps,
+            _pad
         }),
     ]
 }

@@ -10,6 +10,7 @@ mod fill;
 mod fit;
 mod inject;
 mod occlusion;
+mod overlap;
 mod photo;
 mod place;
 mod published;
