@@ -1,12 +1,12 @@
 // The picture: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 //
-//   out = plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
-//   out = frame + plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame passes
+//   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
+//   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
+//                                     passes; also where the frame shows what the model cannot explain
 //
 // Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes: linear
 // colour, opaque. Twin: reference/composite.rs.
 
-@group(1) @binding(0) var<uniform> grid: Grid;
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
 @group(1) @binding(3) var plate: texture_2d<f32>;
@@ -33,20 +33,17 @@ const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Change of the model from which the pooled residual no longer holds at half its size.
 const RESIDUAL_HALF: f32 = 0.5;
+// Pooled residual, in plates, from which something unknown is seen, such as a hand or the shadow of a light that is not
+// listed, and from which nothing else counts: what the camera saw stays.
+const UNKNOWN_NONE: f32 = 0.15;
+const UNKNOWN_ALL: f32 = 0.3;
 
-fn pooled_residual(region_px: vec2f) -> vec3f {
-  let at = region_px / f32(grid.cell_px) - 0.5;
-  let low = floor(at);
-  let t = at - low;
-  var sum = vec3f(0.0);
-  for (var k = 0u; k < 4u; k++) {
-    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let cell = vec2u(clamp(low + corner, vec2f(0.0), vec2f(grid.size) - 1.0));
-    let weight = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    sum += weight * cells[cell.y * grid.size.x + cell.x].rgb;
-  }
-  return sum;
-}
+// Distance over which the toy's colours bleed into a pixel beside it.
+const BLEED_PX: f32 = 6.0;
+// Deviation from the model, in plates, up to which a pixel that the toy has left is as it should be, and from which it is
+// what bled into it.
+const BLED_NONE: f32 = 0.03;
+const BLED_ALL: f32 = 0.1;
 
 // 1 inside, falling to 0 at an inner border of the region.
 fn inside_border(region_px: vec2f) -> f32 {
@@ -57,6 +54,25 @@ fn inside_border(region_px: vec2f) -> f32 {
 
 fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
+}
+
+// Whether the shown toy is not beside this pixel.
+fn is_left(texel: vec2i) -> bool {
+  let last = vec2i(globals.region_size_px) - 1;
+  var nearest = 0.0;
+  for (var k = 0u; k < 8u; k++) {
+    let turn = f32(k) * 0.78539816;
+    let tap = clamp(texel + vec2i(round(BLEED_PX * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
+    nearest = max(nearest, textureLoad(toy_0, tap, 0).a);
+  }
+  return nearest == 0.0;
+}
+
+// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has gone, and left its colour.
+fn own_share(texel: vec2u, evident: vec4f, deviation: f32) -> f32 {
+  if evident.r == 0.0 { return 0.0; }
+  if evident.b == 1.0 || !is_left(vec2i(texel)) { return 1.0; }
+  return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
 struct Receiver {
@@ -74,25 +90,31 @@ fn receiver(position: vec4f) -> Receiver {
   let image_texel = texel + vec2u(globals.region_origin_px);
   let f = textureLoad(frame, image_texel, 0).rgb;
   let point = receiver_point(at);
-  let b = textureLoad(plate, image_texel, 0).rgb;
-  let seen = textureLoad(evidence, texel, 0).r;
-  // Beyond the receiver nothing changes but that the real toy goes.
-  if !point.is_hit { return Receiver(mix(fit.gain.rgb * b, f, seen), f, vec3f(0.0), 1.0 - seen); }
+  let b = textureLoad(plate, texel, 0);
+  let lit = fit.gain.rgb * b.rgb;
+  let evident = textureLoad(evidence, texel, 0);
+  // Nothing is known of what is behind.
+  if b.a == 0.0 { return Receiver(f, f, vec3f(0.0), 0.0); }
+  // Beyond the receivers nothing changes but that the real toy goes.
+  if !is_hit(point) { return Receiver(mix(lit, f, evident.r), f, vec3f(0.0), 1.0 - evident.r); }
   let uv = at / globals.region_size_px;
-  let before = receiver_model(point.in_plane, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
+  let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
-  let after = receiver_model(point.in_plane, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
+  let after = receiver_model(point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
     textureLoad(visibility, texel, 0));
-  let change = abs(after - before);
-  let most = largest(change);
-  let residual = pooled_residual(at) * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
+  let most = largest(abs(after - before));
+  let pooled = cell_at(point).rgb;
+  let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
+  let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
+  let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_EVIDENCE)));
+  let seen = own_share(texel, evident, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
-  let keep = seen * is_near;
-  let made = b * max(after + residual, vec3f(0.0));
-  let kept = f + b * (after - before);
+  let keep = seen * max(is_near, is_unknown);
+  let made = lit * max(after + residual, vec3f(0.0));
+  let kept = f + lit * (after - before);
   let inside = max(inside_border(at), 1.0 - seen);
-  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, b * (after - before),
-    (1.0 - seen) * is_near);
+  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
+    (1.0 - evident.r) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {

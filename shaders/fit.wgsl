@@ -1,8 +1,9 @@
-// Sums of the weighted normal equations, for the receiver or for the toy.
+// Sums of the weighted normal equations, for a receiver, for the toy, or for the levels of the light.
 //
-// Receiver: frame = plate gain (A + bounce (1 - A) + sum_i share_i falloff_i (V_i - A) / plate_falloff)
-// is linear in (gain, gain bounce, gain share_i), with plate_falloff taken from the step before.
-// Toy: frame = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0) V_i), V_i with the toy's shadow on itself.
+// Receiver: frame / gain = plate c (A + bounce (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
+// is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
+// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0) V_i), V_i with the toy's shadow on itself.
+// Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
 // before. Sums run over pixels here and over workgroups in `fit_solve`.
 //
@@ -51,28 +52,65 @@ fn frame_at(texel: vec2u) -> vec3f {
   return textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
 }
 
-fn receiver_equation(texel: vec2u, channel: u32) -> Equation {
-  var eq: Equation;
+// What a pixel of a receiver shows, all that its equations are made of.
+struct Observation {
+  point: ReceiverPoint,
+  frame: vec3f,
+  plate: vec3f,
+  ambient: f32,
+  visibility: vec4f,
+  // 0 where it is no evidence.
+  weight: vec3f,
+}
+
+fn observe(texel: vec2u) -> Observation {
+  var seen: Observation;
   let at = vec2f(texel) + 0.5;
-  let point = receiver_point(at);
-  let seen = textureLoad(evidence, texel, 0).r;
-  if seen == 0.0 || !point.is_hit { return eq; }
-  let f = frame_at(texel);
-  let b = textureLoad(plate, texel + vec2u(globals.region_origin_px), 0).rgb;
-  let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
-  let v = textureLoad(visibility, texel, 0);
-  let total = plate_falloff(point.in_plane)[channel];
-  eq.value = f[channel];
-  eq.columns[0] = b[channel] * a;
-  eq.columns[1] = b[channel] * (1.0 - a);
-  var predicted = fit.gain[channel] * (eq.columns[0] + fit.bounce[channel] * eq.columns[1]);
+  let evident = textureLoad(evidence, texel, 0).r;
+  seen.point = receiver_point(at);
+  if evident == 0.0 || !is_hit(seen.point) { return seen; }
+  let plate_texel = textureLoad(plate, texel, 0);
+  seen.frame = frame_at(texel);
+  seen.plate = plate_texel.rgb;
+  seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
+  seen.visibility = textureLoad(visibility, texel, 0);
+  seen.weight = evident * plate_texel.a * is_evidence(seen.frame, seen.plate);
+  return seen;
+}
+
+fn receiver_equation(seen: Observation, channel: u32) -> Equation {
+  var eq: Equation;
+  if seen.weight[channel] == 0.0 || seen.point.receiver != step.receiver { return eq; }
+  let b = seen.plate[channel];
+  let total = plate_falloff(seen.point)[channel];
+  eq.value = seen.frame[channel] / fit.gain[channel];
+  eq.columns[0] = b * seen.ambient;
+  eq.columns[1] = b * (1.0 - seen.ambient);
+  var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce[channel] * eq.columns[1];
   for (var i = 0u; i < globals.n_lights; i++) {
-    let column = b[channel] * falloff(i, point.in_plane) * (v[i] - a) / total;
-    eq.columns[2u + i] = column;
-    predicted += fit.gain[channel] * fit.share[i][channel] * column;
+    let visible = fit.level[i][channel] * seen.visibility[i] - seen.ambient;
+    eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
+    predicted += fit.receivers[step.receiver].share[i][channel] * eq.columns[2u + i];
   }
-  eq.weight = seen * is_evidence(f, b)[channel];
-  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b[channel]); }
+  eq.weight = seen.weight[channel];
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }
+  return eq;
+}
+
+fn levels_equation(seen: Observation, channel: u32) -> Equation {
+  var eq: Equation;
+  if seen.weight[channel] == 0.0 { return eq; }
+  let b = seen.plate[channel];
+  eq.value = seen.frame[channel];
+  eq.columns[0] = b * ambient_model(seen.point, seen.ambient)[channel];
+  var predicted = eq.columns[0];
+  for (var i = 0u; i < globals.n_lights; i++) {
+    eq.columns[2u + i] = b * light_share(i, seen.point)[channel] * seen.visibility[i];
+    predicted += fit.level[i][channel] * eq.columns[2u + i];
+  }
+  let gain = fit.gain[channel];
+  eq.weight = seen.weight[channel];
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
   return eq;
 }
 
@@ -82,7 +120,7 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   let f = frame_at(texel);
   if textureLoad(evidence, texel, 0).g == 0.0 { return eq; }
   let normal = textureLoad(object_normal, texel, 0).xyz;
-  eq.value = f[channel];
+  eq.value = f[channel] / fit.gain[channel];
   let received = textureLoad(object_received, texel, 0);
   eq.columns[0] = base[channel];
   eq.columns[1] = base[channel] * normal.y;
@@ -104,7 +142,11 @@ fn cs_accumulate(
   for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
     let texel = vec2u(index % size.x, index / size.x) * step.stride_px;
     var eq: Equation;
-    if step.subject == SUBJECT_RECEIVER { eq = receiver_equation(texel, channel); } else { eq = toy_equation(texel, channel); }
+    switch step.subject {
+      case SUBJECT_RECEIVER: { eq = receiver_equation(observe(texel), channel); }
+      case SUBJECT_LEVELS: { eq = levels_equation(observe(texel), channel); }
+      default: { eq = toy_equation(texel, channel); }
+    }
     if eq.weight == 0.0 { continue; }
     var k = 0u;
     for (var i = 0u; i < N_COLUMNS; i++) {

@@ -9,7 +9,7 @@
 @group(1) @binding(0) var warp: texture_2d<f32>;
 
 fn warp_near(in_plane: vec2f) -> vec4f {
-  let at = globals.clip_from_receiver * vec3f(in_plane, 1.0);
+  let at = globals.receivers[0].clip_from_plane * vec3f(in_plane, 1.0);
   if at.z <= 0.0 { return vec4f(0.0); }
   let region_px = (at.xy / at.z * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
   if any(region_px < vec2f(0.0)) || any(region_px >= globals.region_size_px) { return vec4f(0.0); }
@@ -36,7 +36,7 @@ override TALLEST_M: f32 = 1.0;
 fn fs_soften(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let here = textureLoad(warp, vec2i(at.xy), 0);
   let point = receiver_point(at.xy);
-  if !point.is_hit { return vec4f(1.0); }
+  if point.receiver != 0u { return vec4f(1.0); }
   let pixel_width_m = distance(receiver_point(at.xy + vec2f(1.0, 0.0)).in_plane, point.in_plane);
   // Never less than half a pixel, so that a hard edge is antialiased.
   let reach_m = max(penumbra_radius_m(TALLEST_M), 0.5 * pixel_width_m);

@@ -40,8 +40,10 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2i(position.xy);
   let image_texel = texel + vec2i(globals.region_origin_px);
   let f = textureLoad(frame, image_texel, 0).rgb;
-  let b = textureLoad(plate, image_texel, 0).rgb;
-  let lit = mix(f, b, cropped(texel));
+  let lit_texel = textureLoad(plate, texel, 0);
+  let b = lit_texel.rgb;
+  // What no plate shows stays as it is.
+  let lit = mix(f, b, cropped(texel) * lit_texel.a);
   let v = textureLoad(visibility, texel, 0).r;
   return vec4f(mix(shaded(texel, lit, b), lit, v), 1.0);
 }

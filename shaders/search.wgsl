@@ -23,7 +23,7 @@ fn term_at(texel: vec2i) -> vec4f {
   let image_texel = texel + vec2i(globals.region_origin_px);
   let shaded = textureLoad(frame, image_texel, 0).rgb;
   if published.is_textured == 0u { return vec4f(shaded, 1.0); }
-  let lit = textureLoad(plate, image_texel, 0).rgb;
+  let lit = textureLoad(plate, texel, 0).rgb;
   // Black in the plate tells nothing of the shadow: no change. Nor does a shadow add light: noise in the dark would.
   return vec4f(select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0)), 1.0);
 }

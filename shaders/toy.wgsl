@@ -152,5 +152,5 @@ fn fs_toy(in: Surface) -> Drawn {
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_plane, 1.0)), physical_px);
   let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
-  return Drawn(vec4f(mix(base * lit, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
+  return Drawn(vec4f(mix(fit.gain.rgb * base * lit, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
 }

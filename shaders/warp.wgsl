@@ -16,8 +16,8 @@ struct Warped {
 
 @vertex
 fn vs_warp(@location(0) shown_in_plane: vec3f, @location(1) physical_in_plane: vec3f) -> Warped {
-  let source = globals.clip_from_receiver * flatten(published.light, physical_in_plane);
-  return Warped(clip_from_flattened(flatten(published.light, shown_in_plane)), source, shown_in_plane.y);
+  let source = globals.receivers[0].clip_from_plane * flatten(published.light, physical_in_plane);
+  return Warped(clip_from_flattened(0u, flatten(published.light, shown_in_plane)), source, shown_in_plane.y);
 }
 
 struct WarpTexel {

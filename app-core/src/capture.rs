@@ -1,27 +1,28 @@
-//! What is learned from the real toy and its real shadow, once, and kept while the camera stays.
+//! What is made of one view of the real toy and its real shadow, and how the knowledge of the place grows by it.
 
 use glam::UVec2;
-use wgpu::{BufferUsages, TextureFormat};
+use wgpu::TextureFormat;
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::{Globals, Subject};
+use crate::gpu::layout::{Globals, PlateViews, Subject};
 use crate::gpu::texture::{Texture, TextureShape};
+use crate::knowledge::Knowledge;
+use crate::learner::Learner;
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
+use crate::passes::estimate::Detail;
 use crate::passes::evidence::EVIDENCE_FORMAT;
-use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
-use crate::passes::fit::{Fit, FitInputs, FitShared};
 use crate::passes::motion::MotionTargets;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
-use crate::passes::residual::ResidualInputs;
+use crate::passes::plate::PLATE_FORMAT;
 use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
 use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
-use crate::plan::Plan;
+use crate::plan::{Change, Plan};
 
 /// Format of the ambient map.
 pub(crate) const AMBIENT_FORMAT: TextureFormat = TextureFormat::R16Float;
@@ -34,15 +35,12 @@ pub(crate) struct Visibilities {
     pub(crate) injected: Option<Texture>,
 }
 
-/// Everything of the region's size, and what was learned.
+/// Everything of the region's size.
 pub(crate) struct Capture {
     pub(crate) plan: Plan,
     /// What `globals` holds.
     pub(crate) known: Globals,
     pub(crate) globals: wgpu::Buffer,
-    pub(crate) solution: wgpu::Buffer,
-    pub(crate) grid: wgpu::Buffer,
-    pub(crate) cells: wgpu::Buffer,
     pub(crate) physical: Visibilities,
     pub(crate) shown: Visibilities,
     pub(crate) object_base: Texture,
@@ -50,6 +48,10 @@ pub(crate) struct Capture {
     pub(crate) object_received: Texture,
     pub(crate) object_depth: Texture,
     pub(crate) evidence: Texture,
+    /// What was photographed without the toy.
+    pub(crate) photographed: Texture,
+    /// The same, with an estimate where nothing was.
+    pub(crate) estimated: Option<Texture>,
     pub(crate) appearance: Texture,
     pub(crate) appearance_lit: Texture,
     pub(crate) appearance_base: Texture,
@@ -58,33 +60,21 @@ pub(crate) struct Capture {
     pub(crate) motion: MotionTargets,
     pub(crate) toy: ToyTargets,
     pub(crate) picture: Texture,
-    light_points: Vec<Vec<glam::Vec4>>,
+    pub(crate) light_points: Vec<Vec<glam::Vec4>>,
     light_targets: Vec<OcclusionTargets>,
     ambient_targets: OcclusionTargets,
     ambient_directions: Vec<glam::Vec4>,
 }
 
 impl Capture {
-    /// Allocates what `plan` asks for. `light_points` has the points of each of its lights.
+    /// Allocates what `plan` asks for. `light_points` has the points of each of its lights, receiver by receiver.
     pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<glam::Vec4>>) -> Self {
         let region_px = plan.region.size_px;
         let target = |label, format| texture(gpu, label, region_px, (format, 1));
-        let n_cells = n_pyramid_cells(plan.grid.size);
+        let n_receivers = plan.n_receivers as usize;
         Self {
             known: *globals,
             globals: gpu.uniform("globals", globals),
-            solution: gpu.buffer(
-                "fit",
-                bytemuck::bytes_of(&Fit::start(plan.lights.len())),
-                BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-            ),
-            grid: gpu.uniform("grid", &plan.grid),
-            cells: gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("residual cells"),
-                size: CELL_BYTES * n_cells,
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
             physical: visibilities(gpu, &plan),
             shown: visibilities(gpu, &plan),
             object_base: target("object base", BASE_FORMAT),
@@ -92,6 +82,10 @@ impl Capture {
             object_received: target("object received", RECEIVED_FORMAT),
             object_depth: target("object depth", TextureFormat::Depth32Float),
             evidence: target("evidence", EVIDENCE_FORMAT),
+            photographed: target("plate", PLATE_FORMAT),
+            estimated: plan
+                .is_plate_estimated
+                .then(|| target("estimated plate", PLATE_FORMAT)),
             appearance: target("appearance", APPEARANCE_FORMAT),
             appearance_lit: target("appearance lit", LIT_FORMAT),
             appearance_base: target("appearance base", BASE_FORMAT),
@@ -103,17 +97,47 @@ impl Capture {
             light_targets: plan
                 .lights
                 .iter()
-                .map(|light| OcclusionTargets::new(gpu, region_px, light.n_points))
+                .map(|light| OcclusionTargets::new(gpu, region_px, region_px, light.n_points))
                 .collect(),
-            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, plan.n_ambient_directions),
-            ambient_directions: ambient_directions(plan.n_ambient_directions),
+            ambient_targets: OcclusionTargets::new(
+                gpu,
+                plan.ambient_px,
+                region_px,
+                plan.n_ambient_directions,
+            ),
+            // Each receiver has its own hemisphere.
+            ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
             light_points,
             plan,
         }
     }
 
-    /// Encodes what is learned from one frame: geometry of the physical pose, fits, residual.
-    pub(crate) fn encode(
+    /// Follows the camera: the same textures show another part of another picture.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
+        if plan.is_plate_estimated && self.estimated.is_none() {
+            self.estimated = Some(texture(
+                gpu,
+                "estimated plate",
+                plan.region.size_px,
+                (PLATE_FORMAT, 1),
+            ));
+        }
+        self.plan = plan;
+        self.known = *globals;
+        gpu.queue
+            .write_buffer(&self.globals, 0, bytemuck::bytes_of(globals));
+    }
+
+    /// The plate that all passes read.
+    pub(crate) fn plate(&self) -> &Texture {
+        self.estimated
+            .as_ref()
+            .filter(|_| self.plan.is_plate_estimated)
+            .unwrap_or(&self.photographed)
+    }
+
+    /// Encodes what a view shows before anything is learned from it: geometry of the physical pose, and the plate.
+    fn encode_view(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
@@ -145,39 +169,62 @@ impl Capture {
             (toy, &toy.physical.positions),
             &self.physical,
         );
-        let shared = FitShared {
-            plan: &self.plan,
-            globals: &self.globals,
-            solution: &self.solution,
-        };
-        let inputs = FitInputs {
+        passes.plate.encode(
+            gpu,
+            encoder,
+            &self.globals,
+            (&pictures.plate_views, pictures.plates),
+            &self.photographed.view,
+        );
+    }
+
+    /// Encodes what is learned from one view: `change` tells whether it is the first.
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        (toy, knowledge): (&ToyMesh, &Knowledge),
+        (pictures, change): (&Pictures<'_>, Change),
+    ) {
+        self.encode_view(gpu, encoder, passes, toy, pictures);
+        let is_first = change == Change::Place;
+        let learner = Learner {
+            gpu,
+            capture: self,
+            passes,
+            knowledge,
             frame: pictures.frame,
-            plate: pictures.plate,
-            evidence: &self.evidence.view,
-            visibility: &self.physical.lights.view,
-            ambient: &self.physical.ambient.view,
-            object_base: &self.object_base.view,
-            object_normal: &self.object_normal.view,
-            object_received: &self.object_received.view,
         };
-        passes
-            .fit
-            .encode(gpu, encoder, &shared, &inputs, Subject::Receiver);
-        passes.fit.encode(gpu, encoder, &shared, &inputs, Subject::Toy);
-        let inputs = ResidualInputs {
-            globals: &self.globals,
-            solution: &self.solution,
-            grid: &self.grid,
-            frame: pictures.frame,
-            plate: pictures.plate,
-            evidence: &self.evidence.view,
-            visibility: &self.physical.lights.view,
-            ambient: &self.physical.ambient.view,
+        if !is_first {
+            learner.estimate_plate(encoder, Detail::Smooth);
+            learner.fit_levels(encoder);
+        }
+        learner.pool_lit(encoder);
+        learner.estimate_plate(encoder, Detail::Smooth);
+        learner.fit_receivers(encoder, is_first);
+        learner.estimate_plate(encoder, Detail::Full);
+        learner.fit(encoder, Subject::Toy, 0, is_first);
+        learner.pool_residual(encoder);
+    }
+
+    /// Encodes what follows each new camera picture of a known view: its exposure and the lights' power.
+    pub(crate) fn encode_levels(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        knowledge: &Knowledge,
+        frame: &wgpu::TextureView,
+    ) {
+        let learner = Learner {
+            gpu,
+            capture: self,
+            passes,
+            knowledge,
+            frame,
         };
-        passes
-            .residual
-            .encode(gpu, encoder, &inputs, self.plan.grid.size, &self.cells);
-        passes.fill.encode(gpu, encoder, &self.grid, &self.cells);
+        learner.fit_levels(encoder);
     }
 
     /// Encodes the toy's own colours, which follow each new camera frame.
@@ -185,12 +232,12 @@ impl Capture {
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        passes: &Passes,
+        (passes, knowledge): (&Passes, &Knowledge),
         frame: &wgpu::TextureView,
     ) {
         let inputs = AppearanceInputs {
             globals: &self.globals,
-            solution: &self.solution,
+            solution: &knowledge.solution,
             frame,
             evidence: &self.evidence.view,
             object_depth: &self.object_depth.view,
@@ -268,10 +315,11 @@ impl Capture {
     }
 }
 
-/// The camera frame and the plate, of the image's size.
+/// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
     pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) plates: &'a wgpu::TextureView,
+    pub(crate) plate_views: PlateViews,
 }
 
 fn texture(gpu: &Gpu, label: &str, size_px: UVec2, (format, n_samples): (TextureFormat, u32)) -> Texture {

@@ -215,10 +215,10 @@ impl Core {
     /// # Errors
     /// When the device is lost.
     pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
-        let Some(capture) = self.stage.as_ref().and_then(Stage::work).and_then(Work::capture) else {
+        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
             return Ok(None);
         };
-        let bytes = self.gpu.read_buffer(&capture.solution)?;
+        let bytes = self.gpu.read_buffer(&model.knowledge.solution)?;
         let mut fit = Fit::zeroed();
         bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
         Ok(Some(fit))
@@ -232,7 +232,8 @@ impl Core {
         let Some(fit) = self.read_fit()? else {
             return Ok(Vec::new());
         };
-        let contrast = fit.contrast[..3].iter().copied().fold(0.0, f32::max);
+        let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
+        let contrast = contrasts.copied().fold(0.0, f32::max);
         Ok((contrast < FAINT_CONTRAST)
             .then_some(Warning::FaintShadow { contrast })
             .into_iter()
@@ -287,8 +288,8 @@ impl Core {
         self.stage
             .as_ref()
             .and_then(Stage::work)
-            .and_then(Work::capture)
-            .map(|capture| &capture.plan)
+            .and_then(Work::model)
+            .map(|model| &model.capture.plan)
     }
 
     /// The device, for reports.

@@ -50,8 +50,15 @@ pub struct FrameReport {
 pub enum Warning {
     /// No light is listed, and none is estimated: the camera frame passes through.
     NoLight,
-    /// No plate was taken from this frame's camera: the camera frame passes through.
+    /// There is no plate, and the preset cannot do without: the camera frame passes through.
     NoPlate,
+    /// There is no plate: the place without the toy is estimated from the frame.
+    PlateEstimated,
+    /// The plates show only a part of what is worked on; the rest is estimated from the frame.
+    PlatePartial {
+        /// Share that they show, from 0 to 1.
+        share: f64,
+    },
     /// More receivers than this version moves shadows on.
     ReceiversLeftOut {
         /// Those whose shadow stays as photographed.
@@ -83,8 +90,16 @@ impl fmt::Display for Warning {
         match self {
             Self::NoLight => f.write_str("no light is listed: the camera frame passes through"),
             Self::NoPlate => {
-                f.write_str("no plate was taken from this camera: the camera frame passes through")
+                f.write_str("there is no plate, which this preset needs: the camera frame passes through")
             }
+            Self::PlateEstimated => {
+                f.write_str("there is no plate: the place behind toy and shadow is estimated from the frame")
+            }
+            Self::PlatePartial { share } => write!(
+                f,
+                "the plates show {:.0} % of what is worked on: the rest is estimated from the frame",
+                100.0 * share
+            ),
             Self::ReceiversLeftOut { names } => {
                 write!(
                     f,

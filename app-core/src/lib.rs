@@ -11,20 +11,28 @@
 pub mod core;
 pub mod frame;
 pub mod gpu;
+pub mod grids;
 pub mod inject;
 pub mod light_points;
 pub mod light_tiles;
 pub mod maps;
+pub mod outline;
 pub mod plan;
 pub mod preset;
 pub mod region;
 pub mod scene;
 pub mod session;
 pub mod toy;
+pub mod view;
 
 mod capture;
+mod clip_reach;
+mod knowledge;
+mod learner;
 mod passes;
 mod pipeline;
+mod plate_store;
+mod plates;
 mod published;
 mod stage;
 mod standing;

@@ -3,17 +3,18 @@
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use wgpu::TextureFormat;
 
-use crate::capture::Capture;
 use crate::gpu::layout::{Fit, Globals};
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
 use crate::published::Published;
+use crate::work::Model;
 
 /// A map that the pipeline makes on its way to a picture, all of the work region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {
-    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy.
+    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy, b where it shows the
+    /// receiver well clear of the toy.
     Evidence,
     /// Base colour of the physical toy, linear; alpha is its coverage.
     ObjectBase,
@@ -29,7 +30,9 @@ pub enum Map {
     Visibility,
     /// Visibility of the ambient light with the shown toy, in r, at a fraction of the region's size.
     Ambient,
-    /// The filled grid of residuals in rgb, in plates; alpha is 1.
+    /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where it is unknown.
+    Plate,
+    /// The filled grid of residuals on the first receiver in rgb, in plates; alpha is 1.
     Residual,
     /// Share f of the plate's radiance that all lights give together, in rgb, at the ambient maps' size; 0 beside the
     /// receiver.
@@ -59,6 +62,7 @@ impl Map {
         Self::PhysicalAmbient,
         Self::Visibility,
         Self::Ambient,
+        Self::Plate,
         Self::Residual,
         Self::Share,
         Self::Masks,
@@ -81,18 +85,20 @@ pub struct FloatMap {
     pub texels: Vec<[f32; 4]>,
 }
 
-impl Capture {
+impl Model {
     /// Waits for the device and returns a map.
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        let capture = &self.capture;
         let map = match map {
-            Map::Evidence => read_texture(gpu, &self.evidence),
-            Map::ObjectBase => read_texture(gpu, &self.object_base),
-            Map::ObjectReceived => read_texture(gpu, &self.object_received),
-            Map::Appearance => read_texture(gpu, &self.appearance),
-            Map::PhysicalVisibility => read_texture(gpu, &self.physical.lights),
-            Map::PhysicalAmbient => read_texture(gpu, &self.physical.ambient),
-            Map::Visibility => read_texture(gpu, &self.shown.lights),
-            Map::Ambient => read_texture(gpu, &self.shown.ambient),
+            Map::Evidence => read_texture(gpu, &capture.evidence),
+            Map::ObjectBase => read_texture(gpu, &capture.object_base),
+            Map::ObjectReceived => read_texture(gpu, &capture.object_received),
+            Map::Appearance => read_texture(gpu, &capture.appearance),
+            Map::PhysicalVisibility => read_texture(gpu, &capture.physical.lights),
+            Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient),
+            Map::Visibility => read_texture(gpu, &capture.shown.lights),
+            Map::Ambient => read_texture(gpu, &capture.shown.ambient),
+            Map::Plate => read_texture(gpu, capture.plate()),
             Map::Residual => self.read_cells(gpu),
             Map::Share => self.read_share(gpu),
             Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
@@ -104,12 +110,14 @@ impl Capture {
 
     /// The lights' share, worked out here from what was fitted: no pass has it as a texture.
     fn read_share(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.solution)?);
-        let size = self.plan.ambient_px;
-        let scale = self.plan.region.size_px.as_vec2() / size.as_vec2();
+        let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.knowledge.solution)?);
+        let plan = &self.capture.plan;
+        let size = plan.ambient_px;
+        let scale = plan.region.size_px.as_vec2() / size.as_vec2();
         let texel = |y: u32, x: u32| {
             let region_px = (UVec2::new(x, y).as_vec2() + 0.5) * scale;
-            share_at(&self.known, &fit, region_px).extend(1.0).to_array()
+            let share = share_at(&self.capture.known, &fit, region_px);
+            share.extend(1.0).to_array()
         };
         let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (y, x)));
         let texels = texels.map(|(y, x)| texel(y, x)).collect();
@@ -121,8 +129,9 @@ impl Capture {
     }
 
     fn read_cells(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let [width, height] = self.plan.grid.size;
-        let mut texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);
+        let [width, height] = self.knowledge.layout.grids[0].size;
+        let cells = &self.knowledge.residual.cells;
+        let mut texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(cells)?);
         // The coarser levels of the pyramid follow the finest.
         texels.truncate((width * height) as usize);
         Ok(FloatMap {
@@ -134,20 +143,21 @@ impl Capture {
 }
 
 /// Sum over lights of share falloff / (1 - sum share + sum share falloff), with the falloff cos / d^2 against the
-/// reference point, as the shaders' model has it.
+/// reference point, as the shaders' model has it; 0 beside the receivers.
 fn share_at(known: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
-    let [x, y, z] = known.plane_from_region_px.map(Vec4::from_array);
-    let at = (x * region_px.x + y * region_px.y + z).truncate();
-    let in_plane = Vec2::new(at.x, at.y) / at.z;
-    if at.z <= 0.0 || in_plane.abs().cmpgt(Vec2::from_array(known.half_extent_m)).any() {
+    let Some((index, in_plane)) = receiver_point(known, region_px) else {
         return Vec3::ZERO;
-    }
+    };
+    let (receiver, fit) = (&known.receivers[index], &fit.receivers[index]);
     let (mut direct, mut total) = (Vec3::ZERO, Vec3::ONE);
-    for (light, share) in known.lights.iter().zip(&fit.share).take(known.n_lights as usize) {
+    let lights = receiver.lights.iter().zip(&fit.share);
+    for (light, share) in lights.take(known.n_lights as usize) {
         let light = Vec4::from_array(*light);
         let distance = |p: Vec2| light.truncate().distance(Vec3::new(p.x, 0.0, p.y));
-        let reference = Vec2::from_array(known.reference_in_plane);
-        let falloff = if light.w == 0.0 {
+        let reference = Vec2::from_array(receiver.reference_in_plane);
+        let falloff = if light.y <= 0.0 {
+            0.0
+        } else if light.w == 0.0 {
             1.0
         } else {
             (distance(reference) / distance(in_plane)).powi(3)
@@ -159,10 +169,29 @@ fn share_at(known: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     direct / total
 }
 
+/// The nearest receiver seen at a pixel, and the point of it.
+fn receiver_point(known: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
+    let receivers = known.receivers.iter().take(known.n_receivers as usize);
+    let hits = receivers.enumerate().filter_map(|(index, receiver)| {
+        let [x, y, z] = receiver.plane_from_region_px.map(Vec4::from_array);
+        let at = (x * region_px.x + y * region_px.y + z).truncate();
+        let in_plane = Vec2::new(at.x, at.y) / at.z;
+        let is_on = at.z > 0.0
+            && in_plane
+                .abs()
+                .cmple(Vec2::from_array(receiver.half_extent_m))
+                .all();
+        is_on.then_some((at.z, index, in_plane))
+    });
+    hits.max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, index, in_plane)| (index, in_plane))
+}
+
 impl Published {
     /// Waits for the device and returns a map, if the published method makes it.
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let texture = match map {
+            Map::Plate => &self.plate,
             Map::Masks => &self.masks,
             Map::Eligible => &self.eligible,
             Map::Warp => &self.warp,

@@ -1,17 +1,21 @@
 //! The passes of a plan, built once, and the frame path in order.
 
-use crate::capture::{AMBIENT_FORMAT, Capture, Pictures};
+use crate::capture::{AMBIENT_FORMAT, Capture};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Placement;
+use crate::knowledge::Knowledge;
 use crate::passes::appearance::Appearance;
 use crate::passes::composite::{Composite, CompositeInputs};
+use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
 use crate::passes::fit::Fit;
+use crate::passes::lit::Lit;
 use crate::passes::motion::Motion;
 use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
+use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
 use crate::passes::self_shadow::SelfShadow;
@@ -27,6 +31,21 @@ pub(crate) struct VisibilityPasses {
     pub(crate) visibility: Visibility,
 }
 
+/// What a missing plate is made by.
+pub(crate) struct EstimatePasses {
+    pub(crate) lit: Lit,
+    pub(crate) estimate: Estimate,
+}
+
+impl EstimatePasses {
+    fn new(gpu: &Gpu) -> Self {
+        Self {
+            lit: Lit::new(gpu),
+            estimate: Estimate::new(gpu),
+        }
+    }
+}
+
 /// Every pass that a plan runs.
 pub(crate) struct Passes {
     pub(crate) self_shadow: SelfShadow,
@@ -35,6 +54,8 @@ pub(crate) struct Passes {
     pub(crate) appearance: Appearance,
     pub(crate) lights: Vec<VisibilityPasses>,
     pub(crate) ambient: VisibilityPasses,
+    pub(crate) plate: Plate,
+    pub(crate) estimate: Option<EstimatePasses>,
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
@@ -61,6 +82,8 @@ impl Passes {
                 .map(|(channel, light)| passes(light.n_points, channel, plan.visibility_format))
                 .collect(),
             ambient: passes(plan.n_ambient_directions, 0, AMBIENT_FORMAT),
+            plate: Plate::new(gpu),
+            estimate: plan.is_plate_estimated.then(|| EstimatePasses::new(gpu)),
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
@@ -70,14 +93,21 @@ impl Passes {
         }
     }
 
+    /// Makes what a plan for another view needs besides.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, plan: &Plan) {
+        if plan.is_plate_estimated && self.estimate.is_none() {
+            self.estimate = Some(EstimatePasses::new(gpu));
+        }
+    }
+
     /// The frame path: visibility of the shown pose, then the picture of the region.
     pub(crate) fn encode_frame(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        capture: &Capture,
+        (capture, knowledge): (&Capture, &Knowledge),
         toy: &ToyMesh,
-        pictures: &Pictures<'_>,
+        frame: &wgpu::TextureView,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
         let shown = (toy, &toy.shown);
@@ -86,7 +116,7 @@ impl Passes {
             .encode(gpu, encoder, &capture.globals, toy, &capture.motion);
         let inputs = ToyInputs {
             globals: &capture.globals,
-            solution: &capture.solution,
+            solution: &knowledge.solution,
             appearance: &capture.appearance.view,
             appearance_lit: &capture.appearance_lit.view,
             object_depth: &capture.object_depth.view,
@@ -97,11 +127,11 @@ impl Passes {
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
             globals: &capture.globals,
-            solution: &capture.solution,
-            grid: &capture.grid,
-            cells: &capture.cells,
-            frame: pictures.frame,
-            plate: pictures.plate,
+            solution: &knowledge.solution,
+            grids: &knowledge.grids,
+            cells: &knowledge.residual.cells,
+            frame,
+            plate: &capture.plate().view,
             evidence: &capture.evidence.view,
             physical_visibility: &capture.physical.lights.view,
             physical_ambient: &capture.physical.ambient.view,

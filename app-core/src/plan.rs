@@ -6,18 +6,18 @@
 use glam::{DMat4, DVec3, UVec2};
 use wgpu::TextureFormat;
 
-use crate::gpu::layout::{Grid, MAX_LIGHTS};
+use crate::gpu::layout::MAX_LIGHTS;
 use crate::preset::{PublishedSettings, Settings};
 use crate::region::PixelRect;
 
-/// Most cells of the residual's grid along a side.
-const MAX_GRID_CELLS: u32 = 64;
 /// A penumbra narrower than this is drawn as a hard edge.
 const HARD_PENUMBRA_PX: f64 = 1.0;
 /// Light points of a hard edge: one for each multisample position, so that it stays antialiased.
 const N_HARD_POINTS: usize = 4;
 /// Steps of the reweighted least squares; each more moved no share by 1e-3 on the sessions they were chosen on.
 const N_FIT_STEPS: u32 = 5;
+/// Steps from a solution that is known: for a new view of a known place, or a new picture of a known view.
+const N_REFINE_STEPS: u32 = 2;
 /// Workgroups of one sum, enough to fill a phone's cores.
 const MAX_FIT_ROWS: u32 = 64;
 /// Pixels enough to tell the fit's few unknowns; more only cost time.
@@ -28,7 +28,7 @@ const FIT_WORKGROUP: u32 = 256;
 /// Which of the two paths a pass belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
-    /// When the place, the camera or the clip is new.
+    /// When the place or the view of it is new.
     Capture,
     /// For every picture.
     Frame,
@@ -52,6 +52,23 @@ pub struct SceneFacts {
     pub region: PixelRect,
     /// Width of each listed light's widest penumbra on the screen, in pixels.
     pub penumbra_px: Vec<f64>,
+    /// Receivers that shadows are moved on, one to four.
+    pub n_receivers: u32,
+    /// One plate shows all of the region.
+    pub is_plate_complete: bool,
+}
+
+/// How much of a frame is new; each takes in those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Change {
+    /// Only the pose that is shown.
+    Pose,
+    /// The camera's picture.
+    Picture,
+    /// The camera's place, or the part of the picture that is worked on.
+    View,
+    /// Nothing is known yet.
+    Place,
 }
 
 /// How one light's visibility is made.
@@ -113,14 +130,18 @@ pub struct Plan {
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
     pub ambient_px: UVec2,
+    /// Receivers that shadows are moved on.
+    pub n_receivers: u32,
+    /// Whether what no plate shows is estimated.
+    pub is_plate_estimated: bool,
     /// Draws of the shown toy, each by a part of a pixel beside the others.
     pub n_toy_draws: u32,
     /// The toy's shadow on itself.
     pub self_shadow: SelfShadowPlan,
-    /// Grid of the residual.
-    pub grid: Grid,
-    /// Steps of the fit.
+    /// Steps of a first fit.
     pub n_fit_steps: u32,
+    /// Steps of a fit that starts from a known solution.
+    pub n_refine_steps: u32,
     /// Every how many region pixels, along each side, the fit takes one.
     pub fit_stride_px: u32,
     /// Workgroups of one sum of the fit.
@@ -168,6 +189,18 @@ const PASSES: &[PlannedPass] = &[
     },
     PlannedPass {
         name: "visibility",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "plate",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "lit",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "estimate",
         path: Path::Capture,
     },
     PlannedPass {
@@ -223,6 +256,10 @@ const PASSES: &[PlannedPass] = &[
 /// The published method, in order.
 const PUBLISHED_PASSES: &[PlannedPass] = &[
     PlannedPass {
+        name: "plate",
+        path: Path::Capture,
+    },
+    PlannedPass {
         name: "masks",
         path: Path::Capture,
     },
@@ -263,6 +300,10 @@ const PUBLISHED_PASSES: &[PlannedPass] = &[
         path: Path::Frame,
     },
 ];
+/// Capture passes that a new picture of a known view runs.
+const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "appearance"];
+/// What a scene does without when one plate shows all of it.
+const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.
 const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
 
@@ -283,7 +324,6 @@ impl Plan {
                 },
             })
             .collect();
-        let cell_px = size_px.max_element().div_ceil(MAX_GRID_CELLS).max(1);
         let fit_stride_px = fit_stride_px(size_px);
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
@@ -293,23 +333,54 @@ impl Plan {
                 2 => TextureFormat::Rg16Float,
                 _ => TextureFormat::Rgba16Float,
             },
-            left_out: left_out(&lights),
+            left_out: left_out(facts, &lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
+            n_receivers: facts.n_receivers,
+            is_plate_estimated: !facts.is_plate_complete,
             n_toy_draws: settings.n_toy_draws,
             self_shadow: SelfShadowPlan::new(&lights, settings),
-            grid: Grid {
-                size: [size_px.x.div_ceil(cell_px), size_px.y.div_ceil(cell_px)],
-                cell_px,
-                _pad: 0,
-            },
             n_fit_steps: N_FIT_STEPS,
+            n_refine_steps: N_REFINE_STEPS,
             fit_stride_px,
             n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
-            passes: PASSES.to_vec(),
+            passes: PASSES
+                .iter()
+                .filter(|pass| !(facts.is_plate_complete && ESTIMATE_PASSES.contains(&pass.name)))
+                .copied()
+                .collect(),
             lights,
         }
     }
+}
+
+impl Plan {
+    /// The plan of another view of the same place: lights keep their points, so that nothing changes but what is seen.
+    #[must_use]
+    pub fn for_view(&self, facts: &SceneFacts, settings: &Settings) -> Self {
+        Self {
+            lights: self.lights.clone(),
+            self_shadow: self.self_shadow.clone(),
+            ..Self::new(facts, settings)
+        }
+    }
+}
+
+/// Which of the planned passes run when that much is new, all but `present`, and on which path.
+///
+/// A new picture of a known view needs the toy's colours and the light's levels anew: these count as the frame's.
+pub fn runs(passes: &[PlannedPass], change: Change) -> impl Iterator<Item = (Path, &'static str)> + '_ {
+    passes
+        .iter()
+        .filter(|pass| pass.name != "present")
+        .filter_map(move |pass| {
+            let is_pictures = change == Change::Picture && PICTURE_PASSES.contains(&pass.name);
+            if pass.path == Path::Frame || change >= Change::View {
+                Some((pass.path, pass.name))
+            } else {
+                is_pictures.then_some((Path::Frame, pass.name))
+            }
+        })
 }
 
 /// A plan of the published method.
@@ -355,8 +426,20 @@ fn fit_stride_px(size_px: UVec2) -> u32 {
         .unwrap_or(largest)
 }
 
-fn left_out(lights: &[LightPlan]) -> Vec<LeftOut> {
+fn left_out(facts: &SceneFacts, lights: &[LightPlan]) -> Vec<LeftOut> {
     let mut left_out = Vec::new();
+    if facts.is_plate_complete {
+        left_out.push(LeftOut {
+            what: "estimate of the plate",
+            why: "a plate was taken from this camera",
+        });
+    }
+    if facts.n_receivers < 2 {
+        left_out.push(LeftOut {
+            what: "further receivers",
+            why: "one is listed",
+        });
+    }
     if lights.len() < 2 {
         left_out.push(LeftOut {
             what: "overlap of shadows",

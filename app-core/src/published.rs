@@ -15,6 +15,7 @@ use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
 use crate::passes::masks::{MASKS_FORMAT, Masks};
 use crate::passes::pcss::{PCSS_FORMAT, Pcss};
+use crate::passes::plate::{PLATE_FORMAT, Plate};
 use crate::passes::retarget::{N_SAMPLES, Retarget, RetargetInputs, RetargetTargets};
 use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
@@ -27,6 +28,7 @@ use crate::scene::{Light, Surface};
 pub(crate) struct Published {
     pub(crate) plan: PublishedPlan,
     pub(crate) picture: Texture,
+    pub(crate) plate: Texture,
     pub(crate) masks: Texture,
     pub(crate) eligible: Texture,
     pub(crate) taps: Texture,
@@ -46,6 +48,7 @@ pub(crate) struct Published {
 }
 
 struct Passes {
+    plate: Plate,
     masks: Masks,
     eligible: Eligible,
     warp: Warp,
@@ -80,6 +83,7 @@ impl Published {
             globals: gpu.uniform("globals", globals),
             published: gpu.uniform("published", published),
             is_constant: published.is_constant == 1,
+            plate: target("plate", PLATE_FORMAT, 1),
             masks: target("masks", MASKS_FORMAT, 1),
             eligible: target("eligible", ELIGIBLE_FORMAT, 1),
             warp: target("warp", WARP_FORMAT, 1),
@@ -94,6 +98,7 @@ impl Published {
             samples_depth: target("retarget depth", TextureFormat::Depth32Float, N_SAMPLES),
             picture: target("retarget", PICTURE_FORMAT, 1),
             passes: Passes {
+                plate: Plate::new(gpu),
                 masks: Masks::new(gpu),
                 eligible: Eligible::new(gpu),
                 warp: Warp::new(gpu),
@@ -106,8 +111,21 @@ impl Published {
         }
     }
 
-    /// Encodes the masks of the physical pose.
-    pub(crate) fn encode_masks(&self, gpu: &Gpu, encoder: &mut Encoder, toy: &ToyMesh) {
+    /// Encodes the plate of this view, and the masks of the physical pose.
+    pub(crate) fn encode_view(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+    ) {
+        self.passes.plate.encode(
+            gpu,
+            encoder,
+            &self.globals,
+            (&pictures.plate_views, pictures.plates),
+            &self.plate.view,
+        );
         self.passes
             .masks
             .encode(gpu, encoder, &self.globals, toy, &self.masks.view);
@@ -168,7 +186,7 @@ impl Published {
                 warp: &self.warp.view,
                 eligible: &self.eligible.view,
                 frame: pictures.frame,
-                plate: pictures.plate,
+                plate: &self.plate.view,
             };
             self.passes
                 .search
@@ -185,7 +203,7 @@ impl Published {
             globals: &self.globals,
             published: &self.published,
             frame: pictures.frame,
-            plate: pictures.plate,
+            plate: &self.plate.view,
             masks: &self.masks.view,
             eligible: &self.eligible.view,
             visibility: &self.visibility.view,

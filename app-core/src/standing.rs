@@ -4,35 +4,56 @@ use glam::DMat4;
 
 use crate::frame::Warning;
 use crate::light_points::light_in_plane;
-use crate::scene::{Light, Scene};
+use crate::scene::{Light, Receiver, Scene};
 
-/// The first `most` lights above the first receiver, and what is left out.
-pub(crate) fn usable_lights(
-    scene: &Scene,
-    plane_from_world: &DMat4,
-    most: usize,
-) -> (Vec<Light>, Vec<Warning>) {
+/// Lights and receivers that a preset takes, of each the first ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Most {
+    pub(crate) lights: usize,
+    pub(crate) receivers: usize,
+}
+
+/// What is used of a scene.
+pub(crate) struct Usable {
+    pub(crate) lights: Vec<Light>,
+    pub(crate) receivers: Vec<Receiver>,
+    /// What is left out.
+    pub(crate) warnings: Vec<Warning>,
+}
+
+/// The first receivers, and the first lights that stand above one of them.
+pub(crate) fn usable(scene: &Scene, most: Most) -> Usable {
     let mut warnings = Vec::new();
+    let (used, left_out) = scene
+        .receivers
+        .split_at(most.receivers.min(scene.receivers.len()));
+    if !left_out.is_empty() {
+        warnings.push(Warning::ReceiversLeftOut {
+            names: left_out.iter().map(|receiver| receiver.name.clone()).collect(),
+        });
+    }
+    let planes_from_world: Vec<DMat4> = used
+        .iter()
+        .map(|receiver| receiver.world_from_plane.inverse())
+        .collect();
     let mut lights = Vec::new();
     for (index, light) in scene.lights.iter().enumerate() {
-        if light_in_plane(light, plane_from_world).y > 0.0 {
+        let is_above = |plane_from_world: &DMat4| light_in_plane(light, plane_from_world).y > 0.0;
+        if planes_from_world.iter().any(is_above) {
             lights.push(*light);
         } else {
             warnings.push(Warning::LightBelowReceiver { light: index });
         }
     }
-    if lights.len() > most {
+    if lights.len() > most.lights {
         warnings.push(Warning::LightsLeftOut {
-            n_lights: lights.len() - most,
+            n_lights: lights.len() - most.lights,
         });
-        lights.truncate(most);
+        lights.truncate(most.lights);
     }
-    if scene.receivers.len() > 1 {
-        let names = scene.receivers[1..]
-            .iter()
-            .map(|receiver| receiver.name.clone())
-            .collect();
-        warnings.push(Warning::ReceiversLeftOut { names });
+    Usable {
+        lights,
+        receivers: used.to_vec(),
+        warnings,
     }
-    (lights, warnings)
 }

@@ -2,42 +2,51 @@
 
 use crate::capture::{Capture, Pictures};
 use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::Globals;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
 use crate::inject::{Injected, InjectedVisibility, upload};
+use crate::knowledge::Knowledge;
 use crate::maps::{FloatMap, Map};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::pipeline::Passes;
-use crate::plan::{LeftOut, Path, PlannedPass};
+use crate::plan::{Change, LeftOut, Path, Plan, PlannedPass};
 use crate::published::Published;
 use crate::region::PixelRect;
 
 /// A scene's textures and passes, and what was learned.
 pub(crate) enum Work {
-    /// The additive model of the receiver.
-    Model(Box<(Capture, Passes)>),
+    /// The additive model of the receivers.
+    Model(Box<Model>),
     /// The published method.
     Published(Box<Published>),
+}
+
+/// The additive model at work.
+pub(crate) struct Model {
+    pub(crate) knowledge: Knowledge,
+    pub(crate) capture: Capture,
+    pub(crate) passes: Passes,
 }
 
 impl Work {
     pub(crate) fn region(&self) -> PixelRect {
         match self {
-            Self::Model(model) => model.0.plan.region,
+            Self::Model(model) => model.capture.plan.region,
             Self::Published(published) => published.plan.region,
         }
     }
 
     pub(crate) fn passes(&self) -> &[PlannedPass] {
         match self {
-            Self::Model(model) => &model.0.plan.passes,
+            Self::Model(model) => &model.capture.plan.passes,
             Self::Published(published) => &published.plan.passes,
         }
     }
 
     pub(crate) fn left_out(&self) -> &[LeftOut] {
         match self {
-            Self::Model(model) => &model.0.plan.left_out,
+            Self::Model(model) => &model.capture.plan.left_out,
             Self::Published(published) => &published.plan.left_out,
         }
     }
@@ -45,47 +54,34 @@ impl Work {
     /// The region's picture.
     pub(crate) fn picture(&self) -> &Texture {
         match self {
-            Self::Model(model) => &model.0.picture,
+            Self::Model(model) => &model.capture.picture,
             Self::Published(published) => &published.picture,
         }
     }
 
-    /// The model's capture, where the model is at work.
-    pub(crate) fn capture(&self) -> Option<&Capture> {
+    /// The model, where it is at work.
+    pub(crate) fn model(&self) -> Option<&Model> {
         match self {
-            Self::Model(model) => Some(&model.0),
+            Self::Model(model) => Some(model),
             Self::Published(_) => None,
         }
     }
 
-    /// Encodes the frame path, and before it what the news ask for.
+    /// Encodes the frame path, and before it what the change asks for.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        change: Change,
     ) {
         match self {
-            Self::Model(model) => {
-                let (capture, passes) = model.as_ref();
-                encoder.path = Path::Capture;
-                if news.is_place_new {
-                    capture.encode(gpu, encoder, passes, toy, pictures);
-                } else {
-                    encoder.path = Path::Frame;
-                }
-                if news.is_place_new || news.is_image_new {
-                    capture.encode_appearance(gpu, encoder, passes, pictures.frame);
-                }
-                encoder.path = Path::Frame;
-                passes.encode_frame(gpu, encoder, capture, toy, pictures);
-            }
+            Self::Model(model) => model.encode(gpu, encoder, toy, pictures, change),
             Self::Published(published) => {
                 encoder.path = Path::Capture;
-                if news.is_place_new {
-                    published.encode_masks(gpu, encoder, toy);
+                if change >= Change::View {
+                    published.encode_view(gpu, encoder, toy, pictures);
                 }
                 encoder.path = Path::Frame;
                 published.encode_frame(gpu, encoder, toy, pictures);
@@ -98,7 +94,7 @@ impl Work {
         let upload = |map: &Option<FloatMap>, like: &Texture| map.as_ref().map(|map| upload(gpu, map, like));
         match self {
             Self::Model(model) => {
-                let capture = &mut model.0;
+                let capture = &mut model.capture;
                 capture.physical.injected = upload(&maps.physical, &capture.physical.lights);
                 capture.shown.injected = upload(&maps.shown, &capture.shown.lights);
             }
@@ -114,35 +110,49 @@ impl Work {
     /// Waits for the device and returns a map, where this way to a picture makes it.
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         match self {
-            Self::Model(model) => model.0.read_map(gpu, map),
+            Self::Model(model) => model.read_map(gpu, map),
             Self::Published(published) => published.read_map(gpu, map),
         }
     }
 }
 
-/// What is new with a frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct News {
-    /// Place, camera or clip: the capture path runs.
-    pub(crate) is_place_new: bool,
-    /// The camera's picture.
-    pub(crate) is_image_new: bool,
-}
+impl Model {
+    fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        change: Change,
+    ) {
+        let (capture, passes, knowledge) = (&self.capture, &self.passes, &self.knowledge);
+        if change == Change::Place {
+            knowledge.forget(gpu, &mut encoder.raw);
+        }
+        if change >= Change::View {
+            encoder.path = Path::Capture;
+            capture.encode(gpu, encoder, passes, (toy, knowledge), (pictures, change));
+        } else {
+            encoder.path = Path::Frame;
+        }
+        if change == Change::Picture {
+            capture.encode_levels(gpu, encoder, passes, knowledge, pictures.frame);
+        }
+        if change >= Change::Picture {
+            capture.encode_appearance(gpu, encoder, (passes, knowledge), pictures.frame);
+        }
+        encoder.path = Path::Frame;
+        passes.encode_frame(gpu, encoder, (capture, knowledge), toy, pictures.frame);
+    }
 
-impl News {
-    /// Which of the planned passes run, all but `present`, and on which path.
-    ///
-    /// A new camera picture of a known place needs the toy's colours anew: then `appearance` is the frame's.
-    pub(crate) fn runs(self, passes: &[PlannedPass]) -> impl Iterator<Item = (Path, &'static str)> + '_ {
-        passes
-            .iter()
-            .filter(|pass| pass.name != "present")
-            .filter_map(move |pass| {
-                let is_frames = pass.path == Path::Frame || (pass.name == "appearance" && !self.is_place_new);
-                let is_run = pass.path == Path::Frame
-                    || self.is_place_new
-                    || (pass.name == "appearance" && self.is_image_new);
-                is_run.then_some((if is_frames { Path::Frame } else { Path::Capture }, pass.name))
-            })
+    /// Follows the camera to another view; textures stay if they are large enough.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
+        self.passes.prepare(gpu, &plan);
+        if plan.region.size_px == self.capture.plan.region.size_px {
+            self.capture.follow(gpu, plan, globals);
+        } else {
+            let light_points = self.capture.light_points.clone();
+            self.capture = Capture::new(gpu, plan, globals, light_points);
+        }
     }
 }

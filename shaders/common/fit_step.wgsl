@@ -2,6 +2,7 @@
 
 const SUBJECT_RECEIVER: u32 = 0u;
 const SUBJECT_TOY: u32 = 1u;
+const SUBJECT_LEVELS: u32 = 2u;
 
 struct FitStep {
   // 0 in the first step: there is no solution yet, all weights are 1.
@@ -11,6 +12,10 @@ struct FitStep {
   // Unknowns: two, and one a light.
   n_columns: u32,
   subject: u32,
+  // The receiver that is fitted, for SUBJECT_RECEIVER.
+  receiver: u32,
   // Every how many pixels, along each side, one is taken.
   stride_px: u32,
+  // 1 in the last step: its sums are kept for the frames to come.
+  is_last: u32,
 }

@@ -1,4 +1,4 @@
-// A point flattened from a light onto the receiver, and where the camera sees its shadow. Source: Blinn 1988.
+// A point flattened from a light onto a receiver, and where the camera sees its shadow. Source: Blinn 1988.
 
 // Depth in metres nearer than which a flattened point is cut off.
 const NEAR_M: f32 = 0.01;
@@ -10,7 +10,7 @@ fn flatten(light: vec4f, in_plane: vec3f) -> vec3f {
 }
 
 // Clip position of a flattened point: 0 <= z keeps what the camera has in front of it, z <= w what the light has below it.
-fn clip_from_flattened(shadow: vec3f) -> vec4f {
-  let at = globals.clip_from_receiver * shadow;
+fn clip_from_flattened(receiver: u32, shadow: vec3f) -> vec4f {
+  let at = globals.receivers[receiver].clip_from_plane * shadow;
   return vec4f(at.xy, at.z - NEAR_M * shadow.z, at.z);
 }

@@ -1,53 +1,87 @@
-// What every pass knows of the scene: the region of the camera image we work in, the receiver's plane, the lights.
+// What every pass knows of the scene: the region of the camera image we work in, the receivers, the lights.
 //
 // Spaces: `region_px`, pixels of the work region, origin top left, pixel centres at .5;
-// `plane`, metres in the receiver's own frame, whose normal is +Y; a point of the receiver is (x, z).
+// `stage`, metres, where the toy stands: the plane space of the first receiver;
+// `plane`, metres in a receiver's own frame, whose normal is +Y; a point of the receiver is (x, z).
 
 const MAX_LIGHTS: u32 = 4u;
+const MAX_RECEIVERS: u32 = 4u;
+
+struct ReceiverPlane {
+  plane_from_stage: mat4x4f,
+  // Homography: (x, z, w) of the plane's point seen at (u, v, 1); w is 1 / depth, negative behind the camera.
+  plane_from_region_px: mat3x3f,
+  // Homography: clip (x, y, w) of the plane's point (x, z, 1); w is the depth in metres.
+  clip_from_plane: mat3x3f,
+  // The scene's lights in this plane's space, homogeneous: (position, 1) or (unit direction to the light, 0).
+  lights: array<vec4f, MAX_LIGHTS>,
+  // Where the lights' shares are stated: nearest to the toy.
+  reference_in_plane: vec2f,
+  half_extent_m: vec2f,
+}
 
 struct Globals {
   // Clip space of the region; depth is reversed: 1 at the near plane, 0 at infinity.
   clip_from_stage: mat4x4f,
-  // Homography: (x, z, w) of the receiver point seen at (u, v, 1); w > 0 in front of the camera.
-  plane_from_region_px: mat3x3f,
-  // Homography: clip (x, y, w) of the receiver point (x, z, 1); w is the depth in metres.
-  clip_from_receiver: mat3x3f,
-  // Homogeneous: (position, 1) or (unit direction to the light, 0), in plane space.
+  receivers: array<ReceiverPlane, MAX_RECEIVERS>,
+  // As those of the receivers, in stage space.
   lights: array<vec4f, MAX_LIGHTS>,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,
   camera_in_stage: vec3f,
   n_lights: u32,
-  // Where the lights' shares are stated: the receiver under the toy.
-  reference_in_plane: vec2f,
-  half_extent_m: vec2f,
   region_size_px: vec2f,
   // Top left corner of the region in the camera image.
   region_origin_px: vec2f,
+  n_receivers: u32,
+  _pad_0: u32,
+  _pad_1: vec2u,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;
 
 struct ReceiverPoint {
+  // Which receiver it is a point of: MAX_RECEIVERS where the pixel sees none.
+  receiver: u32,
   in_plane: vec2f,
-  // False where the pixel does not see the receiver.
-  is_hit: bool,
 }
 
+// The nearest receiver seen at a pixel.
 fn receiver_point(region_px: vec2f) -> ReceiverPoint {
-  let p = globals.plane_from_region_px * vec3f(region_px, 1.0);
-  if p.z <= 0.0 { return ReceiverPoint(vec2f(0.0), false); }
-  let in_plane = p.xy / p.z;
-  return ReceiverPoint(in_plane, all(abs(in_plane) <= globals.half_extent_m));
+  var nearest = ReceiverPoint(MAX_RECEIVERS, vec2f(0.0));
+  var inverse_depth = 0.0;
+  for (var k = 0u; k < globals.n_receivers; k++) {
+    let p = globals.receivers[k].plane_from_region_px * vec3f(region_px, 1.0);
+    if p.z <= inverse_depth { continue; }
+    let in_plane = p.xy / p.z;
+    if all(abs(in_plane) <= globals.receivers[k].half_extent_m) {
+      nearest = ReceiverPoint(k, in_plane);
+      inverse_depth = p.z;
+    }
+  }
+  return nearest;
 }
 
-// Irradiance of light `i` at a receiver point as a multiple of that at the reference point: cos / d^2, where the
-// cosine is height over distance.
-fn falloff(i: u32, in_plane: vec2f) -> f32 {
-  let light = globals.lights[i];
+fn is_hit(point: ReceiverPoint) -> bool {
+  return point.receiver < MAX_RECEIVERS;
+}
+
+// Irradiance of light `i` at a receiver point as a multiple of that at the receiver's reference point: cos / d^2, where
+// the cosine is height over distance. None where the light is behind the receiver.
+fn falloff(i: u32, point: ReceiverPoint) -> f32 {
+  let light = globals.receivers[point.receiver].lights[i];
+  if light.y <= 0.0 { return 0.0; }
   if light.w == 0.0 { return 1.0; }
-  let to_here = distance(light.xyz, vec3f(in_plane.x, 0.0, in_plane.y));
-  let to_reference = distance(light.xyz, vec3f(globals.reference_in_plane.x, 0.0, globals.reference_in_plane.y));
+  let reference = globals.receivers[point.receiver].reference_in_plane;
+  let to_here = distance(light.xyz, vec3f(point.in_plane.x, 0.0, point.in_plane.y));
+  let to_reference = distance(light.xyz, vec3f(reference.x, 0.0, reference.y));
   let ratio = to_reference / to_here;
   return ratio * ratio * ratio;
+}
+
+// Where a receiver's point is seen; outside the region where it is behind the camera.
+fn region_px_of(point: ReceiverPoint) -> vec2f {
+  let at = globals.receivers[point.receiver].clip_from_plane * vec3f(point.in_plane, 1.0);
+  if at.z <= 0.0 { return vec2f(-1.0); }
+  return (at.xy / at.z * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
 }

@@ -1,6 +1,6 @@
-// The model of the receiver: what a frame is, as a fraction of the plate.
+// The model of a receiver: what a frame is, as a fraction of the plate times the gain.
 //
-//   M = gain (A (1 - sum f) + bounce (1 - A) + sum f V)
+//   M = A (1 - sum f) + bounce (1 - A) + sum f level V
 //   f = share falloff / (1 - sum share + sum share falloff)
 //
 // V is the visibility of a light, A the ambient visibility, f a light's share of the plate's radiance there.
@@ -9,23 +9,31 @@
 
 // Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
 // Positive, since the shares sum to less than 1.
-fn plate_falloff(in_plane: vec2f) -> vec3f {
+fn plate_falloff(point: ReceiverPoint) -> vec3f {
   var total = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
-    total += fit.share[i].rgb * (falloff(i, in_plane) - 1.0);
+    total += fit.receivers[point.receiver].share[i].rgb * (falloff(i, point) - 1.0);
   }
   return total;
 }
 
+// What the ambient light and what the toy throws back leave of the plate.
+fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {
+  var ambient_share = vec3f(1.0);
+  for (var i = 0u; i < globals.n_lights; i++) { ambient_share -= fit.receivers[point.receiver].share[i].rgb; }
+  return ambient * ambient_share / plate_falloff(point) + fit.receivers[point.receiver].bounce.rgb * (1.0 - ambient);
+}
+
+// Light `i`'s share of the plate's radiance at a point.
+fn light_share(i: u32, point: ReceiverPoint) -> vec3f {
+  return fit.receivers[point.receiver].share[i].rgb * falloff(i, point) / plate_falloff(point);
+}
+
 // `visibility` holds up to four lights, light 0 in x.
-fn receiver_model(in_plane: vec2f, ambient: f32, visibility: vec4f) -> vec3f {
-  var direct = vec3f(0.0);
-  var shares = vec3f(0.0);
+fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
+  var kept = ambient_model(point, ambient);
   for (var i = 0u; i < globals.n_lights; i++) {
-    let share = fit.share[i].rgb;
-    shares += share;
-    direct += share * (falloff(i, in_plane) * visibility[i]);
+    kept += light_share(i, point) * fit.level[i].rgb * visibility[i];
   }
-  let kept = (direct + ambient * (1.0 - shares)) / plate_falloff(in_plane);
-  return fit.gain.rgb * (kept + fit.bounce.rgb * (1.0 - ambient));
+  return kept;
 }

@@ -196,8 +196,8 @@ impl FitEntry {
         let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
         Self {
             gain: rgb(fit.gain),
-            bounce: rgb(fit.bounce),
-            share: fit
+            bounce: rgb(fit.receivers[0].bounce),
+            share: fit.receivers[0]
                 .share
                 .iter()
                 .take(n_lights.min(MAX_LIGHTS))

@@ -4,6 +4,12 @@ use bytemuck::{Pod, Zeroable};
 
 /// Most lights that a scene may list.
 pub const MAX_LIGHTS: usize = 4;
+/// Most receivers that shadows are moved on.
+pub const MAX_RECEIVERS: usize = 4;
+/// Most plates that a view's plate is made of.
+pub const MAX_PLATES: usize = 4;
+/// Most cells of a receiver's coarse grid, at its finest level.
+pub const MAX_CELLS: usize = 64 * 64;
 /// Most unknowns of a fit: two, and one a light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 /// Most light points of one occlusion pass: 16 a colour target, four targets.
@@ -20,22 +26,45 @@ pub const PRIOR_SHARE: f32 = 0.5;
 /// A 3 x 3 matrix in uniform layout: columns on 16 bytes.
 pub type Mat3Columns = [[f32; 4]; 3];
 
+/// `ReceiverPlane` in `common/globals.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct ReceiverPlane {
+    pub plane_from_stage: [[f32; 4]; 4],
+    pub plane_from_region_px: Mat3Columns,
+    pub clip_from_plane: Mat3Columns,
+    pub lights: [[f32; 4]; MAX_LIGHTS],
+    pub reference_in_plane: [f32; 2],
+    pub half_extent_m: [f32; 2],
+}
+
 /// `Globals` in `common/globals.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Globals {
     pub clip_from_stage: [[f32; 4]; 4],
-    pub plane_from_region_px: Mat3Columns,
-    pub clip_from_receiver: Mat3Columns,
+    pub receivers: [ReceiverPlane; MAX_RECEIVERS],
     pub lights: [[f32; 4]; MAX_LIGHTS],
     pub border_px: [f32; 4],
     pub camera_in_stage: [f32; 3],
     pub n_lights: u32,
-    pub reference_in_plane: [f32; 2],
-    pub half_extent_m: [f32; 2],
     pub region_size_px: [f32; 2],
     pub region_origin_px: [f32; 2],
+    pub n_receivers: u32,
+    pub _pad_0: u32,
+    pub _pad_1: [u32; 2],
+}
+
+/// `ReceiverFit` in `common/fit.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct ReceiverFit {
+    pub bounce: [f32; 4],
+    pub share: [[f32; 4]; MAX_LIGHTS],
+    pub contrast: [f32; 4],
 }
 
 /// `Fit` in `common/fit.wgsl`.
@@ -44,10 +73,9 @@ pub struct Globals {
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Fit {
     pub gain: [f32; 4],
-    pub bounce: [f32; 4],
-    pub share: [[f32; 4]; MAX_LIGHTS],
+    pub level: [[f32; 4]; MAX_LIGHTS],
+    pub receivers: [ReceiverFit; MAX_RECEIVERS],
     pub toy: [[f32; 4]; N_COLUMNS],
-    pub contrast: [f32; 4],
 }
 
 /// `FitStep` in `common/fit_step.wgsl`.
@@ -59,17 +87,29 @@ pub struct FitStep {
     pub n_rows: u32,
     pub n_columns: u32,
     pub subject: u32,
+    pub receiver: u32,
     pub stride_px: u32,
+    pub is_last: u32,
 }
 
 /// `Grid` in `common/grid.wgsl`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Grid {
+    pub origin_in_plane: [f32; 2],
+    pub cell_m: f32,
+    pub first_cell: u32,
     pub size: [u32; 2],
-    pub cell_px: u32,
-    pub _pad: u32,
+    pub _pad: [u32; 2],
+}
+
+/// `Grids` in `common/grid.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct Grids {
+    pub grids: [Grid; MAX_RECEIVERS],
 }
 
 /// `LightPoints` in `occlusion.wgsl`.
@@ -77,7 +117,32 @@ pub struct Grid {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct LightPoints {
-    pub points: [[f32; 4]; MAX_LIGHT_POINTS],
+    pub points: [[f32; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+    pub texel_px: [f32; 2],
+    pub n_points: u32,
+    pub _pad: u32,
+}
+
+/// `PlateView` in `plate.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct PlateView {
+    pub plate_px_from_plane: [Mat3Columns; MAX_RECEIVERS],
+    pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
+    pub gain: [f32; 4],
+}
+
+/// `PlateViews` in `plate.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct PlateViews {
+    pub plates: [PlateView; MAX_PLATES],
+    pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
+    pub n_plates: u32,
+    pub is_same_view: u32,
+    pub _pad: [u32; 2],
 }
 
 /// `SelfShadow` in `common/self_shadow.wgsl`.
@@ -128,7 +193,7 @@ pub struct Published {
     pub n_filter_taps: u32,
 }
 
-/// What is fitted: `SUBJECT_RECEIVER` and `SUBJECT_TOY` in `common/fit_step.wgsl`.
+/// What is fitted: `SUBJECT_RECEIVER`, `SUBJECT_TOY` and `SUBJECT_LEVELS` in `common/fit_step.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Subject {
@@ -136,4 +201,6 @@ pub enum Subject {
     Receiver = 0,
     /// The toy: ambient light, its gradient and each light's strength.
     Toy = 1,
+    /// The frame's exposure and each light's power.
+    Levels = 2,
 }

@@ -25,6 +25,7 @@ macro_rules! wgsl {
 }
 
 const GLOBALS: &str = wgsl!("common/globals");
+const CELLS: &str = wgsl!("common/cells");
 const DEPTH: &str = wgsl!("common/depth");
 const FIT: &str = wgsl!("common/fit");
 const FIT_STEP: &str = wgsl!("common/fit_step");
@@ -85,6 +86,21 @@ pub(crate) const RESIDUAL: Shader = Shader {
     parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, wgsl!("residual")],
     entry_points: &["cs_pool"],
 };
+pub(crate) const PLATE: Shader = Shader {
+    name: "plate",
+    parts: &[GLOBALS, FULLSCREEN, wgsl!("plate")],
+    entry_points: &["vs_fullscreen", "fs_choose"],
+};
+pub(crate) const LIT: Shader = Shader {
+    name: "lit",
+    parts: &[GLOBALS, FIT, MODEL, GRID, wgsl!("lit")],
+    entry_points: &["cs_pool"],
+};
+pub(crate) const ESTIMATE: Shader = Shader {
+    name: "estimate",
+    parts: &[GLOBALS, FIT, MODEL, GRID, CELLS, FULLSCREEN, wgsl!("estimate")],
+    entry_points: &["vs_fullscreen", "fs_complete"],
+};
 pub(crate) const FILL: Shader = Shader {
     name: "fill",
     parts: &[GRID, wgsl!("fill")],
@@ -112,7 +128,16 @@ pub(crate) const TOY: Shader = Shader {
 };
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
-    parts: &[GLOBALS, FIT, MODEL, GRID, FULLSCREEN, wgsl!("composite")],
+    parts: &[
+        GLOBALS,
+        FIT,
+        MODEL,
+        PIXEL,
+        GRID,
+        CELLS,
+        FULLSCREEN,
+        wgsl!("composite"),
+    ],
     entry_points: &["vs_fullscreen", "fs_compose"],
 };
 pub(crate) const PRESENT: Shader = Shader {
@@ -165,6 +190,9 @@ pub const ALL: &[Shader] = &[
     APPEARANCE,
     OCCLUSION,
     VISIBILITY,
+    PLATE,
+    LIT,
+    ESTIMATE,
     FIT_SUMS,
     FIT_SOLVE,
     RESIDUAL,

@@ -29,32 +29,65 @@ impl Texture {
                 | wgpu::TextureUsages::COPY_SRC
                 | wgpu::TextureUsages::COPY_DST
         };
-        Self::create(gpu, label, shape, usage)
+        let raw = Self::create(gpu, label, (shape, 1), usage);
+        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { raw, view }
     }
 
     /// A picture to read from, sRGB-encoded.
     pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: [u32; 2]) -> Self {
+        Self::layers(gpu, label, size_px, 1, wgpu::TextureViewDimension::D2)
+    }
+
+    /// An array of pictures to read from, sRGB-encoded.
+    pub(crate) fn pictures(gpu: &Gpu, label: &str, size_px: [u32; 2], n_pictures: u32) -> Self {
+        Self::layers(
+            gpu,
+            label,
+            size_px,
+            n_pictures,
+            wgpu::TextureViewDimension::D2Array,
+        )
+    }
+
+    fn layers(
+        gpu: &Gpu,
+        label: &str,
+        size_px: [u32; 2],
+        n_layers: u32,
+        dimension: wgpu::TextureViewDimension,
+    ) -> Self {
         let shape = TextureShape {
             size_px,
             format: wgpu::TextureFormat::Rgba8UnormSrgb,
             n_samples: 1,
         };
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        Self::create(gpu, label, shape, usage)
+        let raw = Self::create(gpu, label, (shape, n_layers), usage);
+        let view = raw.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            ..Default::default()
+        });
+        Self { raw, view }
     }
 
-    fn create(gpu: &Gpu, label: &str, shape: TextureShape, usage: wgpu::TextureUsages) -> Self {
+    fn create(
+        gpu: &Gpu,
+        label: &str,
+        (shape, n_layers): (TextureShape, u32),
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
         // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
         let view_formats: &[_] = match (shape.format, shape.n_samples) {
             (wgpu::TextureFormat::Rgba8UnormSrgb, 1) => &[wgpu::TextureFormat::Rgba8Unorm],
             _ => &[],
         };
-        let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d {
                 width: shape.size_px[0],
                 height: shape.size_px[1],
-                depth_or_array_layers: 1,
+                depth_or_array_layers: n_layers,
             },
             mip_level_count: 1,
             sample_count: shape.n_samples,
@@ -62,9 +95,7 @@ impl Texture {
             format: shape.format,
             usage,
             view_formats,
-        });
-        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { raw, view }
+        })
     }
 
     /// Encodes a copy of all of `from`, of the same size and format.
@@ -90,15 +121,25 @@ impl Texture {
 
     /// Fills the whole texture with rows of texels, nothing between them.
     pub(crate) fn write(&self, gpu: &Gpu, texels: &[u8]) {
+        self.write_layer(gpu, 0, texels);
+    }
+
+    /// Fills one picture of an array.
+    pub(crate) fn write_layer(&self, gpu: &Gpu, layer: u32, texels: &[u8]) {
+        let mut destination = self.raw.as_image_copy();
+        destination.origin.z = layer;
         gpu.queue.write_texture(
-            self.raw.as_image_copy(),
+            destination,
             texels,
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: self.bytes_per_texel().map(|bytes| bytes * self.raw.width()),
                 rows_per_image: None,
             },
-            self.raw.size(),
+            wgpu::Extent3d {
+                depth_or_array_layers: 1,
+                ..self.raw.size()
+            },
         );
     }
 }

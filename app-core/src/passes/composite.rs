@@ -20,7 +20,7 @@ pub(crate) struct Composite {
 pub(crate) struct CompositeInputs<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) solution: &'a wgpu::Buffer,
-    pub(crate) grid: &'a wgpu::Buffer,
+    pub(crate) grids: &'a wgpu::Buffer,
     pub(crate) cells: &'a wgpu::Buffer,
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) plate: &'a wgpu::TextureView,
@@ -62,7 +62,7 @@ impl Composite {
         let own = gpu.bind(
             &layout(GROUP_PASS),
             &[
-                (0, inputs.grid.as_entire_binding()),
+                (0, inputs.grids.as_entire_binding()),
                 (1, inputs.cells.as_entire_binding()),
                 (2, view(inputs.frame)),
                 (3, view(inputs.plate)),

@@ -21,22 +21,33 @@ impl Fill {
         }
     }
 
-    /// Fills the finest level of `cells` in place.
-    pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, grid: &wgpu::Buffer, cells: &wgpu::Buffer) {
+    /// Fills the finest levels of `cells` in place, on `n_receivers` grids.
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        (grids, cells): (&wgpu::Buffer, &wgpu::Buffer),
+        n_receivers: u32,
+    ) {
         let own = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_PASS),
-            &[(0, grid.as_entire_binding()), (1, cells.as_entire_binding())],
+            &[(0, grids.as_entire_binding()), (1, cells.as_entire_binding())],
         );
-        encoder.compute(FILL.name, &self.pipeline, &[(GROUP_PASS, &own)], [1, 1, 1]);
+        encoder.compute(
+            FILL.name,
+            &self.pipeline,
+            &[(GROUP_PASS, &own)],
+            [n_receivers, 1, 1],
+        );
     }
 }
 
 /// Cells of all levels over a grid of `size`.
-pub(crate) fn n_pyramid_cells(size: [u32; 2]) -> u64 {
+pub(crate) fn n_pyramid_cells(size: [u32; 2]) -> u32 {
     let mut level = size;
     (0..N_LEVELS)
         .map(|_| {
-            let n_cells = u64::from(level[0]) * u64::from(level[1]);
+            let n_cells = level[0] * level[1];
             level = level.map(|cells| cells.div_ceil(2));
             n_cells
         })

@@ -3,7 +3,8 @@
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{
-    Fit as FitLayout, FitStep, MAX_LIGHTS, N_COLUMNS, PRIOR_BOUNCE, PRIOR_SHARE, Subject,
+    Fit as FitLayout, FitStep, MAX_LIGHTS, MAX_RECEIVERS, N_COLUMNS, PRIOR_BOUNCE, PRIOR_SHARE, ReceiverFit,
+    Subject,
 };
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{FIT_SOLVE, FIT_SUMS};
@@ -43,26 +44,30 @@ impl Fit {
     pub(crate) fn start(n_lights: usize) -> FitLayout {
         #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
         let share = PRIOR_SHARE / n_lights.max(1) as f32;
-        let mut fit = FitLayout {
-            gain: [1.0; 4],
+        let mut receiver = ReceiverFit {
             bounce: [PRIOR_BOUNCE; 4],
             share: [[0.0; 4]; MAX_LIGHTS],
-            toy: [[0.0; 4]; N_COLUMNS],
             contrast: [0.0; 4],
         };
-        fit.share[..n_lights.min(MAX_LIGHTS)].fill([share; 4]);
+        receiver.share[..n_lights.min(MAX_LIGHTS)].fill([share; 4]);
+        let mut fit = FitLayout {
+            gain: [1.0; 4],
+            level: [[1.0; 4]; MAX_LIGHTS],
+            receivers: [receiver; MAX_RECEIVERS],
+            toy: [[0.0; 4]; N_COLUMNS],
+        };
         fit.toy[0] = [0.5; 4];
         fit
     }
 
-    /// Runs all steps for `subject`, leaving the solution in `solution`.
+    /// Runs `task`, leaving what it finds in the solution.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         shared: &FitShared<'_>,
         inputs: &FitInputs<'_>,
-        subject: Subject,
+        task: FitTask,
     ) {
         let plan = shared.plan;
         let rows = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -71,15 +76,15 @@ impl Fit {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let group_0 = gpu.bind(
+        let globals = (0, shared.globals.as_entire_binding());
+        let solution = (1, shared.solution.as_entire_binding());
+        let to_sum = gpu.bind(
             &self.sums.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, shared.globals.as_entire_binding()),
-                (1, shared.solution.as_entire_binding()),
-            ],
+            &[globals.clone(), solution],
         );
-        for step in 0..plan.n_fit_steps {
-            let uniform = gpu.uniform("fit step", &fit_step(plan, subject, step));
+        let to_solve = gpu.bind(&self.solve.get_bind_group_layout(GROUP_GLOBALS), &[globals]);
+        for step in 0..task.n_steps {
+            let uniform = gpu.uniform("fit step", &fit_step(plan, &task, step));
             let sums = self.bind_sums(gpu, &uniform, &rows, inputs);
             let solve = gpu.bind(
                 &self.solve.get_bind_group_layout(GROUP_PASS),
@@ -87,15 +92,21 @@ impl Fit {
                     (0, uniform.as_entire_binding()),
                     (1, rows.as_entire_binding()),
                     (2, shared.solution.as_entire_binding()),
+                    (3, shared.kept.as_entire_binding()),
                 ],
             );
             encoder.compute(
                 FIT_SUMS.name,
                 &self.sums,
-                &[(GROUP_GLOBALS, &group_0), (GROUP_PASS, &sums)],
+                &[(GROUP_GLOBALS, &to_sum), (GROUP_PASS, &sums)],
                 [plan.n_fit_rows, 1, 3],
             );
-            encoder.compute(FIT_SOLVE.name, &self.solve, &[(GROUP_PASS, &solve)], [1, 1, 1]);
+            encoder.compute(
+                FIT_SOLVE.name,
+                &self.solve,
+                &[(GROUP_GLOBALS, &to_solve), (GROUP_PASS, &solve)],
+                [1, 1, 1],
+            );
         }
     }
 
@@ -125,21 +136,41 @@ impl Fit {
     }
 }
 
-/// What the fits of receiver and toy share.
+/// What all fits share.
 pub(crate) struct FitShared<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) solution: &'a wgpu::Buffer,
+    /// Sums of frames before: see [`kept_bytes`].
+    pub(crate) kept: &'a wgpu::Buffer,
 }
 
-fn fit_step(plan: &Plan, subject: Subject, step: u32) -> FitStep {
+/// One least-squares problem.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FitTask {
+    pub(crate) subject: Subject,
+    /// The receiver that is fitted, for [`Subject::Receiver`].
+    pub(crate) receiver: u32,
+    pub(crate) n_steps: u32,
+    /// The solution so far is good enough to tell outliers from.
+    pub(crate) is_refinement: bool,
+}
+
+/// Size of the sums that are kept: for each receiver and the toy.
+pub(crate) const fn kept_bytes() -> u64 {
+    4 * N_SUMS * N_CHANNELS * (MAX_RECEIVERS as u64 + 1)
+}
+
+fn fit_step(plan: &Plan, task: &FitTask, step: u32) -> FitStep {
     #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
     let n_columns = 2 + plan.lights.len() as u32;
     FitStep {
-        is_reweighted: u32::from(step > 0),
+        is_reweighted: u32::from(step > 0 || task.is_refinement),
         n_rows: plan.n_fit_rows,
         n_columns,
-        subject: subject as u32,
+        subject: task.subject as u32,
+        receiver: task.receiver,
         stride_px: plan.fit_stride_px,
+        is_last: u32::from(step + 1 == task.n_steps),
     }
 }

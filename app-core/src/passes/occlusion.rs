@@ -1,11 +1,11 @@
-//! `occlusion`: shadows of the posed toy on the receiver from many light points, in one pass.
+//! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
 
 use glam::{UVec2, Vec4};
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, BlendState, StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::{Encoder, resolved};
-use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS};
+use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS, MAX_RECEIVERS};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages};
 use crate::gpu::shaders::OCCLUSION;
 use crate::gpu::texture::{Texture, TextureShape};
@@ -27,10 +27,13 @@ pub(crate) struct Occlusion {
 pub(crate) struct OcclusionTargets {
     samples: Vec<Texture>,
     pub(crate) hidden: Vec<Texture>,
+    /// Size of a texel in the region.
+    texel_px: [f32; 2],
 }
 
 impl OcclusionTargets {
-    pub(crate) fn new(gpu: &Gpu, size_px: UVec2, n_points: usize) -> Self {
+    /// For maps of `size_px` texels over a region of `region_px` pixels.
+    pub(crate) fn new(gpu: &Gpu, size_px: UVec2, region_px: UVec2, n_points: usize) -> Self {
         let n_targets = n_points.div_ceil(POINTS_PER_TARGET);
         let shape = |n_samples| TextureShape {
             size_px: size_px.to_array(),
@@ -45,6 +48,7 @@ impl OcclusionTargets {
         Self {
             samples: textures("occlusion samples", N_SAMPLES),
             hidden: textures("occlusion", 1),
+            texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
         }
     }
 }
@@ -83,7 +87,7 @@ impl Occlusion {
         Self { pipeline, n_points }
     }
 
-    /// Draws the toy at `positions` from `points`, of which there are as many as the pass was made for.
+    /// Draws the caster from its points, of which there are as many as the pass was made for on each receiver.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
@@ -94,7 +98,10 @@ impl Occlusion {
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
-        let points = gpu.uniform("light points", &light_points_uniform(caster.points));
+        let points = gpu.uniform(
+            "light points",
+            &self.light_points_uniform(caster.points, targets.texel_px),
+        );
         let own = gpu.bind(&layout(GROUP_PASS), &[(0, points.as_entire_binding())]);
         let colors: Vec<_> = targets
             .samples
@@ -106,10 +113,23 @@ impl Occlusion {
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
         render.set_bind_group(GROUP_PASS, &own, &[]);
-        let n_instances = u32::try_from(self.n_points).unwrap_or(0);
+        let n_instances = u32::try_from(caster.points.len()).unwrap_or(0);
         caster
             .toy
             .draw_positions(&mut render, caster.positions, n_instances);
+    }
+
+    fn light_points_uniform(&self, points: &[Vec4], texel_px: [f32; 2]) -> LightPoints {
+        let mut uniform = LightPoints {
+            points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+            texel_px,
+            n_points: u32::try_from(self.n_points).unwrap_or(1),
+            _pad: 0,
+        };
+        for (slot, point) in uniform.points.iter_mut().zip(points) {
+            *slot = point.to_array();
+        }
+        uniform
     }
 }
 
@@ -117,15 +137,6 @@ impl Occlusion {
 pub(crate) struct Caster<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) positions: &'a wgpu::Buffer,
+    /// Those in the space of the first receiver, then those of the next.
     pub(crate) points: &'a [Vec4],
-}
-
-fn light_points_uniform(points: &[Vec4]) -> LightPoints {
-    let mut uniform = LightPoints {
-        points: [[0.0; 4]; MAX_LIGHT_POINTS],
-    };
-    for (slot, point) in uniform.points.iter_mut().zip(points) {
-        *slot = point.to_array();
-    }
-    uniform
 }

@@ -4,9 +4,8 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::RESIDUAL;
-
-/// Invocations of a workgroup along each side.
-const WORKGROUP: u32 = 8;
+use crate::grids::CellBuffers;
+use crate::passes::lit::cell_workgroups;
 
 pub(crate) struct Residual {
     pipeline: wgpu::ComputePipeline,
@@ -16,7 +15,8 @@ pub(crate) struct Residual {
 pub(crate) struct ResidualInputs<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) solution: &'a wgpu::Buffer,
-    pub(crate) grid: &'a wgpu::Buffer,
+    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) cells: &'a CellBuffers,
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) plate: &'a wgpu::TextureView,
     pub(crate) evidence: &'a wgpu::TextureView,
@@ -32,14 +32,13 @@ impl Residual {
         }
     }
 
-    /// Fills the finest level of `cells`, of `size` cells.
+    /// Pools the residual on `n_receivers` grids.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         inputs: &ResidualInputs<'_>,
-        size: [u32; 2],
-        cells: &wgpu::Buffer,
+        n_receivers: u32,
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(
@@ -52,22 +51,22 @@ impl Residual {
         let own = gpu.bind(
             &layout(GROUP_PASS),
             &[
-                (0, inputs.grid.as_entire_binding()),
-                (1, cells.as_entire_binding()),
-                (2, view(inputs.frame)),
-                (3, view(inputs.plate)),
-                (4, view(inputs.evidence)),
-                (5, view(inputs.visibility)),
-                (6, view(inputs.ambient)),
-                (7, wgpu::BindingResource::Sampler(&self.linear)),
+                (0, inputs.grids.as_entire_binding()),
+                (1, inputs.cells.cells.as_entire_binding()),
+                (2, inputs.cells.kept.as_entire_binding()),
+                (3, view(inputs.frame)),
+                (4, view(inputs.plate)),
+                (5, view(inputs.evidence)),
+                (6, view(inputs.visibility)),
+                (7, view(inputs.ambient)),
+                (8, wgpu::BindingResource::Sampler(&self.linear)),
             ],
         );
-        let workgroups = [size[0].div_ceil(WORKGROUP), size[1].div_ceil(WORKGROUP), 1];
         encoder.compute(
             RESIDUAL.name,
             &self.pipeline,
             &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
-            workgroups,
+            cell_workgroups(n_receivers),
         );
     }
 }

@@ -4,15 +4,17 @@ use std::thread;
 
 use app_core::core::Core;
 use app_core::frame::FrameInput;
+use app_core::gpu::layout::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::inject::InjectedVisibility;
 use app_core::light_points::light_in_plane;
 use app_core::maps::FloatMap;
-use app_core::preset::Preset;
-use app_core::region::{PixelRect, Place, View};
+use app_core::preset::{Method, Preset};
+use app_core::region::PixelRect;
 use app_core::scene::{Light, PoseTime, Scene};
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::toy::{PosedMesh, ToyError};
-use glam::{DMat4, DVec2, UVec2};
+use app_core::view::{Place, View};
+use glam::{DMat4, DVec3, UVec2};
 
 use crate::metrics::{self, Regions};
 use crate::reference::model::Region;
@@ -25,8 +27,6 @@ use super::{Options, Row};
 
 /// Rays from each of a pixel's four sample positions to each light.
 const N_RAYS: usize = 64;
-/// Lights that the core moves the shadows of.
-const MAX_LIGHTS: usize = 4;
 
 /// Scores a preset with exact visibility.
 pub(super) fn measure(
@@ -37,6 +37,10 @@ pub(super) fn measure(
 ) -> Result<Row, ReplayError> {
     let scene = session.scene();
     core.set_scene(scene.clone(), preset)?;
+    let n_receivers = match preset.method() {
+        Method::Model(_) => MAX_RECEIVERS,
+        _ => 1,
+    };
     let frames = options.frames.clone().unwrap_or(0..session.n_frames());
     let n_frames = frames.len();
     let mut scores = Vec::new();
@@ -45,7 +49,7 @@ pub(super) fn measure(
         let failed = |reason| ReplayError::Frame { index, reason };
         let input = FrameInput::from(&session.frame(index)?);
         if let Some(rect) = core.frame(&input).map_err(failed)?.region {
-            let rays = Rays::new(scene, &input.world_from_camera, &rect);
+            let rays = Rays::new(scene, &input.world_from_camera, &rect, n_receivers);
             let map = |pose: &PoseTime| rays.visibility(scene, pose).map_err(|error| failed(error.into()));
             let known = physical.take().filter(|(camera, map)| {
                 *camera == input.world_from_camera && [map.width, map.height] == rect.size_px.to_array()
@@ -79,33 +83,40 @@ pub(super) fn measure(
     })
 }
 
-/// The region and the lights, in plane space.
+/// The region, and the lights in each receiver's plane space.
 struct Rays {
     region: Region,
-    lights: Vec<Light>,
-    plane_from_object: DMat4,
+    lights: Vec<Vec<Light>>,
+    stage_from_object: DMat4,
 }
 
 impl Rays {
-    fn new(scene: &Scene, world_from_camera: &DMat4, rect: &PixelRect) -> Self {
-        let receiver = &scene.receivers[0];
-        let plane_from_world = receiver.world_from_plane.inverse();
+    fn new(scene: &Scene, world_from_camera: &DMat4, rect: &PixelRect, n_receivers: usize) -> Self {
+        let receivers = &scene.receivers[..n_receivers.min(scene.receivers.len())];
         let image_px = UVec2::new(scene.width_px, scene.height_px);
-        let view = View::new(image_px, scene.intrinsics, world_from_camera, receiver);
+        let view = View::new(image_px, scene.intrinsics, world_from_camera);
         let place = Place {
-            receiver,
+            receivers,
             lights: &[],
-            plane_from_world: &plane_from_world,
-            reference_in_plane: DVec2::ZERO,
+            toy_in_stage: DVec3::ZERO,
         };
-        let lights = scene.lights.iter();
+        let planes_from_world: Vec<DMat4> = receivers
+            .iter()
+            .map(|receiver| receiver.world_from_plane.inverse())
+            .collect();
+        let is_usable = |light: &&Light| {
+            let mut planes = planes_from_world.iter();
+            planes.any(|plane_from_world| light_in_plane(light, plane_from_world).y > 0.0)
+        };
+        let usable: Vec<&Light> = scene.lights.iter().filter(is_usable).take(MAX_LIGHTS).collect();
+        let lights_in = |plane_from_world: &DMat4| {
+            let lights = usable.iter();
+            lights.map(|light| moved(light, plane_from_world)).collect()
+        };
         Self {
             region: Region::new(&view, rect, &place),
-            lights: lights
-                .filter_map(|light| above_plane(light, &plane_from_world))
-                .take(MAX_LIGHTS)
-                .collect(),
-            plane_from_object: plane_from_world * scene.world_from_object,
+            lights: planes_from_world.iter().map(lights_in).collect(),
+            stage_from_object: place.world_from_stage().inverse() * scene.world_from_object,
         }
     }
 
@@ -113,13 +124,18 @@ impl Rays {
     fn visibility(&self, scene: &Scene, pose: &PoseTime) -> Result<FloatMap, ToyError> {
         let mut posed = PosedMesh::default();
         let moment = pose.clip.map(|clip| (clip, pose.time_secs));
-        scene.toy.pose(moment, &self.plane_from_object, &mut posed)?;
-        let positions: Vec<_> = posed
-            .positions
-            .iter()
-            .map(|position| position.as_dvec3())
+        scene.toy.pose(moment, &self.stage_from_object, &mut posed)?;
+        let occluder_in = |plane_from_stage: &DMat4| {
+            let positions = posed.positions.iter();
+            let positions: Vec<DVec3> = positions
+                .map(|position| plane_from_stage.transform_point3(position.as_dvec3()))
+                .collect();
+            Occluder::new(&positions, scene.toy.indices())
+        };
+        let receivers = self.region.receivers.iter();
+        let occluders: Vec<Occluder> = receivers
+            .map(|receiver| occluder_in(&receiver.plane_from_stage))
             .collect();
-        let occluder = Occluder::new(&positions, scene.toy.indices());
 
         let UVec2 { x: width, y: height } = self.region.size_px;
         let mut texels = vec![[0.0; 4]; (width * height) as usize];
@@ -135,7 +151,7 @@ impl Rays {
                 scope.spawn(|| {
                     for (y, row) in hand {
                         for (x, texel) in (0..).zip(row) {
-                            *texel = self.texel(&occluder, UVec2::new(x, y));
+                            *texel = self.texel(&occluders, UVec2::new(x, y));
                         }
                     }
                 });
@@ -148,12 +164,15 @@ impl Rays {
         })
     }
 
-    fn texel(&self, occluder: &Occluder, texel: UVec2) -> [f32; 4] {
+    fn texel(&self, occluders: &[Occluder], texel: UVec2) -> [f32; 4] {
         let mut visibility = [0.0; 4];
         for position in SAMPLE_POSITIONS {
-            let in_plane = self.region.plane_point(texel.as_dvec2() + position);
-            for (sum, light) in visibility.iter_mut().zip(&self.lights) {
-                let of_sample = in_plane.map_or(1.0, |at| exact_visibility(occluder, at, light, N_RAYS));
+            let point = self.region.receiver_point(texel.as_dvec2() + position);
+            let receiver = point.map_or(0, |point| point.receiver);
+            for (sum, light) in visibility.iter_mut().zip(&self.lights[receiver]) {
+                let of_sample = point.map_or(1.0, |point| {
+                    exact_visibility(&occluders[receiver], point.in_plane, light, N_RAYS)
+                });
                 #[allow(clippy::cast_possible_truncation, reason = "maps hold no more")]
                 let of_sample = of_sample as f32;
                 *sum += 0.25 * of_sample;
@@ -163,10 +182,10 @@ impl Rays {
     }
 }
 
-/// The light in plane space, unless it is under the plane.
-fn above_plane(light: &Light, plane_from_world: &DMat4) -> Option<Light> {
+/// The light in a receiver's plane space.
+fn moved(light: &Light, plane_from_world: &DMat4) -> Light {
     let centre = light_in_plane(light, plane_from_world);
-    (centre.y > 0.0).then(|| match *light {
+    match *light {
         Light::Sphere { radius_m, .. } => Light::Sphere {
             position_in_world: centre.truncate(),
             radius_m,
@@ -177,5 +196,5 @@ fn above_plane(light: &Light, plane_from_world: &DMat4) -> Option<Light> {
             direction_to_light_in_world: centre.truncate(),
             angular_radius_rad,
         },
-    })
+    }
 }

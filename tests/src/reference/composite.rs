@@ -4,6 +4,7 @@ use glam::{DVec3, DVec4, UVec2};
 
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
+use super::residual::PlaneGrid;
 use super::{ConstantError, shader_constant};
 
 /// What the shader fixes.
@@ -15,6 +16,10 @@ pub struct CompositeConstants {
     pub keep_none: f64,
     /// Change from which the pooled residual no longer holds at half its size.
     pub residual_half: f64,
+    /// Pooled residual up to which nothing unknown is seen.
+    pub unknown_none: f64,
+    /// Pooled residual from which what the camera saw stays.
+    pub unknown_all: f64,
 }
 
 impl CompositeConstants {
@@ -27,6 +32,8 @@ impl CompositeConstants {
             keep_all: shader_constant("composite", "KEEP_ALL")?,
             keep_none: shader_constant("composite", "KEEP_NONE")?,
             residual_half: shader_constant("composite", "RESIDUAL_HALF")?,
+            unknown_none: shader_constant("composite", "UNKNOWN_NONE")?,
+            unknown_all: shader_constant("composite", "UNKNOWN_ALL")?,
         })
     }
 }
@@ -40,10 +47,10 @@ pub struct Shown {
     pub ambient: Raster<f64>,
     /// What the fit found.
     pub solution: Solution,
-    /// Filled residuals, in plates.
-    pub residual: Raster<DVec3>,
-    /// Region pixels a cell of the residual, along each side.
-    pub cell_px: u32,
+    /// Filled residuals on each receiver, in plates.
+    pub residuals: Vec<Raster<DVec3>>,
+    /// Where their cells lie.
+    pub grids: Vec<PlaneGrid>,
 }
 
 /// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
@@ -62,29 +69,38 @@ pub fn receiver_color(
         pictures.plate.at(texel),
         pictures.seen.at(texel),
     );
-    let Some(in_plane) = region.receiver_point(at) else {
-        return [(shown.solution.gain * plate).lerp(frame, seen), frame];
+    let lit = shown.solution.gain * plate;
+    let Some(point) = region.receiver_point(at) else {
+        return [lit.lerp(frame, seen), frame];
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         let ambient = coarse_at(ambient, region, at);
         shown
             .solution
-            .receiver_model(region, in_plane, ambient, visibility.at(texel))
+            .receiver_model(region, point, ambient, visibility.at(texel))
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let after = model(&shown.ambient, &shown.visibility);
     let change = (after - before).abs().max_element();
 
-    let pooled = shown.residual.bilinear(at / f64::from(shown.cell_px));
-    let pooled = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
-    let made = plate * (after + pooled).max(DVec3::ZERO);
-    let kept = frame + plate * (after - before);
-    let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
+    let grid = &shown.grids[point.receiver];
+    let pooled =
+        shown.residuals[point.receiver].bilinear((point.in_plane - grid.origin_in_plane) / grid.cell_m);
+    let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
+    let unknown = smoothstep(
+        constants.unknown_none,
+        constants.unknown_all,
+        pooled.abs().max_element(),
+    );
+    let made = lit * (after + residual).max(DVec3::ZERO);
+    let kept = frame + lit * (after - before);
+    let own = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
+    let keep = seen * own.max(unknown);
 
     // What hides the receiver must go even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    let laid = frame.lerp(made.lerp(kept, seen * near), inside).max(DVec3::ZERO);
-    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
+    let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * own).max(DVec3::ZERO)]
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.

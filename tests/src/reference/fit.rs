@@ -1,10 +1,12 @@
 //! Twin of `fit.wgsl` and `fit_solve.wgsl`: what the real shadow and the real toy tell of the light, by iteratively
 //! reweighted least squares with weak priors.
 
-use glam::{DVec2, DVec3, DVec4, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
-use super::model::{EvidenceRange, Pictures, Region, Solution, centre_px, coarse_at};
+use super::model::{
+    EvidenceRange, Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at,
+};
 use super::raster::Raster;
 use super::{ConstantError, shader_constant};
 
@@ -21,6 +23,8 @@ pub struct FitConstants {
     pub prior_weight: f64,
     /// Weight of the common solution of all channels, for the toy, against their common energy.
     pub white_weight: f64,
+    /// Weight by which further receivers keep the gain that the first one tells.
+    pub same_gain_weight: f64,
     /// Expected bounce.
     pub prior_bounce: f64,
     /// Expected share of all lights together.
@@ -44,6 +48,7 @@ impl FitConstants {
             toy_cauchy_scale: shader_constant("fit", "TOY_CAUCHY_SCALE")?,
             prior_weight: shader_constant("fit_solve", "PRIOR_WEIGHT")?,
             white_weight: shader_constant("fit_solve", "WHITE_WEIGHT")?,
+            same_gain_weight: shader_constant("fit_solve", "SAME_GAIN_WEIGHT")?,
             prior_bounce: shader_constant("fit_solve", "PRIOR_BOUNCE")?,
             prior_share: shader_constant("fit_solve", "PRIOR_SHARE")?,
             max_share: shader_constant("fit_solve", "MAX_SHARE")?,
@@ -59,8 +64,8 @@ pub struct ReceiverSample {
     pub frame: DVec3,
     /// Linear colour of the plate.
     pub plate: DVec3,
-    /// The receiver point, (x, z) in plane space.
-    pub in_plane: DVec2,
+    /// The point that is seen.
+    pub point: ReceiverPoint,
     /// Visibility of the ambient light.
     pub ambient: f64,
     /// Visibility of each light.
@@ -73,13 +78,13 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     let taken = Raster::from_fn(region.size_px / stride_px, |texel| texel * stride_px);
     let sample = |texel: &UVec2| {
         let at = centre_px(*texel);
-        let in_plane = region
+        let point = region
             .receiver_point(at)
             .filter(|_| pictures.seen.at(*texel) > 0.0)?;
         Some(ReceiverSample {
             frame: pictures.frame.at(*texel),
             plate: pictures.plate.at(*texel),
-            in_plane,
+            point,
             ambient: coarse_at(&pictures.ambient, region, at),
             visibility: pictures.visibility.at(*texel),
         })
@@ -87,11 +92,13 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     taken.texels().iter().filter_map(sample).collect()
 }
 
-/// Fits gain, bounce and shares in `n_steps`, from `start`, which stays where there is no evidence.
+/// Fits gain, bounce and shares of one receiver in `n_steps`, from `start`, which stays where there is no evidence.
+///
+/// Receivers are fitted in turn: the first tells the gain and what is expected of the others.
 #[must_use]
 pub fn fit_receiver(
     region: &Region,
-    samples: &[ReceiverSample],
+    (receiver, samples): (usize, &[ReceiverSample]),
     start: &Solution,
     constants: &FitConstants,
     n_steps: u32,
@@ -100,8 +107,13 @@ pub fn fit_receiver(
     for step in 0..n_steps {
         let before = solution.clone();
         for channel in 0..3 {
-            let equations = receiver_equations(region, samples, &before, constants, (step > 0, channel));
-            take_receiver(&equations, constants, channel, &mut solution);
+            let of_receiver: Vec<&ReceiverSample> = samples
+                .iter()
+                .filter(|sample| sample.point.receiver == receiver)
+                .collect();
+            let equations = receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel));
+            let priors = receiver_priors(region, receiver, &before, constants, channel);
+            take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
         }
     }
     solution
@@ -109,7 +121,7 @@ pub fn fit_receiver(
 
 fn receiver_equations(
     region: &Region,
-    samples: &[ReceiverSample],
+    samples: &[&ReceiverSample],
     before: &Solution,
     constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
@@ -117,23 +129,72 @@ fn receiver_equations(
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
         let (frame, plate) = (sample.frame[channel], sample.plate[channel]);
-        let falloff = before.plate_falloff(region, sample.in_plane)[channel];
+        let value = frame / before.gain[channel];
+        let total = before.plate_falloff(region, sample.point)[channel];
+        let plane = region.plane_of(sample.point);
         let mut columns = vec![plate * sample.ambient, plate * (1.0 - sample.ambient)];
         columns.extend((0..region.lights.len()).map(|i| {
-            plate * region.falloff(i, sample.in_plane) * (sample.visibility[i] - sample.ambient) / falloff
+            let visible = before.levels[i][channel] * sample.visibility[i] - sample.ambient;
+            plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
         let mut weight = constants.evidence.holds(frame, plate);
         if is_reweighted {
-            let model = before.receiver_model(region, sample.in_plane, sample.ambient, sample.visibility);
-            weight *= cauchy_weight(frame - plate * model[channel], constants.cauchy_scale * plate);
+            let model = before.receiver_model(region, sample.point, sample.ambient, sample.visibility);
+            weight *= cauchy_weight(value - plate * model[channel], constants.cauchy_scale * plate);
         }
-        equations.observe(&columns, frame, weight);
+        equations.observe(&columns, value, weight);
     }
     equations
 }
 
+/// What is expected of bounce and shares before a receiver is seen in shadow.
+fn receiver_priors(
+    region: &Region,
+    receiver: usize,
+    before: &Solution,
+    constants: &FitConstants,
+    channel: usize,
+) -> Vec<f64> {
+    let n_lights = region.lights.len();
+    #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
+    let even = constants.prior_share / n_lights as f64;
+    if receiver == 0 {
+        let shares = std::iter::repeat_n(even, n_lights);
+        return std::iter::once(constants.prior_bounce).chain(shares).collect();
+    }
+    // The same lights amid as much ambient light.
+    let irradiance = |plane: &ReceiverPlane, i: usize| {
+        let light = plane.lights[i];
+        let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
+        let to_light = light.truncate() - at * light.w;
+        let falloff = if light.w == 0.0 {
+            1.0
+        } else {
+            to_light.length_squared()
+        };
+        (to_light.normalize().y / falloff).max(0.0)
+    };
+    let first = &before.receivers[0];
+    let of_first = |i| {
+        let there = irradiance(&region.receivers[0], i);
+        if there > 0.0 {
+            irradiance(&region.receivers[receiver], i) / there
+        } else {
+            0.0
+        }
+    };
+    let shares: Vec<f64> = (0..n_lights)
+        .map(|i| first.shares[i][channel] * of_first(i))
+        .collect();
+    let direct: f64 = first.shares.iter().map(|share| share[channel]).sum();
+    let total = 1.0 - direct + shares.iter().sum::<f64>();
+    let shares = shares.into_iter().map(|share| share / total);
+    std::iter::once(first.bounce[channel]).chain(shares).collect()
+}
+
 fn take_receiver(
     observed: &NormalEquations,
+    (receiver, priors): (usize, &[f64]),
     constants: &FitConstants,
     channel: usize,
     solution: &mut Solution,
@@ -142,22 +203,28 @@ fn take_receiver(
     if energy <= 0.0 {
         return;
     }
-    let n_lights = solution.shares.len();
+    let n_lights = solution.levels.len();
     let mut equations = observed.clone();
     let weight = constants.prior_weight * energy;
     equations.expect(0, 1.0, weight);
-    equations.expect(1, constants.prior_bounce, weight);
-    #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
-    let prior_share = constants.prior_share / n_lights as f64;
-    (0..n_lights).for_each(|i| equations.expect(2 + i, prior_share, weight));
+    if receiver > 0 {
+        equations.expect(0, 1.0, constants.same_gain_weight * energy);
+    }
+    priors
+        .iter()
+        .enumerate()
+        .for_each(|(i, prior)| equations.expect(1 + i, *prior, weight));
     let unknowns = equations.solve();
-    let gain = unknowns[0];
-    if gain <= 0.0 {
+    let correction = unknowns[0];
+    if correction <= 0.0 {
         return;
+    }
+    if receiver == 0 {
+        solution.gain[channel] *= correction;
     }
     let shares: Vec<f64> = unknowns[2..]
         .iter()
-        .map(|unknown| (unknown / gain).max(0.0))
+        .map(|unknown| (unknown / correction).max(0.0))
         .collect();
     let total: f64 = shares.iter().sum();
     let scale = if total > constants.max_share {
@@ -165,14 +232,14 @@ fn take_receiver(
     } else {
         1.0
     };
-    solution.gain[channel] = gain;
-    solution.bounce[channel] = (unknowns[1] / gain).clamp(0.0, constants.max_bounce);
-    solution
+    let found = &mut solution.receivers[receiver];
+    found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, constants.max_bounce);
+    found
         .shares
         .iter_mut()
         .zip(&shares)
         .for_each(|(slot, share)| slot[channel] = scale * share);
-    solution.contrast[channel] = (0..n_lights).map(|i| observed.energy(2 + i)).sum::<f64>() / energy;
+    found.contrast[channel] = (0..n_lights).map(|i| observed.energy(2 + i)).sum::<f64>() / energy;
 }
 
 /// A pixel of one surface of the toy.
@@ -236,6 +303,7 @@ fn toy_equations(
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
         let (frame, base) = (sample.frame[channel], sample.base[channel]);
+        let value = frame / before.gain[channel];
         let columns: Vec<f64> = toy_columns(sample.normal, sample.received, region.lights.len())
             .into_iter()
             .map(|column| base * column)
@@ -247,9 +315,9 @@ fn toy_equations(
                 .zip(&before.toy)
                 .map(|(column, toy)| column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(frame - model, constants.toy_cauchy_scale * base);
+            weight *= cauchy_weight(value - model, constants.toy_cauchy_scale * base);
         }
-        equations.observe(&columns, frame, weight);
+        equations.observe(&columns, value, weight);
     }
     equations
 }

@@ -2,22 +2,34 @@
 //! `common/model.wgsl`.
 
 use app_core::light_points::light_in_plane;
-use app_core::region::{PixelRect, Place, View};
-use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
+use app_core::region::PixelRect;
+use app_core::view::{Place, View};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
 use super::{ConstantError, shader_constant};
 
-/// The work region over a receiver, and the lights.
+/// The work region over the receivers, and the lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// From (u, v, 1) in pixels of the region to (x, z, w) on the receiver; w > 0 in front of the camera.
-    pub plane_from_region_px: DMat3,
+    /// The planes that catch shadows.
+    pub receivers: Vec<ReceiverPlane>,
     /// Size of the region, in pixels.
     pub size_px: UVec2,
     /// Width of the fade at the left, top, right and bottom edge, in pixels; 0 where there is none.
     pub border_px: [f64; 4],
-    /// Homogeneous, in plane space: (position, 1) or (unit direction to the light, 0).
+    /// Homogeneous, in stage space: (position, 1) or (unit direction to the light, 0).
+    pub lights: Vec<DVec4>,
+}
+
+/// One receiver as the camera sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReceiverPlane {
+    /// From stage space.
+    pub plane_from_stage: DMat4,
+    /// From (u, v, 1) in pixels of the region to (x, z, w) on the receiver; w > 0 in front of the camera.
+    pub plane_from_region_px: DMat3,
+    /// The lights in plane space, homogeneous.
     pub lights: Vec<DVec4>,
     /// Where the lights' shares are stated, (x, z) in plane space.
     pub reference_in_plane: DVec2,
@@ -25,24 +37,16 @@ pub struct Region {
     pub half_extent_m: DVec2,
 }
 
-impl Region {
-    /// The region `rect` of a camera's picture.
-    #[must_use]
-    pub fn new(view: &View, rect: &PixelRect, place: &Place<'_>) -> Self {
-        Self {
-            plane_from_region_px: view.plane_from_region_px(rect),
-            size_px: rect.size_px,
-            border_px: view.globals(rect, place).border_px.map(f64::from),
-            lights: place
-                .lights
-                .iter()
-                .map(|light| light_in_plane(light, place.plane_from_world))
-                .collect(),
-            reference_in_plane: place.reference_in_plane,
-            half_extent_m: place.receiver.half_extent_m,
-        }
-    }
+/// A point of a receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReceiverPoint {
+    /// Which receiver.
+    pub receiver: usize,
+    /// (x, z) in its plane space.
+    pub in_plane: DVec2,
+}
 
+impl ReceiverPlane {
     /// The point of the endless plane, (x, z) in metres, that is seen at `region_px`.
     #[must_use]
     pub fn plane_point(&self, region_px: DVec2) -> Option<DVec2> {
@@ -50,17 +54,20 @@ impl Region {
         (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
-    /// The same, within the receiver.
+    /// Where a point of the plane is seen.
     #[must_use]
-    pub fn receiver_point(&self, region_px: DVec2) -> Option<DVec2> {
-        self.plane_point(region_px)
-            .filter(|at| at.abs().cmple(self.half_extent_m).all())
+    pub fn region_px(&self, in_plane: DVec2) -> Option<DVec2> {
+        let at = self.plane_from_region_px.inverse() * in_plane.extend(1.0);
+        (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
-    /// Irradiance of light `i` at a receiver point over that at the reference point: cos / d^2.
+    /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; none from behind the receiver.
     #[must_use]
     pub fn falloff(&self, i: usize, in_plane: DVec2) -> f64 {
         let light = self.lights[i];
+        if light.y <= 0.0 {
+            return 0.0;
+        }
         if light.w == 0.0 {
             return 1.0;
         }
@@ -73,17 +80,77 @@ impl Region {
     }
 }
 
+impl Region {
+    /// The region `rect` of a camera's picture.
+    #[must_use]
+    pub fn new(view: &View, rect: &PixelRect, place: &Place<'_>) -> Self {
+        let globals = view.globals(rect, place);
+        let world_from_stage = place.world_from_stage();
+        let lights_in = |space_from_world: &DMat4| {
+            let lights = place.lights.iter();
+            lights
+                .map(|light| light_in_plane(light, space_from_world))
+                .collect()
+        };
+        let receivers = place.receivers.iter().map(|receiver| {
+            let plane_from_world = receiver.world_from_plane.inverse();
+            let toy = (plane_from_world * world_from_stage).transform_point3(place.toy_in_stage);
+            let half_extent_m = receiver.half_extent_m;
+            ReceiverPlane {
+                plane_from_stage: plane_from_world * world_from_stage,
+                plane_from_region_px: view.plane_from_region_px(rect, &receiver.world_from_plane),
+                lights: lights_in(&plane_from_world),
+                reference_in_plane: DVec2::new(toy.x, toy.z).clamp(-half_extent_m, half_extent_m),
+                half_extent_m,
+            }
+        });
+        Self {
+            receivers: receivers.collect(),
+            size_px: rect.size_px,
+            border_px: globals.border_px.map(f64::from),
+            lights: lights_in(&world_from_stage.inverse()),
+        }
+    }
+
+    /// The nearest receiver seen at `region_px`, and the point of it.
+    #[must_use]
+    pub fn receiver_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
+            let in_plane = plane.plane_point(region_px)?;
+            let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
+            let is_on = in_plane.abs().cmple(plane.half_extent_m).all();
+            is_on.then_some((inverse_depth, ReceiverPoint { receiver, in_plane }))
+        });
+        hits.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
+    }
+
+    /// The receiver that a point is of.
+    #[must_use]
+    pub fn plane_of(&self, point: ReceiverPoint) -> &ReceiverPlane {
+        &self.receivers[point.receiver]
+    }
+}
+
 /// What is learned from the real shadow and the real toy, per colour channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// Frame over plate where nothing changed.
     pub gain: DVec3,
+    /// Each light's power over that when the plate was taken.
+    pub levels: Vec<DVec3>,
+    /// What is learned of each receiver.
+    pub receivers: Vec<ReceiverSolution>,
+    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor per light's cosine.
+    pub toy: Vec<DVec3>,
+}
+
+/// What is learned of one receiver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReceiverSolution {
     /// Light thrown back by the toy, as a fraction of the ambient light it takes away.
     pub bounce: DVec3,
     /// Each light's share of the plate's radiance at the reference point.
     pub shares: Vec<DVec3>,
-    /// Radiance of the toy over its base colour: constant, vertical gradient, and one factor per light's cosine.
-    pub toy: Vec<DVec3>,
     /// Energy of the light columns over that of the plate.
     pub contrast: DVec3,
 }
@@ -91,26 +158,39 @@ pub struct Solution {
 impl Solution {
     /// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
     #[must_use]
-    pub fn plate_falloff(&self, region: &Region, in_plane: DVec2) -> DVec3 {
-        let shares = self.shares.iter().enumerate();
+    pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
+        let shares = self.receivers[point.receiver].shares.iter().enumerate();
+        let plane = region.plane_of(point);
         DVec3::ONE
             + shares
-                .map(|(i, share)| *share * (region.falloff(i, in_plane) - 1.0))
+                .map(|(i, share)| *share * (plane.falloff(i, point.in_plane) - 1.0))
                 .sum::<DVec3>()
     }
 
-    /// A frame as a fraction of the plate, from the ambient visibility and that of each light.
-    ///
-    /// Written with the shares `f` at the point itself: gain (A (1 - sum f) + bounce (1 - A) + sum f V).
+    /// A light's share of the plate's radiance at a point.
     #[must_use]
-    pub fn receiver_model(&self, region: &Region, in_plane: DVec2, ambient: f64, visibility: DVec4) -> DVec3 {
-        let total = self.plate_falloff(region, in_plane);
-        let mut kept = DVec3::splat(ambient) + self.bounce * (1.0 - ambient);
-        for (i, share) in self.shares.iter().enumerate() {
-            let share_here = *share * region.falloff(i, in_plane) / total;
-            kept += share_here * (visibility[i] - ambient);
+    pub fn light_share(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
+        let falloff = region.plane_of(point).falloff(i, point.in_plane);
+        self.receivers[point.receiver].shares[i] * falloff / self.plate_falloff(region, point)
+    }
+
+    /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
+    ///
+    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce (1 - A) + sum f level V.
+    #[must_use]
+    pub fn receiver_model(
+        &self,
+        region: &Region,
+        point: ReceiverPoint,
+        ambient: f64,
+        visibility: DVec4,
+    ) -> DVec3 {
+        let bounce = self.receivers[point.receiver].bounce;
+        let mut kept = DVec3::splat(ambient) + bounce * (1.0 - ambient);
+        for (i, level) in self.levels.iter().enumerate() {
+            kept += self.light_share(region, i, point) * (*level * visibility[i] - ambient);
         }
-        self.gain * kept
+        kept
     }
 }
 

@@ -92,7 +92,7 @@ impl Occluder {
         let mut n_hidden = 0.0;
         for (i, light_point) in light_points.iter().enumerate() {
             let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
-            let in_plane = region.plane_point(position * region_px_per_texel)?;
+            let in_plane = region.receivers[0].plane_point(position * region_px_per_texel)?;
             n_hidden += f64::from(u8::from(self.hides(in_plane, *light_point)));
         }
         #[allow(clippy::cast_precision_loss, reason = "a handful of points")]

@@ -50,10 +50,14 @@ pub fn soft_visibility(
     texel: UVec2,
 ) -> f64 {
     let at = centre_px(texel);
-    let Some(in_plane) = region.receiver_point(at) else {
+    let Some(in_plane) = region
+        .receiver_point(at)
+        .filter(|point| point.receiver == 0)
+        .map(|point| point.in_plane)
+    else {
         return 1.0;
     };
-    let half_pixel_m = region
+    let half_pixel_m = region.receivers[0]
         .plane_point(at + DVec2::X)
         .map_or(0.0, |next| 0.5 * next.distance(in_plane));
     let blockers = |radius_m: f64, n_taps| -> Vec<f64> {
@@ -78,7 +82,7 @@ pub fn soft_visibility(
 }
 
 fn height_near(heights_m: &Raster<Option<f64>>, region: &Region, in_plane: DVec2) -> Option<f64> {
-    let at = region.plane_from_region_px.inverse() * in_plane.extend(1.0);
+    let at = region.receivers[0].plane_from_region_px.inverse() * in_plane.extend(1.0);
     let px = at.truncate() / at.z;
     let is_inside = at.z > 0.0 && px.cmpge(DVec2::ZERO).all() && px.cmplt(heights_m.size().as_dvec2()).all();
     is_inside.then(|| heights_m.at(px.as_uvec2())).flatten()

@@ -1,6 +1,7 @@
-//! Twin of `residual.wgsl`: what the model leaves unexplained, pooled on a coarse grid.
+//! Twin of `residual.wgsl`: what the model leaves unexplained, pooled on coarse grids.
 
-use glam::{DVec3, UVec2};
+use app_core::gpu::layout::Grid;
+use glam::{DVec2, DVec3, UVec2, Vec2};
 
 use super::model::{EvidenceRange, Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
@@ -13,8 +14,10 @@ pub struct ResidualConstants {
     pub evidence: EvidenceRange,
     /// Residual, as a fraction of the plate, at which a pixel counts half.
     pub cauchy_scale: f64,
-    /// Share of a cell's pixels that must be evidence for the cell to count in full.
+    /// Share of a cell's points that must be evidence for the cell to count in full.
     pub full_share: f64,
+    /// Points of a cell along each side.
+    pub n_points: u32,
 }
 
 impl ResidualConstants {
@@ -27,6 +30,7 @@ impl ResidualConstants {
             evidence: EvidenceRange::from_shader("residual")?,
             cauchy_scale: shader_constant("residual", "CAUCHY_SCALE")?,
             full_share: shader_constant("residual", "FULL_SHARE")?,
+            n_points: shader_constant("residual", "N_POINTS")?,
         })
     }
 }
@@ -40,31 +44,55 @@ pub struct Cell {
     pub certainty: f64,
 }
 
-/// Pools the residual over cells of `cell_px` by `cell_px` pixels.
+/// Square cells over a receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneGrid {
+    /// Corner of the first cell, (x, z) in plane space.
+    pub origin_in_plane: DVec2,
+    /// Side of a cell.
+    pub cell_m: f64,
+    /// Cells along each side.
+    pub size: UVec2,
+}
+
+impl From<&Grid> for PlaneGrid {
+    fn from(grid: &Grid) -> Self {
+        Self {
+            origin_in_plane: Vec2::from(grid.origin_in_plane).as_dvec2(),
+            cell_m: f64::from(grid.cell_m),
+            size: grid.size.into(),
+        }
+    }
+}
+
+/// Pools the residual of one receiver over the cells of its grid, from nothing known before.
 #[must_use]
 pub fn pool(
     region: &Region,
     pictures: &Pictures,
     solution: &Solution,
     constants: &ResidualConstants,
-    cell_px: u32,
+    (receiver, grid): (usize, &PlaneGrid),
 ) -> Raster<Cell> {
-    let grid = (region.size_px + cell_px - 1) / cell_px;
-    Raster::from_fn(grid, |cell| {
-        let first = cell * cell_px;
-        let inside = Raster::from_fn((region.size_px - first).min(UVec2::splat(cell_px)), |at| {
-            first + at
-        });
+    let n_side = constants.n_points;
+    Raster::from_fn(grid.size, |cell| {
         let mut sums = Sums::default();
-        for texel in inside
-            .texels()
-            .iter()
-            .filter(|texel| pictures.seen.at(**texel) > 0.0)
-        {
-            sums.add(region, pictures, solution, constants, *texel);
+        for k in 0..n_side * n_side {
+            let within = (UVec2::new(k % n_side, k / n_side).as_dvec2() + 0.5) / f64::from(n_side);
+            let in_plane = grid.origin_in_plane + (cell.as_dvec2() + within) * grid.cell_m;
+            let texel = region.receivers[receiver]
+                .region_px(in_plane)
+                .filter(|px| px.cmpge(DVec2::ZERO).all() && px.cmplt(region.size_px.as_dvec2()).all())
+                .map(DVec2::as_uvec2);
+            let seen = texel.filter(|texel| {
+                let hit = region.receiver_point(centre_px(*texel));
+                pictures.seen.at(*texel) > 0.0 && hit.is_some_and(|hit| hit.receiver == receiver)
+            });
+            if let Some(texel) = seen {
+                sums.add(region, pictures, solution, constants, texel);
+            }
         }
-        let n_full = constants.full_share * f64::from(cell_px * cell_px);
-        sums.cell(n_full)
+        sums.cell(constants.full_share * f64::from(n_side * n_side))
     })
 }
 
@@ -86,7 +114,7 @@ impl Sums {
         constants: &ResidualConstants,
         texel: UVec2,
     ) {
-        let Some(in_plane) = region.receiver_point(centre_px(texel)) else {
+        let Some(point) = region.receiver_point(centre_px(texel)) else {
             return;
         };
         let (frame, plate) = (pictures.frame.at(texel), pictures.plate.at(texel));
@@ -95,8 +123,8 @@ impl Sums {
             return;
         }
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
-        let model = solution.receiver_model(region, in_plane, ambient, pictures.visibility.at(texel));
-        let unexplained = frame - plate * model;
+        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        let unexplained = frame / solution.gain - plate * model;
         let relative = unexplained.length_squared() / (brightness * constants.cauchy_scale.powi(2));
         for channel in 0..3 {
             let usable = constants.evidence.holds(frame[channel], plate[channel]);

@@ -1,0 +1,96 @@
+//! Coarse grids over the receivers, and the buffers of what is known in them.
+
+use wgpu::BufferUsages;
+
+use crate::gpu::Gpu;
+use crate::gpu::layout::{Grid, Grids, MAX_CELLS, MAX_RECEIVERS};
+use crate::passes::fill::{CELL_BYTES, n_pyramid_cells};
+use crate::region::PlaneRect;
+
+/// Most cells of a grid along a side.
+const MAX_SIDE_CELLS: u32 = 64;
+/// What a grid reaches beyond its rectangle on each side, relative: another clip reaches a little farther.
+const SPARE: f64 = 0.1;
+
+/// Lays a grid of square cells over each rectangle, pyramid after pyramid in one buffer.
+#[must_use]
+pub fn grids_over(rects: &[PlaneRect]) -> Grids {
+    let mut grids = Grids::default();
+    let mut first_cell = 0;
+    for (slot, rect) in grids.grids.iter_mut().zip(rects) {
+        *slot = grid_over(rect, first_cell);
+        first_cell += n_pyramid_cells(slot.size);
+    }
+    grids
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "at most 64 cells a side; metres in f32 as shaders have them"
+)]
+fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
+    let rect = PlaneRect {
+        min: rect.min - SPARE * (rect.max - rect.min),
+        max: rect.max + SPARE * (rect.max - rect.min),
+    };
+    let size_m = rect.max - rect.min;
+    let longest_m = size_m.max_element();
+    // A receiver that nothing reaches has a grid of one cell, which stays empty.
+    if !(longest_m.is_finite() && longest_m > 0.0) {
+        return Grid {
+            origin_in_plane: [0.0; 2],
+            cell_m: 1.0,
+            first_cell,
+            size: [1, 1],
+            _pad: [0; 2],
+        };
+    }
+    let cell_m = longest_m / f64::from(MAX_SIDE_CELLS);
+    let n_cells = |side_m: f64| ((side_m / cell_m).ceil() as u32).clamp(1, MAX_SIDE_CELLS);
+    Grid {
+        origin_in_plane: rect.min.as_vec2().to_array(),
+        cell_m: cell_m as f32,
+        first_cell,
+        size: [n_cells(size_m.x), n_cells(size_m.y)],
+        _pad: [0; 2],
+    }
+}
+
+/// Cells of one quantity on the grids: pyramids, and sums over the frames so far.
+pub(crate) struct CellBuffers {
+    pub(crate) cells: wgpu::Buffer,
+    pub(crate) kept: wgpu::Buffer,
+}
+
+impl CellBuffers {
+    /// Nothing known.
+    pub(crate) fn new(gpu: &Gpu, label: &str, grids: &Grids) -> Self {
+        let n_cells: u32 = grids.grids.iter().map(|grid| n_pyramid_cells(grid.size)).sum();
+        let buffer = |n_cells: u64| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: CELL_BYTES * n_cells,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            cells: buffer(u64::from(n_cells)),
+            kept: buffer((MAX_CELLS * MAX_RECEIVERS) as u64),
+        }
+    }
+}
+
+/// Whether the grids cover the rectangles.
+#[must_use]
+pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
+    grids.grids.iter().zip(rects).all(|(grid, rect)| {
+        let origin = glam::Vec2::from(grid.origin_in_plane).as_dvec2();
+        let size = glam::UVec2::from(grid.size).as_dvec2() * f64::from(grid.cell_m);
+        // A cell more or less is of no account: what lies beyond takes the value at the border.
+        let slack = f64::from(grid.cell_m);
+        let is_reached = rect.min.cmple(rect.max).all();
+        !is_reached || (rect.min.cmpge(origin - slack).all() && rect.max.cmple(origin + size + slack).all())
+    })
+}

@@ -1,0 +1,137 @@
+//! One view and what is known of the place: each step by which the one adds to the other.
+
+use crate::capture::Capture;
+use crate::gpu::Gpu;
+use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::Subject;
+use crate::knowledge::Knowledge;
+use crate::passes::estimate::{Detail, EstimateInputs};
+use crate::passes::fit::{FitInputs, FitShared, FitTask};
+use crate::passes::lit::LitInputs;
+use crate::passes::residual::ResidualInputs;
+use crate::pipeline::Passes;
+
+pub(crate) struct Learner<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) capture: &'a Capture,
+    pub(crate) passes: &'a Passes,
+    pub(crate) knowledge: &'a Knowledge,
+    pub(crate) frame: &'a wgpu::TextureView,
+}
+
+impl Learner<'_> {
+    /// The light on each receiver in turn: what the first tells is what the others are expected to be.
+    pub(crate) fn fit_receivers(&self, encoder: &mut Encoder, is_first: bool) {
+        for receiver in 0..self.capture.plan.n_receivers {
+            self.fit(encoder, Subject::Receiver, receiver, is_first);
+        }
+    }
+
+    /// The exposure of this picture and the power of each light in it.
+    pub(crate) fn fit_levels(&self, encoder: &mut Encoder) {
+        self.fit(encoder, Subject::Levels, 0, false);
+    }
+
+    pub(crate) fn fit(&self, encoder: &mut Encoder, subject: Subject, receiver: u32, is_first: bool) {
+        let (capture, plan) = (self.capture, &self.capture.plan);
+        let shared = FitShared {
+            plan,
+            globals: &capture.globals,
+            solution: &self.knowledge.solution,
+            kept: &self.knowledge.fit_sums,
+        };
+        let inputs = FitInputs {
+            frame: self.frame,
+            plate: &capture.plate().view,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+            object_base: &capture.object_base.view,
+            object_normal: &capture.object_normal.view,
+            object_received: &capture.object_received.view,
+        };
+        let task = FitTask {
+            subject,
+            receiver,
+            n_steps: if is_first {
+                plan.n_fit_steps
+            } else {
+                plan.n_refine_steps
+            },
+            // A jump of the exposure makes every pixel an outlier.
+            is_refinement: !is_first && subject != Subject::Levels,
+        };
+        self.passes.fit.encode(self.gpu, encoder, &shared, &inputs, task);
+    }
+
+    /// What the receivers look like in the light, where plates do not show them.
+    pub(crate) fn pool_lit(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let Some(pass) = &self.passes.estimate else {
+            return;
+        };
+        if !capture.plan.is_plate_estimated {
+            return;
+        }
+        let inputs = LitInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            grids: &knowledge.grids,
+            cells: &knowledge.lit,
+            frame: self.frame,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        let n_receivers = capture.plan.n_receivers;
+        pass.lit.encode(self.gpu, encoder, &inputs, n_receivers);
+        let cells = (&knowledge.grids, &knowledge.lit.cells);
+        self.passes.fill.encode(self.gpu, encoder, cells, n_receivers);
+    }
+
+    /// Completes the plate, where plates do not show everything.
+    pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, detail: Detail) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let (Some(pass), Some(target)) = (&self.passes.estimate, &capture.estimated) else {
+            return;
+        };
+        if !capture.plan.is_plate_estimated {
+            return;
+        }
+        let inputs = EstimateInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            grids: &knowledge.grids,
+            lit_cells: &knowledge.lit.cells,
+            plate: &capture.photographed.view,
+            frame: self.frame,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        pass.estimate
+            .encode(self.gpu, encoder, &inputs, detail, &target.view);
+    }
+
+    /// What the model leaves unexplained, also where the toy hides it.
+    pub(crate) fn pool_residual(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let inputs = ResidualInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            grids: &knowledge.grids,
+            cells: &knowledge.residual,
+            frame: self.frame,
+            plate: &capture.plate().view,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        let n_receivers = capture.plan.n_receivers;
+        self.passes
+            .residual
+            .encode(self.gpu, encoder, &inputs, n_receivers);
+        let cells = (&knowledge.grids, &knowledge.residual.cells);
+        self.passes.fill.encode(self.gpu, encoder, cells, n_receivers);
+    }
+}

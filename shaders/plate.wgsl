@@ -1,0 +1,135 @@
+// The plate as this camera would have taken it: the place without the toy, from plates of this or other cameras.
+//
+// Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
+// best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
+//
+// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point.
+// Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
+
+const MAX_PLATES: u32 = 4u;
+
+struct PlateView {
+  // Homographies: (u, v, w) in the plate's pixels of a receiver's point (x, z, 1), w > 0 in front of its camera.
+  plate_px_from_plane: array<mat3x3f, MAX_RECEIVERS>,
+  // The plate's camera in each receiver's space.
+  camera_in_plane: array<vec4f, MAX_RECEIVERS>,
+  // What brings the plate to the exposure of the first.
+  gain: vec4f,
+}
+
+struct PlateViews {
+  plates: array<PlateView, MAX_PLATES>,
+  // This camera in each receiver's space.
+  camera_in_plane: array<vec4f, MAX_RECEIVERS>,
+  n_plates: u32,
+  // 1: the first plate was taken from this very camera.
+  is_same_view: u32,
+  _pad: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> views: PlateViews;
+@group(1) @binding(1) var plates: texture_2d_array<f32>;
+
+// Distance from a plate's border over which another takes over.
+const FEATHER_PX: f32 = 32.0;
+// Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is blurred.
+const ANGLE_POWER: f32 = 4.0;
+const CHOICE_POWER: f32 = 6.0;
+// Weight against that of the best below which a plate is not looked at.
+const LEAST_WEIGHT: f32 = 0.02;
+
+struct Candidate {
+  plate_px: vec2f,
+  weight: f32,
+}
+
+fn plate_px(k: u32, point: ReceiverPoint) -> vec3f {
+  return views.plates[k].plate_px_from_plane[point.receiver] * vec3f(point.in_plane, 1.0);
+}
+
+fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
+  return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
+}
+
+// How well plate `k` saw the point that is `step_in_plane` (x, y) away from those seen at the pixels beside.
+fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candidate {
+  let at = plate_px(k, point);
+  if at.z <= 0.0 { return Candidate(vec2f(0.0), 0.0); }
+  let px = at.xy / at.z;
+  let size = vec2f(textureDimensions(plates));
+  let to_border = min(px, size - px);
+  let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
+  if inside == 0.0 { return Candidate(px, 0.0); }
+  let at_right = plate_px(k, ReceiverPoint(point.receiver, right));
+  let at_below = plate_px(k, ReceiverPoint(point.receiver, below));
+  let x = at_right.xy / at_right.z - px;
+  let y = at_below.xy / at_below.z - px;
+  // Plate pixels per pixel here: fewer than one lose detail.
+  let detail = min(abs(x.x * y.y - x.y * y.x), 1.0);
+  let cosine = dot(direction_to(views.plates[k].camera_in_plane[point.receiver], point.in_plane),
+    direction_to(views.camera_in_plane[point.receiver], point.in_plane));
+  return Candidate(px, inside * pow(detail * pow(max(cosine, 0.0), ANGLE_POWER), CHOICE_POWER));
+}
+
+// Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
+fn cubic(t: f32) -> vec4f {
+  let s = t * t;
+  let c = s * t;
+  return 0.5 * vec4f(2.0 * s - t - c, 2.0 - 5.0 * s + 3.0 * c, t + 4.0 * s - 3.0 * c, c - s);
+}
+
+fn sharp_color(k: u32, px: vec2f) -> vec3f {
+  let at = px - 0.5;
+  let low = floor(at);
+  let wx = cubic(at.x - low.x);
+  let wy = cubic(at.y - low.y);
+  let last = vec2i(textureDimensions(plates)) - 1;
+  var sum = vec3f(0.0);
+  for (var j = 0; j < 4; j++) {
+    for (var i = 0; i < 4; i++) {
+      let texel = clamp(vec2i(low) + vec2i(i - 1, j - 1), vec2i(0), last);
+      sum += wx[i] * wy[j] * textureLoad(plates, texel, k, 0).rgb;
+    }
+  }
+  return max(sum, vec3f(0.0)) * views.plates[k].gain.rgb;
+}
+
+// The receiver's point at a pixel; beyond all receivers the first one's plane goes on.
+fn point_beyond(region_px: vec2f) -> ReceiverPoint {
+  let point = receiver_point(region_px);
+  if is_hit(point) { return point; }
+  let p = globals.receivers[0].plane_from_region_px * vec3f(region_px, 1.0);
+  if p.z <= 0.0 { return point; }
+  return ReceiverPoint(0u, p.xy / p.z);
+}
+
+fn same_plane_point(receiver: u32, region_px: vec2f) -> vec2f {
+  let p = globals.receivers[receiver].plane_from_region_px * vec3f(region_px, 1.0);
+  return p.xy / p.z;
+}
+
+@fragment
+fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  if views.is_same_view == 1u {
+    let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
+    return vec4f(textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb, 1.0);
+  }
+  let point = point_beyond(at.xy);
+  if !is_hit(point) { return vec4f(0.0); }
+  let right = same_plane_point(point.receiver, at.xy + vec2f(1.0, 0.0));
+  let below = same_plane_point(point.receiver, at.xy + vec2f(0.0, 1.0));
+  var candidates: array<Candidate, MAX_PLATES>;
+  var best = 0.0;
+  for (var k = 0u; k < views.n_plates; k++) {
+    candidates[k] = candidate(k, point, right, below);
+    best = max(best, candidates[k].weight);
+  }
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < views.n_plates; k++) {
+    let weight = candidates[k].weight;
+    if weight == 0.0 || weight < LEAST_WEIGHT * best { continue; }
+    sum += weight * vec4f(sharp_color(k, candidates[k].plate_px), 1.0);
+  }
+  if sum.a == 0.0 { return vec4f(0.0); }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
