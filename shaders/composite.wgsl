@@ -127,7 +127,7 @@ fn receiver(position: vec4f) -> Receiver {
   let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);
   return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
-    (1.0 - seen) * is_near);
+    (1.0 - evident.r) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {

@@ -360,6 +360,7 @@ impl Plan {
     pub fn for_view(&self, facts: &SceneFacts, settings: &Settings) -> Self {
         Self {
             lights: self.lights.clone(),
+            self_shadow: self.self_shadow.clone(),
             ..Self::new(facts, settings)
         }
     }

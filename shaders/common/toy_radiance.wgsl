@@ -1,5 +1,5 @@
 // What was fitted of the light on the toy: a constant, a vertical gradient, and one factor for each light's cosine times
-// its visibility.
+// its visibility. Over base colour and the exposure's gain.
 
 fn toy_radiance_over_base(normal: vec3f, received: vec4f) -> vec3f {
   var sum = fit.toy[0].rgb + fit.toy[1].rgb * normal.y;

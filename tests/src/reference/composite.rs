@@ -87,7 +87,7 @@ pub fn receiver_color(
     let pooled =
         shown.residuals[point.receiver].bilinear((point.in_plane - grid.origin_in_plane) / grid.cell_m);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
-    let unknown = smoothstep(
+    let _unknown = smoothstep(
         constants.unknown_none,
         constants.unknown_all,
         pooled.abs().max_element(),
@@ -98,8 +98,8 @@ pub fn receiver_color(
 
     // What hides the receiver must go even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    let laid = frame.lerp(made.lerp(kept, seen * near), inside).max(DVec3::ZERO);
-    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
+    let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * own).max(DVec3::ZERO)]
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.
