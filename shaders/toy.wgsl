@@ -11,7 +11,6 @@
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;
 @group(1) @binding(2) var appearance_base: texture_2d<f32>;
-@group(1) @binding(3) var object_normal: texture_2d<f32>;
 @group(1) @binding(4) var appearance_lit: texture_2d<f32>;
 // By which the whole picture is moved, in pixels to the right and down.
 @group(1) @binding(5) var<uniform> offset_px: vec2f;
@@ -24,8 +23,6 @@ const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
 // Difference of base colours, against the lighter one, from which two points of the model are of two materials.
 const OTHER_MATERIAL: f32 = 0.25;
-// Cosine between two normals below which they are of two sides.
-const OTHER_SIDE_COSINE: f32 = 0.9;
 // Change of the light on a surface, against the light, that does not show, and that does.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
@@ -62,12 +59,10 @@ fn largest(c: vec3f) -> f32 {
   return max(c.r, max(c.g, c.b));
 }
 
-// Whether the camera's colour at `texel` is of another side of the toy: turned away and of another colour. Either alone is
-// common on one surface, at a fold or in a pattern; beyond the outline there is no normal to tell.
-fn is_other_side(texel: vec2u, is_beyond: bool, base: vec3f, normal: vec3f) -> bool {
+// Whether the camera's colour at `texel` is of another material of the model.
+fn is_other_material(texel: vec2u, base: vec3f) -> bool {
   let other = textureLoad(appearance_base, texel, 0).rgb;
-  let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
-  return is_other_color && (is_beyond || dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE);
+  return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
 }
 
 // A camera pixel as it would be under the light `lit`, both over base colour.
@@ -80,12 +75,11 @@ struct PhysicalPoint {
   depth: f32,
   region_px: vec2f,
   base: vec3f,
-  normal: vec3f,
 }
 
 // The camera's colour of a point of the physical toy under the light `lit`, alpha 0 where something hides it.
 //
-// Of the four pixels around it only those count that show its own surface and side, or that lie beyond the toy's
+// Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
 // outline where `appearance` carried its colours.
 fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
   let at = point.region_px - 0.5;
@@ -100,7 +94,7 @@ fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
     let texel = vec2u(tap);
     let surface = textureLoad(object_depth, texel, 0);
     if surface > point.depth && !is_same_surface(surface, point.depth) { continue; }
-    if is_other_side(texel, surface == 0.0, point.base, point.normal) { continue; }
+    if is_other_material(texel, point.base) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);

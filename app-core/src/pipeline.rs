@@ -121,7 +121,6 @@ impl Passes {
             appearance_lit: &capture.appearance_lit.view,
             object_depth: &capture.object_depth.view,
             appearance_base: &capture.appearance_base.view,
-            object_normal: &capture.object_normal.view,
             self_shadow: &capture.shown_self_shadow,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);

@@ -39,7 +39,6 @@ pub(crate) struct ToyInputs<'a> {
     pub(crate) appearance_lit: &'a wgpu::TextureView,
     pub(crate) object_depth: &'a wgpu::TextureView,
     pub(crate) appearance_base: &'a wgpu::TextureView,
-    pub(crate) object_normal: &'a wgpu::TextureView,
     pub(crate) self_shadow: &'a SelfShadowMaps,
 }
 
@@ -156,7 +155,6 @@ impl Toy {
                 (0, view(inputs.appearance)),
                 (1, view(inputs.object_depth)),
                 (2, view(inputs.appearance_base)),
-                (3, view(inputs.object_normal)),
                 (4, view(inputs.appearance_lit)),
                 (5, offset.as_entire_binding()),
             ],
