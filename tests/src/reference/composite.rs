@@ -83,9 +83,14 @@ pub fn receiver_color(
     let change = (after - before).abs().max_element();
 
     let grid = &shown.grids[point.receiver];
-    let pooled = shown.residuals[point.receiver].bilinear((point.in_plane - grid.origin_in_plane) / grid.cell_m);
+    let pooled =
+        shown.residuals[point.receiver].bilinear((point.in_plane - grid.origin_in_plane) / grid.cell_m);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
-    let unknown = smoothstep(constants.unknown_none, constants.unknown_all, pooled.abs().max_element());
+    let unknown = smoothstep(
+        constants.unknown_none,
+        constants.unknown_all,
+        pooled.abs().max_element(),
+    );
     let made = lit * (after + residual).max(DVec3::ZERO);
     let kept = frame + lit * (after - before);
     let own = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
