@@ -73,9 +73,9 @@ fn has_moved_beside(texel: vec2i) -> bool {
 }
 
 // How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
-fn own_share(texel: vec2u, evident: vec4f, deviation: f32) -> f32 {
+fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
-  if evident.b == 1.0 || !has_moved_beside(vec2i(texel)) { return 1.0; }
+  if !has_moved { return 1.0; }
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
@@ -120,14 +120,15 @@ fn receiver(position: vec4f) -> Receiver {
   let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
   let is_object = is_unknown * (1.0 - shadow_likeness(pooled));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_EVIDENCE)));
-  let seen = own_share(texel, evident, deviation);
+  let has_moved = evident.b == 0.0 && has_moved_beside(vec2i(texel));
+  let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
   let kept = mix(f + lit * (after - before), f, is_object);
   let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);
   return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
-    (1.0 - evident.r) * is_near);
+    select(1.0 - evident.r, 0.0, has_moved) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {

@@ -143,7 +143,7 @@ fn fs_toy(in: Surface) -> Drawn {
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(normal, in.in_plane));
   let unseen = fit.gain.rgb * base * lit;
-  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base, physical_normal), lit);
+  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_plane, 1.0)), physical_px);
   let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);

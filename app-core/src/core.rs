@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::encoder::{Encoder, PassTime, Stamps};
-use crate::gpu::layout::Fit;
+use crate::gpu::layout::{Fit, Grid};
 use crate::gpu::{AdapterChoice, Gpu, GpuError};
 use crate::inject::InjectedVisibility;
 use crate::maps::{FloatMap, Map};
@@ -282,6 +282,22 @@ impl Core {
             return Ok(None);
         };
         Ok(work.read_map(&self.gpu, map)?)
+    }
+
+    /// Waits for the device and returns each receiver's coarse grid with the filled residuals on it, once there was a
+    /// retargeted frame of the model.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {
+        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
+            return Ok(Vec::new());
+        };
+        let grids = model.knowledge.layout.grids.into_iter().enumerate();
+        let residuals = grids
+            .take(model.capture.plan.n_receivers as usize)
+            .map(|(receiver, grid)| Ok((grid, model.read_residual(&self.gpu, receiver)?)));
+        residuals.collect()
     }
 
     /// The model's plan of the latest retargeted frame, once there was one.

@@ -11,6 +11,8 @@ use crate::region::PlaneRect;
 const MAX_SIDE_CELLS: u32 = 64;
 /// What a grid reaches beyond its rectangle on each side, relative: another clip reaches a little farther.
 const SPARE: f64 = 0.1;
+/// Size of the grid over a receiver that nothing reaches: one over anything else has a longer side.
+const UNREACHED: [u32; 2] = [1, 1];
 
 /// Lays a grid of square cells over each rectangle, pyramid after pyramid in one buffer.
 #[must_use]
@@ -42,7 +44,7 @@ fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
             origin_in_plane: [0.0; 2],
             cell_m: 1.0,
             first_cell,
-            size: [1, 1],
+            size: UNREACHED,
             _pad: [0; 2],
         };
     }
@@ -91,6 +93,10 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
         // A cell more or less is of no account: what lies beyond takes the value at the border.
         let slack = f64::from(grid.cell_m);
         let is_reached = rect.min.cmple(rect.max).all();
-        !is_reached || (rect.min.cmpge(origin - slack).all() && rect.max.cmple(origin + size + slack).all())
+        let is_laid = grid.size != UNREACHED;
+        !is_reached
+            || (is_laid
+                && rect.min.cmpge(origin - slack).all()
+                && rect.max.cmple(origin + size + slack).all())
     })
 }

@@ -101,7 +101,7 @@ impl Model {
             Map::Visibility => read_texture(gpu, &capture.shown.lights.raw),
             Map::Ambient => read_texture(gpu, &capture.shown.ambient.raw),
             Map::Plate => read_texture(gpu, &capture.plate().raw),
-            Map::Residual => self.read_cells(gpu),
+            Map::Residual => self.read_residual(gpu, 0),
             Map::Share => self.read_share(gpu),
             Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
                 return Ok(None);
@@ -130,16 +130,18 @@ impl Model {
         })
     }
 
-    fn read_cells(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let [width, height] = self.knowledge.layout.grids[0].size;
-        let cells = &self.knowledge.residual.cells;
-        let mut texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(cells)?);
+    /// Waits for the device and returns the filled residuals on a receiver; empty for one there is none of.
+    pub(crate) fn read_residual(&self, gpu: &Gpu, receiver: usize) -> Result<FloatMap, GpuError> {
+        let grid = self.knowledge.layout.grids[receiver];
+        let cells = gpu.read_buffer(&self.knowledge.residual.cells)?;
+        let cells: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&cells);
+        let [width, height] = grid.size;
         // The coarser levels of the pyramid follow the finest.
-        texels.truncate((width * height) as usize);
+        let finest = cells.into_iter().skip(grid.first_cell as usize);
         Ok(FloatMap {
             width,
             height,
-            texels,
+            texels: finest.take((width * height) as usize).collect(),
         })
     }
 }

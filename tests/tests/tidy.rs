@@ -103,6 +103,8 @@ fn planned_passes() -> Vec<&'static str> {
     let facts = SceneFacts {
         region,
         penumbra_px: vec![10.0; 4],
+        n_receivers: 2,
+        is_plate_complete: false,
     };
     let passes = |preset: &Preset| match preset.method() {
         Method::Model(settings) => Plan::new(&facts, &settings).passes,

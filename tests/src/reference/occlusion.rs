@@ -76,29 +76,43 @@ impl Occluder {
             });
         hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
+}
 
-    /// Share of the light points of each multisample position that the mesh hides from `texel` of a map of
-    /// `map_px` texels over the region, or `None` where that texel looks past the plane.
-    ///
-    /// Light point i is seen from multisample position i % 4.
-    #[must_use]
-    pub fn hidden_share(
-        &self,
-        region: &Region,
-        (map_px, texel): (UVec2, UVec2),
-        light_points: &[DVec4],
-    ) -> Option<f64> {
-        let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
-        let mut n_hidden = 0.0;
-        for (i, light_point) in light_points.iter().enumerate() {
-            let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
-            let in_plane = region.receivers[0].plane_point(position * region_px_per_texel)?;
-            n_hidden += f64::from(u8::from(self.hides(in_plane, *light_point)));
-        }
-        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
-        let n_points = light_points.len() as f64;
-        Some(n_hidden / n_points)
+/// A mesh and what it hides, in a receiver's plane space: the points of a light, or directions of the ambient light.
+#[derive(Clone, Debug)]
+pub struct Caster {
+    /// The posed mesh.
+    pub occluder: Occluder,
+    /// Homogeneous: (position, 1) or (direction, 0).
+    pub light_points: Vec<DVec4>,
+}
+
+/// Share of the light points of each multisample position that the mesh hides from `texel` of a map of `map_px` texels
+/// over the region, or `None` where that texel looks past the receivers. There is a caster for each of them.
+///
+/// Light point i is seen from multisample position i % 4. Of several receivers a texel shows the one at its centre;
+/// a single one is taken to go on for ever.
+#[must_use]
+pub fn hidden_share(casters: &[Caster], region: &Region, (map_px, texel): (UVec2, UVec2)) -> Option<f64> {
+    let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
+    let receiver = if casters.len() == 1 {
+        0
+    } else {
+        let centre = (texel.as_dvec2() + 0.5) * region_px_per_texel;
+        region.receiver_point(centre)?.receiver
+    };
+    let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
+    let mut n_hidden = 0.0;
+    for (i, light_point) in caster.light_points.iter().enumerate() {
+        let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
+        let in_plane = plane.plane_point(position * region_px_per_texel)?;
+        // A point behind the receiver lights nothing of it.
+        let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
+        n_hidden += f64::from(u8::from(is_hidden));
     }
+    #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+    let n_points = caster.light_points.len() as f64;
+    Some(n_hidden / n_points)
 }
 
 /// Triangles within a box, halved until few are left.

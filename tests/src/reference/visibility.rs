@@ -1,24 +1,19 @@
 //! Twin of `visibility.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
 
-use glam::{DVec2, DVec3, DVec4, UVec2};
+use glam::{DVec2, DVec3, UVec2};
 
 use app_core::scene::Light;
 
 use super::model::Region;
-use super::occlusion::Occluder;
+use super::occlusion::{Caster, Occluder, hidden_share};
 use super::raster::Raster;
 
-/// Visibility over a map of `map_px` texels of the region, from one light's points or from the ambient directions.
+/// Visibility over a map of `map_px` texels of the region, from what a caster for each receiver leaves of a light.
 ///
-/// A texel that looks past the plane is wholly visible.
+/// A texel that looks past the receivers is wholly visible.
 #[must_use]
-pub fn visibility_map(
-    occluder: &Occluder,
-    region: &Region,
-    map_px: UVec2,
-    light_points: &[DVec4],
-) -> Raster<f64> {
-    let hidden = |texel| occluder.hidden_share(region, (map_px, texel), light_points);
+pub fn visibility_map(casters: &[Caster], region: &Region, map_px: UVec2) -> Raster<f64> {
+    let hidden = |texel| hidden_share(casters, region, (map_px, texel));
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
 

@@ -3,7 +3,7 @@
 use app_core::gpu::phone_limits;
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
 use naga::{
-    AddressSpace, ArraySize, Expression, GlobalVariable, Handle, ImageClass, Literal, Module, TypeInner,
+    AddressSpace, ArraySize, Expression, GlobalVariable, Handle, ImageClass, Literal, Module, Type, TypeInner,
 };
 
 use crate::mirrors::{Member, SHARED_CONSTANTS, mirrors};
@@ -113,22 +113,25 @@ fn struct_problems(module: &Module) -> Vec<String> {
     problems
 }
 
-/// Names of the structs that buffers hold, alone or in an array.
+/// Names of the structs that buffers hold: alone, in arrays, or within others.
 pub(crate) fn shared_structs(module: &Module) -> Vec<String> {
     let is_buffer = |global: &&GlobalVariable| {
         matches!(global.space, AddressSpace::Uniform | AddressSpace::Storage { .. })
     };
     let globals = module.global_variables.iter().map(|(_, global)| global);
-    globals
-        .filter(is_buffer)
-        .filter_map(|global| {
-            let mut ty = &module.types[global.ty];
-            while let TypeInner::Array { base, .. } = ty.inner {
-                ty = &module.types[base];
+    let mut held: Vec<Handle<Type>> = globals.filter(is_buffer).map(|global| global.ty).collect();
+    let mut names = Vec::new();
+    while let Some(ty) = held.pop() {
+        match &module.types[ty].inner {
+            TypeInner::Array { base, .. } => held.push(*base),
+            TypeInner::Struct { members, .. } => {
+                held.extend(members.iter().map(|member| member.ty));
+                names.push(module.types[ty].name.clone().unwrap_or_default());
             }
-            matches!(ty.inner, TypeInner::Struct { .. }).then(|| ty.name.clone().unwrap_or_default())
-        })
-        .collect()
+            _ => {}
+        }
+    }
+    names
 }
 
 fn shader_member(module: &Module, member: &naga::StructMember) -> Member {

@@ -5,13 +5,14 @@
 mod check;
 mod mirrors;
 
-use app_core::gpu::layout::{MAX_LIGHTS, N_COLUMNS};
+use app_core::gpu::layout::{MAX_CELLS, MAX_LIGHTS, MAX_RECEIVERS, N_COLUMNS};
 use app_core::gpu::phone_limits;
 use app_core::gpu::shaders::{ALL, Shader};
+use app_core::grids::grids_over;
 use app_core::plan::{Plan, SceneFacts};
 use app_core::preset::BALANCED;
-use app_core::region::PixelRect;
-use glam::UVec2;
+use app_core::region::{PixelRect, PlaneRect};
+use glam::{DVec2, UVec2};
 use naga::Module;
 use naga::valid::Capabilities;
 
@@ -129,8 +130,17 @@ fn the_sums_of_the_fit_have_room() {
 #[test]
 fn the_levels_of_the_fill_reach_one_cell() {
     let fill = module("fill");
-    let largest = plan(8000, 6000).grid.size.into_iter().max().unwrap();
-    assert!(largest > 32 && largest <= 1 << (number(&fill, "N_LEVELS") - 1));
+    let square = PlaneRect {
+        min: DVec2::splat(-0.4),
+        max: DVec2::splat(0.4),
+    };
+    let [width, height] = grids_over(&[square]).grids[0].size;
+    assert!(width.max(height) > 32 && width.max(height) <= 1 << (number(&fill, "N_LEVELS") - 1));
+    assert_eq!(
+        (width * height) as usize,
+        MAX_CELLS,
+        "the sums of the largest grid have room"
+    );
     assert_eq!(
         fill.entry_points[0].workgroup_size,
         [number(&fill, "WORKGROUP"), 1, 1]
@@ -145,8 +155,14 @@ fn a_light_point_fits_each_sample_and_channel() {
         .find(|mirror| mirror.name == "LightPoints")
         .unwrap();
     let limits = phone_limits();
-    // Four samples a pixel, four channels a target, 16 bytes a point.
-    assert_eq!(points.size, 4 * 4 * limits.max_color_attachments as usize * 16);
+    let points = points
+        .members
+        .iter()
+        .find(|member| member.name == "points")
+        .unwrap();
+    // Four samples a pixel, four channels a target, 16 bytes a point in the space of each receiver.
+    let n_points = 4 * 4 * limits.max_color_attachments as usize;
+    assert_eq!(points.size, n_points * MAX_RECEIVERS * 16);
     // One channel of the visibility map a light.
     const { assert!(MAX_LIGHTS <= 4) };
 }
@@ -160,6 +176,8 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
         &SceneFacts {
             region,
             penumbra_px: vec![10.0],
+            n_receivers: 1,
+            is_plate_complete: true,
         },
         &BALANCED,
     )
@@ -173,17 +191,17 @@ fn faults_in_a_shader_are_found() {
         ("composite", "bounce", "rebound", ["Fit", "rebound"]),
         (
             "residual",
-            "cell_px: u32,\n  _pad: u32,",
-            "_pad: u32,\n  cell_px: u32,",
-            ["Grid", "cell_px"],
+            "size: vec2u,\n  _pad: vec2u,",
+            "_pad: vec2u,\n  size: vec2u,",
+            ["Grid", "size"],
         ),
         (
             "residual",
-            "_pad: u32",
-            "normal_offset: u32",
+            "_pad: vec2u",
+            "normal_offset: vec2u",
             ["Grid", "normal_offset"],
         ),
-        ("residual", "_pad: u32", "_pad: f32", ["Grid", "_pad"]),
+        ("residual", "_pad: vec2u", "_pad: vec2f", ["Grid", "_pad"]),
         (
             "present",
             "origin_px: vec2u,",
@@ -192,8 +210,8 @@ fn faults_in_a_shader_are_found() {
         ),
         (
             "occlusion",
-            "array<vec4f, 64>",
-            "array<vec4f, 32>",
+            "array<vec4f, 256>",
+            "array<vec4f, 128>",
             ["LightPoints", "bytes"],
         ),
         (
@@ -218,9 +236,9 @@ fn faults_in_a_shader_are_found() {
         ("present", "@group(1)", "@group(4)", ["5", "bind groups"]),
         (
             "residual",
-            "var product",
-            "var product: vec2f",
-            ["does not parse", "product"],
+            "var sums = Sums",
+            "var sums: vec2f = Sums",
+            ["does not parse", "sums"],
         ),
     ];
     for (name, from, to, words) in faults {

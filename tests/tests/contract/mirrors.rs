@@ -23,31 +23,40 @@ pub(crate) struct Member {
 
 /// What a host type is made of.
 trait Plain {
-    const KIND: ScalarKind;
+    /// None for a struct, whose members are compared by themselves.
+    const KIND: Option<ScalarKind>;
 }
 
 impl Plain for f32 {
-    const KIND: ScalarKind = ScalarKind::Float;
+    const KIND: Option<ScalarKind> = Some(ScalarKind::Float);
 }
 
 impl Plain for i32 {
-    const KIND: ScalarKind = ScalarKind::Sint;
+    const KIND: Option<ScalarKind> = Some(ScalarKind::Sint);
 }
 
 impl Plain for u32 {
-    const KIND: ScalarKind = ScalarKind::Uint;
+    const KIND: Option<ScalarKind> = Some(ScalarKind::Uint);
 }
 
 impl<T: Plain, const N: usize> Plain for [T; N] {
-    const KIND: ScalarKind = T::KIND;
+    const KIND: Option<ScalarKind> = T::KIND;
 }
+
+macro_rules! plain_structs {
+    ($($name:ident),*) => {$(impl Plain for layout::$name {
+        const KIND: Option<ScalarKind> = None;
+    })*};
+}
+
+plain_structs!(ReceiverPlane, ReceiverFit, Grid, PlateView);
 
 fn member<T, F: Plain>(name: &str, offset: usize, _type_of: impl Fn(&T) -> F) -> Member {
     Member {
         name: name.to_owned(),
         offset,
         size: size_of::<F>(),
-        kind: Some(F::KIND),
+        kind: F::KIND,
     }
 }
 
@@ -70,35 +79,73 @@ macro_rules! mirror {
 /// Every struct of `gpu/layout.rs`.
 pub(crate) fn mirrors() -> Vec<Mirror> {
     vec![
+        mirror!(ReceiverPlane {
+            plane_from_stage,
+            plane_from_region_px,
+            clip_from_plane,
+            lights,
+            reference_in_plane,
+            half_extent_m
+        }),
         mirror!(Globals {
             clip_from_stage,
-            plane_from_region_px,
-            clip_from_receiver,
+            receivers,
             lights,
             border_px,
             camera_in_stage,
             n_lights,
-            reference_in_plane,
-            half_extent_m,
             region_size_px,
             region_origin_px,
+            n_receivers,
+            _pad_0,
+            _pad_1
+        }),
+        mirror!(ReceiverFit {
+            bounce,
+            share,
+            contrast
         }),
         mirror!(Fit {
             gain,
-            bounce,
-            share,
-            toy,
-            contrast
+            level,
+            receivers,
+            toy
         }),
         mirror!(FitStep {
             is_reweighted,
             n_rows,
             n_columns,
             subject,
-            stride_px
+            receiver,
+            stride_px,
+            is_last
         }),
-        mirror!(Grid { size, cell_px, _pad }),
-        mirror!(LightPoints { points }),
+        mirror!(Grid {
+            origin_in_plane,
+            cell_m,
+            first_cell,
+            size,
+            _pad
+        }),
+        mirror!(Grids { grids }),
+        mirror!(LightPoints {
+            points,
+            texel_px,
+            n_points,
+            _pad
+        }),
+        mirror!(PlateView {
+            plate_px_from_plane,
+            camera_in_plane,
+            gain
+        }),
+        mirror!(PlateViews {
+            plates,
+            camera_in_plane,
+            n_plates,
+            is_same_view,
+            _pad
+        }),
         mirror!(SelfShadow {
             atlas_from_stage,
             first_tile,
@@ -129,10 +176,14 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
 /// Constants that go by one name on both sides.
 pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_LIGHTS", layout::MAX_LIGHTS),
+    ("MAX_RECEIVERS", layout::MAX_RECEIVERS),
+    ("MAX_PLATES", layout::MAX_PLATES),
+    ("MAX_CELLS", layout::MAX_CELLS),
     ("N_COLUMNS", layout::N_COLUMNS),
     ("MAX_TILES", layout::MAX_TILES),
     ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
     ("SUBJECT_TOY", layout::Subject::Toy as usize),
+    ("SUBJECT_LEVELS", layout::Subject::Levels as usize),
 ];
 
 /// Fractional constants that go by one name on both sides, and the shader they are in.

@@ -30,6 +30,8 @@ fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
     let facts = SceneFacts {
         region,
         penumbra_px: penumbra_px.to_vec(),
+        n_receivers: 2,
+        is_plate_complete: false,
     };
     Plan::new(&facts, &BALANCED)
 }
@@ -75,6 +77,8 @@ fn what_belongs_to_the_place_is_not_on_the_frame_path() {
             "appearance",
         ][..],
         &["occlusion", "visibility", "fit", "fit_solve", "residual", "fill"],
+        &["plate", "lit", "estimate", "fit"],
+        &["evidence", "fit"],
     ] {
         assert!(
             order.is_sorted_by_key(|name| place(name)),
@@ -138,29 +142,18 @@ fn a_scene_without_lights_has_nothing_to_overlap() {
 }
 
 #[test]
-fn grid_and_ambient_maps_cover_the_region() {
+fn ambient_maps_cover_the_region() {
     let divisor = BALANCED.ambient_divisor;
     for size_px in SIZES_PX {
         let plan = plan(size_px, &[10.0]);
         assert_eq!(plan.region.size_px.to_array(), size_px);
-        let maps = [
-            (plan.grid.size, plan.grid.cell_px),
-            (plan.ambient_px.to_array(), divisor),
-        ];
-        for (n_cells, cell_px) in maps {
-            for (n_cells, side_px) in n_cells.into_iter().zip(size_px) {
-                let covered = n_cells * cell_px;
-                assert!(
-                    covered >= side_px && covered < side_px + cell_px,
-                    "{size_px:?}: {n_cells} of {cell_px}"
-                );
-            }
+        for (n_texels, side_px) in plan.ambient_px.to_array().into_iter().zip(size_px) {
+            let covered = n_texels * divisor;
+            assert!(
+                covered >= side_px && covered < side_px + divisor,
+                "{size_px:?}: {n_texels} of {divisor}"
+            );
         }
-        assert!(
-            plan.grid.size.into_iter().all(|n| n <= 64),
-            "{size_px:?}: {:?}",
-            plan.grid
-        );
     }
 }
 

@@ -21,8 +21,8 @@ fn penumbra_m(toy_height_m: f64, light: DVec3, radius_m: f64) -> f64 {
 fn the_penumbra_is_as_wide_as_similar_triangles_make_it() {
     let rig = Rig::new(DVec3::ZERO);
     let view = rig.view();
-    let plane_from_world = rig.plane_from_world();
-    let measured_px = |light: &Light| view.penumbra_px(light, &plane_from_world, &TOY);
+    let world_from_plane = rig.world_from_plane();
+    let measured_px = |light: &Light| view.penumbra_px(light, &world_from_plane, &TOY);
     let px_per_m = rig.intrinsics.fx_px.max(rig.intrinsics.fy_px) / rig.depth_m(TOY.centre());
     for to_light in [
         DVec3::Y,

@@ -4,7 +4,7 @@ use app_core::region::{Bounds, PixelRect, Reach};
 use app_core::scene::Intrinsics;
 use glam::{DVec2, DVec3, UVec2};
 
-use crate::rig::{BULB_AT, RECT, Rig, TOY, points_on_plane, shadow};
+use crate::rig::{BULB_AT, RECT, Rig, TOY, place, points_on_plane, shadow};
 
 fn assert_holds(rect: &PixelRect, image_px: UVec2, point_px: DVec2, what: &str) {
     let seen_px = point_px.clamp(DVec2::ZERO, image_px.as_dvec2());
@@ -75,8 +75,8 @@ fn the_region_holds_the_penumbra() {
 #[test]
 fn the_region_of_some_points_is_within_that_of_their_box() {
     let rig = Rig::new(DVec3::ZERO);
-    let (view, lights) = (rig.view(), [rig.bulb(BULB_AT, 0.0)]);
-    let mut reach = Reach::new(&view, &TOY, &lights, &rig.plane_from_world());
+    let (view, receivers, lights) = (rig.view(), [rig.receiver()], [rig.bulb(BULB_AT, 0.0)]);
+    let mut reach = Reach::new(&view, &TOY, &place(&receivers, &lights));
     assert_eq!(reach.region(), None, "nothing is in reach of nothing");
     let points = [TOY.min, TOY.centre(), TOY.centre().with_y(TOY.max.y)];
     points.into_iter().for_each(|point| reach.include(point));

@@ -1,8 +1,9 @@
 //! A camera over a receiver, projected by hand: dot products with axes, no matrix.
 
 use app_core::gpu::layout::Globals;
-use app_core::region::{Bounds, PixelRect, Place, View};
+use app_core::region::{Bounds, PixelRect};
 use app_core::scene::{Intrinsics, Light, Receiver, Surface};
+use app_core::view::{Place, View};
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
 /// Camera and receiver as axes and positions in world space.
@@ -82,8 +83,8 @@ impl Rig {
         self.origin + in_plane.x * x + in_plane.y * y + in_plane.z * z
     }
 
-    pub(crate) fn plane_from_world(&self) -> DMat4 {
-        self.receiver().world_from_plane.inverse()
+    pub(crate) fn world_from_plane(&self) -> DMat4 {
+        self.receiver().world_from_plane
     }
 
     pub(crate) fn depth_m(&self, in_plane: DVec3) -> f64 {
@@ -113,12 +114,7 @@ impl Rig {
 
     pub(crate) fn view(&self) -> View {
         let world_from_camera = columns(self.right, self.up, -self.forward, self.eye);
-        View::new(
-            self.image_px,
-            self.intrinsics,
-            &world_from_camera,
-            &self.receiver(),
-        )
+        View::new(self.image_px, self.intrinsics, &world_from_camera)
     }
 
     /// A bulb at a position in plane space.
@@ -140,17 +136,20 @@ impl Rig {
 
     /// What the shaders are told of the rig.
     pub(crate) fn globals(&self, rect: &PixelRect, lights: &[Light]) -> Globals {
-        let place = Place {
-            receiver: &self.receiver(),
-            lights,
-            plane_from_world: &self.plane_from_world(),
-            reference_in_plane: DVec2::new(0.01, 0.005),
-        };
-        self.view().globals(rect, &place)
+        self.view().globals(rect, &place(&[self.receiver()], lights))
     }
 
     pub(crate) fn region(&self, toy: &Bounds, lights: &[Light]) -> Option<PixelRect> {
-        self.view().region(toy, lights, &self.plane_from_world())
+        self.view().region(toy, &place(&[self.receiver()], lights))
+    }
+}
+
+/// The toy in the middle of its receivers and lights.
+pub(crate) fn place<'a>(receivers: &'a [Receiver], lights: &'a [Light]) -> Place<'a> {
+    Place {
+        receivers,
+        lights,
+        toy_in_stage: TOY.centre(),
     }
 }
 

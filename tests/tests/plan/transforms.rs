@@ -16,7 +16,7 @@ fn plane_of(homography: &DMat3, region_px: DVec2) -> DVec2 {
 #[test]
 fn pixels_and_plane_are_inverse() {
     let rig = Rig::new(DVec3::ZERO);
-    let plane_from_region_px = rig.view().plane_from_region_px(&RECT);
+    let plane_from_region_px = rig.view().plane_from_region_px(&RECT, &rig.world_from_plane());
     for point in points_on_plane() {
         let region_px = rig.pixel(point) - RECT.origin_px.as_dvec2();
         let there = plane_of(&plane_from_region_px, region_px);
@@ -35,7 +35,7 @@ fn pixels_and_plane_are_inverse() {
 #[test]
 fn clip_space_is_the_region_with_reversed_depth() {
     let rig = Rig::new(DVec3::ZERO);
-    let clip_from_stage = rig.view().clip_from_stage(&RECT);
+    let clip_from_stage = rig.view().clip_from(&RECT, &rig.world_from_plane());
     for point in points_on_plane().chain(TOY.corners()) {
         let clip = clip_from_stage * point.extend(1.0);
         let ndc = clip.truncate() / clip.w;
@@ -54,7 +54,7 @@ fn the_camera_is_where_it_was_put() {
     let mut rig = Rig::new(DVec3::ZERO);
     let eye = DVec3::new(0.3, 0.7, -0.5);
     rig.place_camera(eye, DVec3::ZERO);
-    assert!((rig.view().camera_in_stage() - eye).length() < 1e-12);
+    assert!((rig.view().camera_in(&rig.world_from_plane()) - eye).length() < 1e-12);
 }
 
 /// The shaders work in f32, and ten kilometres from the world's origin f32 steps are a millimetre.
@@ -75,7 +75,11 @@ fn far_from_the_origin_nothing_changes() {
     for point in points_on_plane().chain(TOY.corners()) {
         assert!((px(&a, point) - px(&b, point)).length() < 1e-3, "{point}");
     }
-    for (here, there) in a.lights.into_iter().zip(b.lights) {
+    let lights = |globals: &Globals| {
+        let of_plane = globals.receivers[0].lights;
+        globals.lights.into_iter().chain(of_plane).collect::<Vec<_>>()
+    };
+    for (here, there) in lights(&a).into_iter().zip(lights(&b)) {
         assert!((Vec4::from(here) - Vec4::from(there)).length() < 1e-6);
     }
     assert!((Vec3::from(a.camera_in_stage) - Vec3::from(b.camera_in_stage)).length() < 1e-6);
@@ -86,8 +90,8 @@ fn the_shaders_homographies_are_exact_to_a_hundredth_of_a_pixel() {
     let rig = Rig::new(TEN_KM);
     let globals = rig.globals(&RECT, &[]);
     let truncated = |columns: [[f32; 4]; 3]| Mat3::from_cols_array_2d(&columns.map(|[x, y, z, _]| [x, y, z]));
-    let plane_from_region_px = truncated(globals.plane_from_region_px);
-    let clip_from_receiver = truncated(globals.clip_from_receiver);
+    let plane_from_region_px = truncated(globals.receivers[0].plane_from_region_px);
+    let clip_from_plane = truncated(globals.receivers[0].clip_from_plane);
     for point in points_on_plane() {
         let expected_px = rig.pixel(point) - RECT.origin_px.as_dvec2();
         let at = plane_from_region_px * expected_px.as_vec2().extend(1.0);
@@ -99,7 +103,7 @@ fn the_shaders_homographies_are_exact_to_a_hundredth_of_a_pixel() {
             (there_px - expected_px).length()
         );
 
-        let clip = clip_from_receiver * Vec3::new(point.as_vec3().x, point.as_vec3().z, 1.0);
+        let clip = clip_from_plane * Vec3::new(point.as_vec3().x, point.as_vec3().z, 1.0);
         let ndc = (clip.truncate() / clip.z).as_dvec2();
         let px = (ndc * DVec2::new(0.5, -0.5) + 0.5) * RECT.size_px.as_dvec2();
         assert!(

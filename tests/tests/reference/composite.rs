@@ -5,7 +5,7 @@ use harness::reference::composite::{CompositeConstants, Shown, inside_border, re
 use harness::reference::model::{Pictures, Region};
 use harness::reference::raster::Raster;
 
-use crate::flat::{region, scatter, truth, two_bulbs};
+use crate::flat::{grid, region, scatter, truth, two_bulbs};
 
 const SIZE: UVec2 = UVec2::new(61, 37);
 
@@ -33,8 +33,8 @@ fn scene() -> (Region, Pictures, Shown) {
         visibility,
         ambient,
         solution: truth(2),
-        residual,
-        cell_px: 4,
+        residuals: vec![residual],
+        grids: vec![grid(SIZE, 4)],
     };
     (region(SIZE, two_bulbs()), pictures, shown)
 }
@@ -55,7 +55,7 @@ fn unmoved_shadow_passes_the_frame_through() {
 #[test]
 fn beside_the_receiver_only_the_toy_goes() {
     let (mut region, mut pictures, shown) = scene();
-    region.half_extent_m.x = 0.105;
+    region.receivers[0].half_extent_m.x = 0.105;
     // Even rows are clear of the toy, odd ones are not.
     pictures.seen = Raster::from_fn(SIZE, |at| f64::from(1 - at.y % 2));
     let picture = picture(&region, &pictures, &shown);
@@ -80,7 +80,7 @@ fn toy_taken_away_leaves_the_plate_at_the_frames_exposure() {
     pictures.seen = Raster::from_fn(SIZE, |_| 0.0);
     shown.visibility = Raster::from_fn(SIZE, |_| DVec4::ONE);
     shown.ambient = Raster::from_fn(UVec2::ONE, |_| 1.0);
-    shown.residual = Raster::from_fn(UVec2::ONE, |_| DVec3::ZERO);
+    shown.residuals = vec![Raster::from_fn(UVec2::ONE, |_| DVec3::ZERO)];
     let expected = pictures.plate.map(|plate| plate * shown.solution.gain);
     for (actual, expected) in picture(&region, &pictures, &shown)
         .texels()

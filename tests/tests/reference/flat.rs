@@ -1,7 +1,8 @@
 //! A region that looks straight down: one pixel is one centimetre of the receiver.
 
-use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
-use harness::reference::model::{Region, Solution};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
+use harness::reference::model::{ReceiverPlane, ReceiverPoint, ReceiverSolution, Region, Solution};
+use harness::reference::residual::PlaneGrid;
 
 /// Metres a pixel.
 pub(crate) const PIXEL_M: f64 = 0.01;
@@ -9,17 +10,39 @@ pub(crate) const PIXEL_M: f64 = 0.01;
 /// The middle of the region lies over the plane's origin.
 pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
     let half_m = 0.5 * PIXEL_M * size_px.as_dvec2();
-    Region {
+    let receiver = ReceiverPlane {
+        plane_from_stage: DMat4::IDENTITY,
         plane_from_region_px: DMat3::from_cols(
             DVec3::new(PIXEL_M, 0.0, 0.0),
             DVec3::new(0.0, PIXEL_M, 0.0),
             (-half_m).extend(1.0),
         ),
+        lights: lights.clone(),
+        reference_in_plane: DVec2::ZERO,
+        half_extent_m: DVec2::splat(10.0),
+    };
+    Region {
+        receivers: vec![receiver],
         size_px,
         border_px: [0.0; 4],
         lights,
-        reference_in_plane: DVec2::ZERO,
-        half_extent_m: DVec2::splat(10.0),
+    }
+}
+
+/// A point of the one receiver.
+pub(crate) fn point(in_plane: DVec2) -> ReceiverPoint {
+    ReceiverPoint {
+        receiver: 0,
+        in_plane,
+    }
+}
+
+/// Cells of `cell_px` pixels over a region of `size_px`.
+pub(crate) fn grid(size_px: UVec2, cell_px: u32) -> PlaneGrid {
+    PlaneGrid {
+        origin_in_plane: -0.5 * PIXEL_M * size_px.as_dvec2(),
+        cell_m: PIXEL_M * f64::from(cell_px),
+        size: (size_px + cell_px - 1) / cell_px,
     }
 }
 
@@ -33,10 +56,13 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
     let shares = [DVec3::new(0.31, 0.35, 0.42), DVec3::new(0.24, 0.2, 0.11)];
     Solution {
         gain: DVec3::new(1.05, 0.98, 0.93),
-        bounce: DVec3::new(0.3, 0.12, 0.06),
-        shares: shares[..n_lights].to_vec(),
+        levels: vec![DVec3::ONE; n_lights],
+        receivers: vec![ReceiverSolution {
+            bounce: DVec3::new(0.3, 0.12, 0.06),
+            shares: shares[..n_lights].to_vec(),
+            contrast: DVec3::ZERO,
+        }],
         toy: vec![DVec3::splat(0.5); 2 + n_lights],
-        contrast: DVec3::ZERO,
     }
 }
 
@@ -46,10 +72,13 @@ pub(crate) fn start(n_lights: usize) -> Solution {
     let share = 0.5 / n_lights as f64;
     Solution {
         gain: DVec3::ONE,
-        bounce: DVec3::splat(0.2),
-        shares: vec![DVec3::splat(share); n_lights],
+        levels: vec![DVec3::ONE; n_lights],
+        receivers: vec![ReceiverSolution {
+            bounce: DVec3::splat(0.2),
+            shares: vec![DVec3::splat(share); n_lights],
+            contrast: DVec3::ZERO,
+        }],
         toy: vec![DVec3::ZERO; 2 + n_lights],
-        contrast: DVec3::ZERO,
     }
 }
 

@@ -6,7 +6,7 @@ use harness::reference::model::Pictures;
 use harness::reference::raster::Raster;
 use harness::reference::residual::{Cell, ResidualConstants, pool};
 
-use crate::flat::{region, scatter, truth, two_bulbs};
+use crate::flat::{grid, region, scatter, truth, two_bulbs};
 
 /// Neither side is a multiple of the other, of a power of two or of a cell.
 const SIZE: UVec2 = UVec2::new(61, 37);
@@ -43,16 +43,16 @@ fn constant_residual_is_pooled_as_it_is() {
         ambient: Raster::from_fn(UVec2::new(7, 5), |_| 0.9),
     };
     pictures.frame = Raster::from_fn(SIZE, |at| {
-        let in_plane = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
-        let model = solution.receiver_model(&region, in_plane, 0.9, visibility);
+        let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
+        let model = solution.receiver_model(&region, point, 0.9, visibility);
         if is_hidden(at) {
             DVec3::ONE
         } else {
-            pictures.plate.at(at) * (model + residual)
+            solution.gain * pictures.plate.at(at) * (model + residual)
         }
     });
     let constants = ResidualConstants::from_shader().unwrap();
-    let cells = pool(&region, &pictures, &solution, &constants, 4);
+    let cells = pool(&region, &pictures, &solution, &constants, (0, &grid(SIZE, 4)));
     assert_eq!(cells.size(), UVec2::new(16, 10));
     let full = cells.at(UVec2::ZERO);
     assert!((full.certainty - 1.0).abs() < 1e-12, "{full:?}");

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use app_core::light_points::{ambient_directions, light_points};
 use app_core::scene::Light;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
-use harness::reference::occlusion::Occluder;
+use harness::reference::occlusion::{Caster, Occluder};
 use harness::reference::visibility::{exact_visibility, visibility_map};
 
 use crate::flat;
@@ -167,8 +167,11 @@ fn map_looks_through_the_four_positions_of_a_pixel() {
         corner(1.0, 1.0),
         corner(-1.0, 1.0),
     ];
-    let occluder = Occluder::new(&corners, &[0, 1, 2, 0, 2, 3]);
-    let map = visibility_map(&occluder, &region, region.size_px, &[DVec4::Y; 4]);
+    let caster = Caster {
+        occluder: Occluder::new(&corners, &[0, 1, 2, 0, 2, 3]),
+        light_points: vec![DVec4::Y; 4],
+    };
+    let map = visibility_map(&[caster], &region, region.size_px);
     // The edge is in the middle of column 69: two of four positions lie on each side.
     for (column, expected) in [(68, 0.0), (69, 0.5), (70, 1.0)] {
         let visibility = map.at(UVec2::new(column, 40));

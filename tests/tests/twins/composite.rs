@@ -1,6 +1,6 @@
 //! `composite` where it shows the receiver, in codes of the finished picture.
 
-use glam::{DVec2, UVec2};
+use glam::{DVec2, DVec4, UVec2};
 use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
 use harness::reference::model::centre_px;
 use harness::reference::raster::Raster;
@@ -30,8 +30,8 @@ fn receiver_in_codes() {
             visibility: run.shown_visibility.clone(),
             ambient: run.shown_ambient.clone(),
             solution: run.solution.clone(),
-            residual: run.residual.map(|texel| texel.truncate()),
-            cell_px: run.plan.grid.cell_px,
+            residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
+            grids: run.grids.clone(),
         };
         let hidden = shows_toy(run);
         let texels = Raster::from_fn(run.region.size_px, |texel| texel);
@@ -63,7 +63,11 @@ fn receiver_in_codes() {
 #[test]
 fn setups_meet_every_branch() {
     type Condition = fn(&Run, UVec2) -> bool;
-    let conditions: [(&str, Condition); 3] = [
+    let conditions: [(&str, Condition); 4] = [
+        ("on a second receiver", |run, texel| {
+            let point = run.region.receiver_point(centre_px(texel));
+            point.is_some_and(|point| point.receiver == 1)
+        }),
         ("beside the receiver", |run, texel| {
             run.region.receiver_point(centre_px(texel)).is_none()
         }),
@@ -85,8 +89,4 @@ fn setups_meet_every_branch() {
         });
         assert!(is_met_somewhere, "no pixel is {what}");
     }
-    assert!(
-        runs().iter().any(|run| run.plan.grid.cell_px > 1),
-        "every cell is a pixel"
-    );
 }

@@ -1,7 +1,7 @@
 //! A device of our own, for what the core does not show: how the driver decodes sRGB, and `fill` on any cells.
 
 use app_core::gpu::GpuError;
-use app_core::gpu::layout::Grid;
+use app_core::gpu::layout::{Grid, Grids};
 use app_core::gpu::shaders::ALL;
 use app_core::wgpu;
 use glam::UVec2;
@@ -84,29 +84,31 @@ impl Device {
 
     /// Runs the `fill` of the registry over cells of values times certainties and their certainties.
     pub(crate) fn fill(&self, size: UVec2, cells: &[[f32; 4]]) -> Vec<[f32; 4]> {
-        let grid = Grid {
+        // Something of another receiver comes first.
+        const FIRST_CELL: usize = 3;
+        let mut grids = Grids::default();
+        grids.grids[0] = Grid {
+            first_cell: u32::try_from(FIRST_CELL).unwrap(),
             size: size.to_array(),
-            cell_px: 1,
-            _pad: 0,
+            ..Grid::default()
         };
-        let grid = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let grids = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
-            contents: bytemuck::bytes_of(&grid),
+            contents: bytemuck::bytes_of(&grids),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         // Coarser levels start as what was never written: they must not be read.
-        let mut pyramid = cells.to_vec();
+        let mut pyramid = vec![[f32::NAN; 4]; FIRST_CELL];
+        pyramid.extend(cells);
         pyramid.resize(2 * cells.len() + 256, [f32::NAN; 4]);
         let pyramid = self.storage(bytemuck::cast_slice(&pyramid));
         let source = ALL.iter().find(|shader| shader.name == "fill").unwrap().source();
         self.run(
             &source,
             "cs_pull_push",
-            &[grid.as_entire_binding(), pyramid.as_entire_binding()],
+            &[grids.as_entire_binding(), pyramid.as_entire_binding()],
         );
-        let mut filled = self.read(&pyramid);
-        filled.truncate(cells.len());
-        filled
+        self.read(&pyramid)[FIRST_CELL..][..cells.len()].to_vec()
     }
 
     fn storage(&self, contents: &[u8]) -> wgpu::Buffer {

@@ -1,10 +1,11 @@
 //! `fit` with `fit_solve`: sums of 32 bits over workgroups against sums of 64.
 
+use app_core::gpu::layout::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
 use harness::reference::fit::{
     FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_columns,
 };
-use harness::reference::model::{Solution, centre_px};
+use harness::reference::model::{ReceiverSolution, Solution, centre_px};
 use harness::reference::raster::Raster;
 
 use crate::errors::Errors;
@@ -15,19 +16,24 @@ use crate::run::{Run, runs};
 fn start(n_lights: usize) -> Solution {
     let constants = FitConstants::from_shaders().unwrap();
     let share = constants.prior_share / f64::from(u32::try_from(n_lights).unwrap());
-    Solution {
-        gain: DVec3::ONE,
+    let receiver = ReceiverSolution {
         bounce: DVec3::splat(constants.prior_bounce),
         shares: vec![DVec3::splat(share); n_lights],
-        toy: vec![DVec3::ZERO; 2 + n_lights],
         contrast: DVec3::ZERO,
+    };
+    Solution {
+        gain: DVec3::ONE,
+        levels: vec![DVec3::ONE; n_lights],
+        receivers: vec![receiver; MAX_RECEIVERS],
+        toy: vec![DVec3::ZERO; 2 + n_lights],
     }
 }
 
-fn receiver_values(solution: &Solution) -> impl Iterator<Item = f64> + '_ {
-    let colors = [solution.gain, solution.bounce, solution.contrast].into_iter();
+fn receiver_values(solution: &Solution, receiver: usize) -> impl Iterator<Item = f64> + '_ {
+    let of_receiver = &solution.receivers[receiver];
+    let colors = [solution.gain, of_receiver.bounce, of_receiver.contrast].into_iter();
     colors
-        .chain(solution.shares.iter().copied())
+        .chain(of_receiver.shares.iter().copied())
         .flat_map(|color| color.to_array())
 }
 
@@ -36,12 +42,23 @@ fn receiver() {
     let constants = FitConstants::from_shaders().unwrap();
     for run in runs() {
         let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
-        let start = start(run.region.lights.len());
-        let expected = fit_receiver(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
-        let errors = Errors::between(receiver_values(&run.solution).zip(receiver_values(&expected)));
-        // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and 8
-        // bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits: 4e-6.
-        errors.check_all(&format!("{}, receiver", run.stand.setup.name), 1e-3);
+        let mut expected = start(run.region.lights.len());
+        for receiver in 0..run.stand.receivers.len() {
+            let of_receiver = (receiver, &samples[..]);
+            expected = fit_receiver(
+                &run.region,
+                of_receiver,
+                &expected,
+                &constants,
+                run.plan.n_fit_steps,
+            );
+            let values = |solution| receiver_values(solution, receiver);
+            let errors = Errors::between(values(&run.solution).zip(values(&expected)));
+            // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and
+            // 8 bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits:
+            // 4e-6.
+            errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
+        }
     }
 }
 
@@ -53,12 +70,15 @@ fn receiver_finds_the_light_that_was_there() {
         let pairs = |colors: [DVec3; 2]| (0..3).map(move |channel| (colors[0][channel], colors[1][channel]));
         // Codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map, and the faint light that no list
         // names. Measured: 8e-3 and 8e-4.
-        let shares = run
-            .solution
-            .shares
-            .iter()
-            .zip(&truth.shares)
-            .flat_map(|(a, b)| pairs([*a, *b]));
+        let n_receivers = run.stand.receivers.len();
+        let shares = |solution: &Solution| -> Vec<DVec3> {
+            let receivers = solution.receivers[..n_receivers].iter();
+            receivers.flat_map(|receiver| receiver.shares.clone()).collect()
+        };
+        let shares = shares(&run.solution)
+            .into_iter()
+            .zip(shares(&truth))
+            .flat_map(|(a, b)| pairs([a, b]));
         Errors::between(shares).check_all(&format!("{}, true shares", run.stand.setup.name), 0.02);
         Errors::between(pairs([run.solution.gain, truth.gain])).check_all("true gain", 0.01);
     }
@@ -90,7 +110,11 @@ fn toy() {
     for run in runs() {
         let samples = toy_samples(run);
         assert!(samples.len() > 80, "the toy is too small");
-        let start = start(run.region.lights.len());
+        // The exposure is that of the receivers.
+        let start = Solution {
+            gain: run.solution.gain,
+            ..start(run.region.lights.len())
+        };
         let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
         // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
         let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
@@ -117,14 +141,13 @@ fn share_of_the_lights_over_the_receiver() {
         let size = run.share.size();
         let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
         let expected = Raster::from_fn(size, |texel| {
-            let Some(in_plane) = run.region.receiver_point(centre_px(texel) * scale) else {
+            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
                 return DVec3::ZERO;
             };
-            let shares = run.solution.shares.iter().enumerate();
-            let direct: DVec3 = shares
-                .map(|(i, share)| *share * run.region.falloff(i, in_plane))
-                .sum();
-            direct / run.solution.plate_falloff(&run.region, in_plane)
+            let lights = 0..run.region.lights.len();
+            lights
+                .map(|i| run.solution.light_share(&run.region, i, point))
+                .sum()
         });
         for (actual, expected) in run.share.texels().iter().zip(expected.texels()) {
             let error = (actual - expected).abs().max_element();

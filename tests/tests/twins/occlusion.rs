@@ -1,12 +1,12 @@
 //! `occlusion` with `visibility`: flattened meshes against rays.
 
+use app_core::toy::PosedMesh;
 use glam::DVec4;
-use harness::reference::occlusion::Occluder;
+use harness::reference::occlusion::Caster;
 use harness::reference::raster::Raster;
 use harness::reference::visibility::visibility_map;
 
 use crate::errors::Errors;
-use crate::place::ambient_points;
 use crate::run::{Run, runs};
 
 /// Share of a region's texels that may differ by more than half a step of one light point.
@@ -22,14 +22,8 @@ const MAX_POINTS: f64 = 2.0;
 /// Averages of four are stored in 8 bits, which is off by half a code at most; averages of those keep that.
 const STORED: f64 = 0.5 / 255.0;
 
-fn compare(
-    run: &Run,
-    occluder: &Occluder,
-    actual: &Raster<f64>,
-    light_points: &[DVec4],
-    (what, max_share): (&str, f64),
-) {
-    let expected = visibility_map(occluder, &run.region, actual.size(), light_points);
+fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share): (&str, f64)) {
+    let expected = visibility_map(casters, &run.region, actual.size());
     assert!(
         expected.texels().iter().any(|visibility| *visibility < 0.5),
         "{what}: there is no shadow"
@@ -41,7 +35,7 @@ fn compare(
             .copied()
             .zip(expected.texels().iter().copied()),
     );
-    let step = 1.0 / f64::from(u32::try_from(light_points.len()).unwrap());
+    let step = 1.0 / f64::from(u32::try_from(casters[0].light_points.len()).unwrap());
     let what = format!("{}, {what}", run.stand.setup.name);
     // The shader asks once a pixel whether a surface is above the receiver, a ray asks for each light point: where a
     // sunken toy comes out of the receiver, a pixel may miss every point. Measured: 0.25 in 5 of 5917 pixels.
@@ -57,23 +51,20 @@ fn compare(
 #[test]
 fn visibility_of_each_light() {
     for run in runs() {
-        let physical = run.stand.occluder(&run.stand.physical);
-        let shown = run.stand.occluder(&run.stand.shown);
+        let stand = &run.stand;
         for (i, light) in run.plan.lights.iter().enumerate() {
-            let points = run.stand.light_points(i, light.n_points);
+            let casters = |posed: &PosedMesh| stand.light_casters(posed, i, light.n_points);
             let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
             compare(
                 run,
-                &physical,
+                &casters(&stand.physical),
                 &channel(&run.pictures.visibility),
-                &points,
                 ("physical light", MAX_LIGHT_SHARE),
             );
             compare(
                 run,
-                &shown,
+                &casters(&stand.shown),
                 &channel(&run.shown_visibility),
-                &points,
                 ("shown light", MAX_LIGHT_SHARE),
             );
         }
@@ -83,21 +74,17 @@ fn visibility_of_each_light() {
 #[test]
 fn visibility_of_the_ambient_light() {
     for run in runs() {
-        let directions = ambient_points(run.plan.n_ambient_directions);
-        let physical = run.stand.occluder(&run.stand.physical);
-        let shown = run.stand.occluder(&run.stand.shown);
+        let (stand, n_directions) = (&run.stand, run.plan.n_ambient_directions);
         compare(
             run,
-            &physical,
+            &stand.ambient_casters(&stand.physical, n_directions),
             &run.pictures.ambient,
-            &directions,
             ("physical ambient", MAX_AMBIENT_SHARE),
         );
         compare(
             run,
-            &shown,
+            &stand.ambient_casters(&stand.shown, n_directions),
             &run.shown_ambient,
-            &directions,
             ("shown ambient", MAX_AMBIENT_SHARE),
         );
     }

@@ -5,73 +5,100 @@ use std::sync::Arc;
 use app_core::scene::Image;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use harness::reference::fit::toy_columns;
-use harness::reference::model::{Region, Solution, centre_px};
+use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
 use harness::reference::raster::Raster;
 use harness::reference::self_shadow::received;
 use harness::reference::visibility::visibility_map;
 
-use crate::place::{Stand, ambient_points};
+use crate::place::Stand;
 use crate::toy;
 
 const N_POINTS: usize = 64;
 
 /// What the pictures are made with.
 pub(crate) fn truth(n_lights: usize) -> Solution {
-    let shares = [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)];
+    // On the table, then on the wall, where the second light is behind it.
+    let shares = [
+        [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)],
+        [DVec3::new(0.7, 0.66, 0.58), DVec3::ZERO],
+    ];
+    let bounces = [DVec3::new(0.25, 0.15, 0.08), DVec3::new(0.1, 0.18, 0.22)];
+    let receivers = bounces
+        .iter()
+        .zip(shares)
+        .map(|(bounce, shares)| ReceiverSolution {
+            bounce: *bounce,
+            shares: shares[..n_lights].to_vec(),
+            contrast: DVec3::ZERO,
+        });
     let light = [DVec3::new(0.55, 0.5, 0.48), DVec3::new(0.35, 0.36, 0.4)];
     Solution {
         gain: DVec3::new(1.04, 1.0, 0.96),
-        bounce: DVec3::new(0.25, 0.15, 0.08),
-        shares: shares[..n_lights].to_vec(),
+        levels: vec![DVec3::ONE; n_lights],
+        receivers: receivers.collect(),
         toy: [DVec3::splat(0.4), DVec3::splat(0.15)]
             .into_iter()
             .chain(light)
             .take(2 + n_lights)
             .collect(),
-        contrast: DVec3::ZERO,
     }
+}
+
+/// A point of a receiver, or where the picture goes on beyond all of them: the table without end.
+fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
+    let at = centre_px(texel);
+    let beyond = || ReceiverPoint {
+        receiver: 0,
+        in_plane: region.receivers[0].plane_point(at).unwrap_or_default(),
+    };
+    region.receiver_point(at).unwrap_or_else(beyond)
 }
 
 /// The plate and the frame.
 pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
+    photograph_lit(stand, &truth(stand.setup.lights.len()))
+}
+
+/// The same with another light.
+pub(crate) fn photograph_lit(stand: &Stand, solution: &Solution) -> [Arc<Image>; 2] {
     let region = stand.region(&stand.whole_image());
     let size = region.size_px;
-    let solution = truth(region.lights.len());
-    let occluder = stand.occluder(&stand.physical);
-    let map = |points: &[DVec4]| visibility_map(&occluder, &region, size, points);
     let lights: Vec<Raster<f64>> = (0..region.lights.len())
-        .map(|i| map(&stand.light_points(i, N_POINTS)))
+        .map(|i| visibility_map(&stand.light_casters(&stand.physical, i, N_POINTS), &region, size))
         .collect();
-    let ambient = map(&ambient_points(N_POINTS));
-    let plate_at = |in_plane: DVec2| albedo(in_plane) * solution.plate_falloff(&region, in_plane);
-    let in_plane = |texel| region.plane_point(centre_px(texel)).unwrap_or(DVec2::ZERO);
-    let plate = Raster::from_fn(size, |texel| plate_at(in_plane(texel)));
+    let ambient = visibility_map(&stand.ambient_casters(&stand.physical, N_POINTS), &region, size);
+    let plate_at = |point: ReceiverPoint| albedo(point) * solution.plate_falloff(&region, point);
+    let plate = Raster::from_fn(size, |texel| plate_at(point_seen(&region, texel)));
     let frame = Raster::from_fn(size, |texel| {
-        if let Some(color) = toy_color(stand, &region, &solution, texel) {
+        if let Some(color) = toy_color(stand, &region, solution, texel) {
             return color;
         }
-        let at = in_plane(texel);
+        let at = point_seen(&region, texel);
         let mut visibility = DVec4::ZERO;
         lights
             .iter()
             .enumerate()
             .for_each(|(i, light)| visibility[i] = light.at(texel));
         let model = solution.receiver_model(&region, at, ambient.at(texel), visibility);
-        plate_at(at) * (model + unmodelled(at))
+        solution.gain * plate_at(at) * (model + unmodelled(at))
     });
     [plate, frame].map(|picture| Arc::new(image(&picture)))
 }
 
 /// Wood, more or less: grain, knots and a speckle.
-fn albedo(at: DVec2) -> DVec3 {
+fn albedo(point: ReceiverPoint) -> DVec3 {
+    let at = point.in_plane;
     let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
     let speckle = (9000.0 * at.x).sin() * (8000.0 * at.y).sin();
-    DVec3::new(0.55, 0.42, 0.3) * (1.0 + 0.22 * grain + 0.08 * speckle)
+    let colors = [DVec3::new(0.55, 0.42, 0.3), DVec3::new(0.35, 0.4, 0.45)];
+    colors[point.receiver] * (1.0 + 0.22 * grain + 0.08 * speckle)
 }
 
 /// A faint light that no list names.
-fn unmodelled(at: DVec2) -> DVec3 {
-    0.012 * (-(at - DVec2::new(0.08, 0.03)).length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
+fn unmodelled(point: ReceiverPoint) -> DVec3 {
+    let middles = [DVec2::new(0.08, 0.03), DVec2::new(-0.03, 0.01)];
+    let from_middle = point.in_plane - middles[point.receiver];
+    0.012 * (-from_middle.length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
 }
 
 fn toy_color(stand: &Stand, region: &Region, solution: &Solution, texel: UVec2) -> Option<DVec3> {
@@ -89,7 +116,7 @@ fn toy_color(stand: &Stand, region: &Region, solution: &Solution, texel: UVec2) 
         .zip(&solution.toy)
         .map(|(column, light)| *column * *light)
         .sum();
-    Some(toy::base_color(hit.triangle) * light)
+    Some(solution.gain * toy::base_color(hit.triangle) * light)
 }
 
 fn image(linear: &Raster<DVec3>) -> Image {

@@ -9,20 +9,23 @@ use crate::run::runs;
 #[test]
 fn pooled_and_filled() {
     let constants = ResidualConstants::from_shader().unwrap();
-    for run in runs() {
+    let each = runs().iter().flat_map(|run| {
+        let receivers = run.residuals.iter().zip(&run.grids).enumerate();
+        receivers.map(move |receiver| (run, receiver))
+    });
+    for (run, (receiver, (actual, grid))) in each {
         let cells = pool(
             &run.region,
             &run.pictures,
             &run.solution,
             &constants,
-            run.plan.grid.cell_px,
+            (receiver, grid),
         );
-        assert_eq!(cells.size(), run.residual.size());
+        assert_eq!(cells.size(), actual.size());
         let n_hidden = cells.texels().iter().filter(|cell| cell.certainty == 0.0).count();
         assert!(n_hidden > 0, "the toy hides no cell");
         let expected = fill(&cells, n_levels_of_shader().unwrap());
-        let pairs = run
-            .residual
+        let pairs = actual
             .texels()
             .iter()
             .zip(expected.texels())
@@ -33,7 +36,8 @@ fn pooled_and_filled() {
             .fold(0.0_f64, |most, value| most.max(value.abs().max_element()));
         assert!(largest > 0.005, "there is no residual: {largest}");
         // A graphics card's bilinear filter has weights of 8 bits, 1/512 of the difference of two texels of the ambient
-        // map, which is 0.3 at a contact. Measured in software, which filters in 32 bits: 2e-7.
-        Errors::between(pairs).check_all(&format!("{}, residual", run.stand.setup.name), 5e-4);
+        // map, which is 0.3 at a contact; and a cell's point within rounding of two pixels may take the other.
+        // Measured in software, which filters in 32 bits: 2e-7 without such a point, 2.3e-4 with one.
+        Errors::between(pairs).check_all(&format!("{}, residual on {receiver}", run.stand.setup.name), 5e-4);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
-use app_core::gpu::layout::Fit;
+use app_core::gpu::layout::{Fit, ReceiverFit};
 use app_core::maps::{FloatMap, Map};
 use app_core::plan::Plan;
 use app_core::preset::Preset;
@@ -13,8 +13,9 @@ use app_core::region::PixelRect;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2, Vec4};
-use harness::reference::model::{Pictures, Region, Solution};
+use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
 use harness::reference::raster::Raster;
+use harness::reference::residual::PlaneGrid;
 
 use crate::device::Device;
 use crate::errors::Errors;
@@ -36,8 +37,9 @@ pub(crate) struct Run {
     pub(crate) shown_visibility: Raster<DVec4>,
     pub(crate) shown_ambient: Raster<f64>,
     pub(crate) solution: Solution,
-    /// Filled residuals, and their certainty.
-    pub(crate) residual: Raster<DVec4>,
+    /// Filled residuals on each receiver, their certainty, and where their cells lie.
+    pub(crate) residuals: Vec<Raster<DVec4>>,
+    pub(crate) grids: Vec<PlaneGrid>,
     /// The lights' share of the plate's radiance.
     pub(crate) share: Raster<DVec3>,
     /// Codes of the finished picture, within the region.
@@ -82,11 +84,12 @@ impl Run {
         let base = map(Map::ObjectBase)?;
         let fit = core.read_fit()?.expect("the toy moves");
         let picture = core.read_picture()?;
+        let residuals = core.read_residuals()?;
         Ok(Self {
             region: stand.region(&plan.region),
             pictures: Pictures {
                 frame: crop(&frame, &plan.region, decoded),
-                plate: crop(&plate, &plan.region, decoded),
+                plate: map(Map::Plate)?.map(DVec4::truncate),
                 seen: evidence.map(|texel| texel.x),
                 visibility: map(Map::PhysicalVisibility)?,
                 ambient: visible(map(Map::PhysicalAmbient)?),
@@ -100,7 +103,8 @@ impl Run {
             shown_visibility: map(Map::Visibility)?,
             shown_ambient: visible(map(Map::Ambient)?),
             solution: solution(&fit, stand.setup.lights.len()),
-            residual: map(Map::Residual)?,
+            residuals: residuals.iter().map(|(_, residual)| raster(residual)).collect(),
+            grids: residuals.iter().map(|(grid, _)| PlaneGrid::from(grid)).collect(),
             share: map(Map::Share)?.map(DVec4::truncate),
             picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
             stand,
@@ -118,7 +122,7 @@ pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
         toy: Arc::clone(&stand.toy),
         world_from_object: stand.world_from_object,
         physical_pose: stand.physical_pose,
-        receivers: vec![stand.receiver.clone()],
+        receivers: stand.receivers.clone(),
         lights: stand.setup.lights.to_vec(),
         plates: vec![Plate {
             world_from_camera: stand.world_from_camera,
@@ -141,19 +145,24 @@ pub(crate) fn crop(image: &Image, rect: &PixelRect, decoded: &[f64]) -> Raster<D
     })
 }
 
-fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {
+pub(crate) fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {
     let first = 4 * (at.y * image.width_px + at.x) as usize;
     [0, 1, 2, 3].map(|channel| image.rgba8[first + channel])
 }
 
-fn solution(fit: &Fit, n_lights: usize) -> Solution {
+/// What the device fitted, as the references have it.
+pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
     let color = |value: &[f32; 4]| Vec4::from(*value).truncate().as_dvec3();
-    Solution {
-        gain: color(&fit.gain),
+    let receiver = |fit: &ReceiverFit| ReceiverSolution {
         bounce: color(&fit.bounce),
         shares: fit.share[..n_lights].iter().map(color).collect(),
-        toy: fit.toy[..2 + n_lights].iter().map(color).collect(),
         contrast: color(&fit.contrast),
+    };
+    Solution {
+        gain: color(&fit.gain),
+        levels: fit.level[..n_lights].iter().map(color).collect(),
+        receivers: fit.receivers.iter().map(receiver).collect(),
+        toy: fit.toy[..2 + n_lights].iter().map(color).collect(),
     }
 }
 
