@@ -1,8 +1,8 @@
 // Percentage-closer soft shadows of the animated toy, of each light, in the edge region.
 //
 // The kernel is a disc across the ray to the light, as it is in a shadow map, projected to the receiver and on to the
-// image. Its radius follows from the mean height of the blockers around and the light's size; where all blocker taps agree
-// there is no edge and nothing is filtered.
+// image. Its radius follows from the light's size and the mean height of the blockers around, on the receiver, as far as the
+// tallest may lie; where all blocker taps agree there is no edge and nothing is filtered.
 //
 // Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], a channel a light.
 // Twin: reference/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.

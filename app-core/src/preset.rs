@@ -64,6 +64,8 @@ pub const BALANCED: Settings = Settings {
 /// - seam 8, 4, 1 px: 2.43, 2.32, 2.26, with a margin of 6 px; a margin of 4 px then gave 2.24;
 /// - box radius 30 px: 2.23; 32 directions instead of 16: the same; twice the blocker taps or four times the filter
 ///   taps: the same within 0.01;
+/// - kernel of PCSS round on the receiver, slanted with the light, slanted but for the search of blockers: 2.47, 2.35, 2.27
+///   on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there: 2.54;
 /// - `flat`, ratio 0.35, 0.40, 0.50: 5.50, 4.38, 9.18.
 pub const PUBLISHED: PublishedSettings = PublishedSettings {
     constant_ratio: None,

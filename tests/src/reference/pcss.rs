@@ -77,13 +77,14 @@ pub fn soft_visibility(
     let half_pixel_m = plane
         .plane_point(at + DVec2::X)
         .map_or(0.0, |next| 0.5 * next.distance(in_plane));
-    let blockers = |radius_m: f64, n_taps| -> Vec<f64> {
-        let taps = (0..n_taps).map(|k| in_plane + softness.slanted(radius_m * vogel(k, n_taps), in_plane));
-        taps.filter_map(|tap| height_near(heights_m, plane, tap))
+    let blockers = |offsets: &mut dyn Iterator<Item = DVec2>| -> Vec<f64> {
+        offsets
+            .filter_map(|offset| height_near(heights_m, plane, in_plane + offset))
             .collect()
     };
+    let disc = |radius_m: f64, n_taps| (0..n_taps).map(move |k| radius_m * vogel(k, n_taps));
     let reach_m = softness.penumbra_radius_m(softness.tallest_m).max(half_pixel_m);
-    let found = blockers(reach_m, softness.n_blocker_taps);
+    let found = blockers(&mut disc(reach_m, softness.n_blocker_taps));
     let here = heights_m.at(texel);
     if found.is_empty() {
         return if here.is_some() { 0.0 } else { 1.0 };
@@ -94,7 +95,8 @@ pub fn soft_visibility(
     }
     let mean_m = found.iter().sum::<f64>() / n_found;
     let radius_m = softness.penumbra_radius_m(mean_m).max(half_pixel_m);
-    let blocked = blockers(radius_m, softness.n_filter_taps);
+    let kernel = disc(radius_m, softness.n_filter_taps);
+    let blocked = blockers(&mut kernel.map(|offset| softness.slanted(offset, in_plane)));
     1.0 - count(&blocked) / f64::from(softness.n_filter_taps)
 }
 
