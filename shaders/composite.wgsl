@@ -24,9 +24,13 @@
 // Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
 @group(1) @binding(14) var toy_moved: texture_2d<f32>;
 @group(1) @binding(15) var motion: texture_2d<f32>;
+// Each pixel's own residual, in plates.
+@group(1) @binding(16) var detail: texture_2d<f32>;
 
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
+// Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
+override HAS_DETAIL: bool = false;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -124,7 +128,9 @@ fn receiver(position: vec4f) -> Receiver {
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
-  let kept = mix(f + lit * (after - before), f, is_object);
+  var own = f + lit * (after - before);
+  if HAS_DETAIL && b.a == 1.0 { own = lit * (after + textureLoad(detail, texel, 0).rgb); }
+  let kept = mix(own, f, is_object);
   let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);
   return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),

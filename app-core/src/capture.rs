@@ -12,6 +12,7 @@ use crate::learner::Learner;
 use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
+use crate::passes::detail::DETAIL_FORMAT;
 use crate::passes::estimate::Detail;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::motion::MotionTargets;
@@ -59,6 +60,8 @@ pub(crate) struct Capture {
     pub(crate) shown_self_shadow: SelfShadowMaps,
     pub(crate) motion: MotionTargets,
     pub(crate) toy: ToyTargets,
+    /// Each pixel's own residual, cleared of noise.
+    pub(crate) detail: Option<Texture>,
     pub(crate) picture: Texture,
     pub(crate) light_points: Vec<Vec<glam::Vec4>>,
     /// Those of them that are in stage space.
@@ -95,6 +98,7 @@ impl Capture {
             shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             motion: MotionTargets::new(gpu, region_px),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
+            detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
                 .lights
@@ -212,6 +216,7 @@ impl Capture {
         learner.estimate_plate(encoder, Detail::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
         learner.pool_residual(encoder);
+        learner.separate_detail(encoder);
     }
 
     /// Encodes what follows each new camera picture of a known view: its exposure and the lights' power.
@@ -231,6 +236,7 @@ impl Capture {
             frame,
         };
         learner.fit_levels(encoder);
+        learner.separate_detail(encoder);
     }
 
     /// Encodes the toy's own colours, which follow each new camera frame.

@@ -5,6 +5,7 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Subject;
 use crate::knowledge::Knowledge;
+use crate::passes::detail::DetailInputs;
 use crate::passes::estimate::{Detail, EstimateInputs};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
@@ -111,6 +112,24 @@ impl Learner<'_> {
         };
         pass.estimate
             .encode(self.gpu, encoder, &inputs, detail, &target.view);
+    }
+
+    /// What each pixel knows of its own residual, where noise is to be removed.
+    pub(crate) fn separate_detail(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let (Some(pass), Some(target)) = (&self.passes.detail, &capture.detail) else {
+            return;
+        };
+        let inputs = DetailInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            frame: self.frame,
+            plate: &capture.plate().view,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        pass.encode(self.gpu, encoder, &inputs, &target.view);
     }
 
     /// What the model leaves unexplained, also where the toy hides it.

@@ -7,6 +7,7 @@ use crate::gpu::layout::Placement;
 use crate::knowledge::Knowledge;
 use crate::passes::appearance::Appearance;
 use crate::passes::composite::{Composite, CompositeInputs};
+use crate::passes::detail::Detail;
 use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
@@ -59,6 +60,7 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) detail: Option<Detail>,
     pub(crate) motion: Motion,
     pub(crate) toy: Toy,
     pub(crate) composite: Composite,
@@ -87,9 +89,10 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
+            detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
             motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
-            composite: Composite::new(gpu, plan.n_toy_draws),
+            composite: Composite::new(gpu, plan.n_toy_draws, plan.is_noise_removed),
         }
     }
 
@@ -137,6 +140,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
+            detail: capture.detail.as_ref().map(|detail| &detail.view),
             motion: &capture.motion.moved.view,
         };
         self.composite

@@ -136,6 +136,8 @@ pub struct Plan {
     pub is_plate_estimated: bool,
     /// Draws of the shown toy, each by a part of a pixel beside the others.
     pub n_toy_draws: u32,
+    /// Whether the noise of the real shadow is removed.
+    pub is_noise_removed: bool,
     /// The toy's shadow on itself.
     pub self_shadow: SelfShadowPlan,
     /// Steps of a first fit.
@@ -217,6 +219,10 @@ const PASSES: &[PlannedPass] = &[
     },
     PlannedPass {
         name: "fill",
+        path: Path::Capture,
+    },
+    PlannedPass {
+        name: "detail",
         path: Path::Capture,
     },
     PlannedPass {
@@ -305,7 +311,7 @@ const PUBLISHED_PASSES: &[PlannedPass] = &[
     },
 ];
 /// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "appearance"];
+const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "detail", "appearance"];
 /// What a scene does without when one plate shows all of it.
 const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.
@@ -339,6 +345,7 @@ impl Plan {
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
             n_toy_draws: settings.n_toy_draws,
+            is_noise_removed: settings.is_noise_removed,
             self_shadow: SelfShadowPlan::new(&lights, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
@@ -347,6 +354,7 @@ impl Plan {
             passes: PASSES
                 .iter()
                 .filter(|pass| !(facts.is_plate_complete && ESTIMATE_PASSES.contains(&pass.name)))
+                .filter(|pass| settings.is_noise_removed || pass.name != "detail")
                 .copied()
                 .collect(),
             lights,

@@ -111,6 +111,11 @@ pub(crate) const MOTION: Shader = Shader {
     parts: &[GLOBALS, MOVED, wgsl!("motion")],
     entry_points: &["vs_physical", "fs_motion"],
 };
+pub(crate) const DETAIL: Shader = Shader {
+    name: "detail",
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, FULLSCREEN, wgsl!("detail")],
+    entry_points: &["vs_fullscreen", "fs_separate"],
+};
 pub(crate) const TOY: Shader = Shader {
     name: "toy",
     parts: &[
@@ -202,6 +207,7 @@ pub const ALL: &[Shader] = &[
     FIT_SOLVE,
     RESIDUAL,
     FILL,
+    DETAIL,
     MOTION,
     TOY,
     COMPOSITE,

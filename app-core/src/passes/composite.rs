@@ -31,12 +31,17 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) toy: &'a ToyTargets,
     pub(crate) motion: &'a wgpu::TextureView,
+    /// Each pixel's own residual; without it that is what the frame shows.
+    pub(crate) detail: Option<&'a wgpu::TextureView>,
 }
 
 impl Composite {
-    /// For a toy drawn once or four times.
-    pub(crate) fn new(gpu: &Gpu, n_toy_draws: u32) -> Self {
-        let constants = [("N_TOY_DRAWS", f64::from(n_toy_draws))];
+    /// For a toy drawn once or four times, with or without residuals cleared of noise.
+    pub(crate) fn new(gpu: &Gpu, n_toy_draws: u32, is_noise_removed: bool) -> Self {
+        let constants = [
+            ("N_TOY_DRAWS", f64::from(n_toy_draws)),
+            ("HAS_DETAIL", f64::from(u8::from(is_noise_removed))),
+        ];
         Self {
             pipeline: gpu.fullscreen_pipeline(&COMPOSITE, "fs_compose", PICTURE_FORMAT, &constants),
             linear: gpu.linear_sampler(),
@@ -78,6 +83,8 @@ impl Composite {
                 (13, view(toy_3)),
                 (14, view(&inputs.toy.moved.view)),
                 (15, view(inputs.motion)),
+                // Not read where there is none.
+                (16, view(inputs.detail.unwrap_or(inputs.plate))),
             ],
         );
         encoder.fullscreen(

@@ -100,7 +100,7 @@ pub fn receiver_color(
     );
     let object = unknown * (1.0 - shadow_likeness(pooled, constants));
     let made = lit * (after + residual).max(DVec3::ZERO);
-    let kept = (frame + lit * (after - before)).lerp(frame, object);
+    let kept = frame + (1.0 - object) * lit * (after - before);
     let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
     let keep = seen * near.max(unknown);
 

@@ -132,8 +132,10 @@ fn constant_shadows_multiply() {
     let of_one = of_all.sqrt();
     let decoded = Device::open().decoded();
     let mut shot = Shot::new(Preset::Flat);
-    let corner = UVec2::ONE;
-    let plate = crop(&shot.plate, &shot.region, &decoded).at(corner);
+    // Rounding to codes goes both ways, and a block of pixels evens it out.
+    let block = Raster::from_fn(UVec2::splat(12), |at| at);
+    let mean = |picture: &Raster<DVec3>| -> DVec3 { block.texels().iter().map(|at| picture.at(*at)).sum() };
+    let plate = mean(&crop(&shot.plate, &shot.region, &decoded));
     for (visibility, expected) in [
         ([0.0, 0.0], of_all),
         ([0.0, 1.0], of_one),
@@ -151,9 +153,9 @@ fn constant_shadows_multiply() {
         shot.core.inject_visibility(&maps).unwrap();
         shot.core.frame(&shot.input).unwrap();
         let picture = crop(&shot.core.read_picture().unwrap(), &shot.region, &decoded);
-        let actual = picture.at(corner) / plate;
-        // A code is at most 1 % of a colour as bright as the receiver's.
+        let actual = mean(&picture) / plate;
         let error = (actual - expected).abs().max_element();
-        assert!(error < 0.01, "{visibility:?}: {actual}, not {expected}");
+        // Measured: 1e-3.
+        assert!(error < 0.004, "{visibility:?}: {actual}, not {expected}");
     }
 }
