@@ -95,6 +95,8 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
         let is_reached = rect.min.cmple(rect.max).all();
         let is_laid = grid.size != UNREACHED;
         !is_reached
-            || (is_laid && rect.min.cmpge(origin - slack).all() && rect.max.cmple(origin + size + slack).all())
+            || (is_laid
+                && rect.min.cmpge(origin - slack).all()
+                && rect.max.cmple(origin + size + slack).all())
     })
 }

@@ -42,7 +42,8 @@ impl Outline {
 
     /// The points that bound it.
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        let is_first = |kept: &[DVec3; N_KEPT], k: usize| kept[k] != DVec3::ZERO && !kept[..k].contains(&kept[k]);
+        let is_first =
+            |kept: &[DVec3; N_KEPT], k: usize| kept[k] != DVec3::ZERO && !kept[..k].contains(&kept[k]);
         self.farthest.iter().flat_map(move |kept| {
             let new = (0..N_KEPT).filter(move |k| is_first(kept, *k));
             new.map(|k| self.middle + (1.0 + SLACK) * kept[k])
@@ -64,7 +65,8 @@ fn bin(offset: DVec3) -> (usize, [DVec3; N_KEPT]) {
         clippy::cast_precision_loss,
         reason = "from 0 to a handful; what is not a number becomes 0"
     )]
-    let cell = |at: f64| ((0.5 * (at / along.abs() + 1.0) * N_SIDE_BINS as f64) as usize).min(N_SIDE_BINS - 1);
+    let cell =
+        |at: f64| ((0.5 * (at / along.abs() + 1.0) * N_SIDE_BINS as f64) as usize).min(N_SIDE_BINS - 1);
     #[allow(clippy::cast_precision_loss, reason = "a handful")]
     let middle = |cell: usize| (cell as f64 + 0.5) * 2.0 / N_SIDE_BINS as f64 - 1.0;
     let at = [cell(offset[u]), cell(offset[v])];

@@ -12,6 +12,7 @@ mod inject;
 mod occlusion;
 mod photo;
 mod place;
+mod plate;
 mod published;
 mod residual;
 mod run;
