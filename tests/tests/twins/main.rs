@@ -9,6 +9,7 @@ mod errors;
 mod fill;
 mod fit;
 mod inject;
+mod levels;
 mod occlusion;
 mod photo;
 mod place;
