@@ -51,6 +51,27 @@ fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
   return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
 }
 
+// Where a receiver's point is in the space of another receiver.
+fn in_other_plane(point: ReceiverPoint, other: u32) -> vec3f {
+  let own_from_stage = globals.receivers[point.receiver].plane_from_stage;
+  let rotation = mat3x3f(own_from_stage[0].xyz, own_from_stage[1].xyz, own_from_stage[2].xyz);
+  let in_stage = transpose(rotation) * (vec3f(point.in_plane.x, 0.0, point.in_plane.y) - own_from_stage[3].xyz);
+  return (globals.receivers[other].plane_from_stage * vec4f(in_stage, 1.0)).xyz;
+}
+
+// Whether another receiver stands between plate `k`'s camera and a point.
+fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
+  for (var other = 0u; other < globals.n_receivers; other++) {
+    if other == point.receiver { continue; }
+    let camera = views.plates[k].camera_in_plane[other].xyz;
+    let end = in_other_plane(point, other);
+    if camera.y * end.y >= 0.0 { continue; }
+    let crossing = mix(camera.xz, end.xz, camera.y / (camera.y - end.y));
+    if all(abs(crossing) <= globals.receivers[other].half_extent_m) { return true; }
+  }
+  return false;
+}
+
 // How well plate `k` saw the point that is `step_in_plane` (x, y) away from those seen at the pixels beside.
 fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candidate {
   let at = plate_px(k, point);
@@ -59,7 +80,7 @@ fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candid
   let size = vec2f(textureDimensions(plates));
   let to_border = min(px, size - px);
   let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
-  if inside == 0.0 { return Candidate(px, 0.0); }
+  if inside == 0.0 || is_hidden(k, point) { return Candidate(px, 0.0); }
   let at_right = plate_px(k, ReceiverPoint(point.receiver, right));
   let at_below = plate_px(k, ReceiverPoint(point.receiver, below));
   let x = at_right.xy / at_right.z - px;

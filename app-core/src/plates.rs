@@ -88,7 +88,12 @@ pub(crate) fn covered_share(
             let there = plate_view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
             let plate_px = there.truncate() / there.z;
             let end_px = plate_view.image_px.as_dvec2() - 1.0;
-            there.z > 0.0 && plate_px.cmpge(DVec2::ONE).all() && plate_px.cmple(end_px).all()
+            let is_inside = there.z > 0.0 && plate_px.cmpge(DVec2::ONE).all() && plate_px.cmple(end_px).all();
+            // A nearer receiver may hide it from that camera.
+            let hit = is_inside
+                .then(|| nearest_receiver(plate_view, place.receivers, plate_px))
+                .flatten();
+            hit.is_some_and(|(nearest, _)| std::ptr::eq(nearest, receiver))
         });
         n_covered += f64::from(u8::from(is_covered));
     }

@@ -1,5 +1,7 @@
 //! `composite` where it shows the receiver, in codes of the finished picture.
 
+use app_core::region::PixelRect;
+use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec4, UVec2};
 use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
 use harness::reference::model::centre_px;
@@ -7,16 +9,17 @@ use harness::reference::raster::Raster;
 
 use crate::errors::Errors;
 use crate::photo::unrounded_code;
+use crate::place::Stand;
 use crate::run::{Run, runs};
 
-/// Whether the shown toy is, or may by rounding be, on any of a pixel's samples.
-fn shows_toy(run: &Run) -> Raster<bool> {
-    let occluder = run.stand.occluder(&run.stand.shown);
-    Raster::from_fn(run.region.size_px, |texel| {
+/// Whether the toy in a pose is, or may by rounding be, on any of the samples of a pixel of `rect`.
+pub(crate) fn shows_toy(stand: &Stand, posed: &PosedMesh, rect: &PixelRect) -> Raster<bool> {
+    let occluder = stand.occluder(posed);
+    Raster::from_fn(rect.size_px, |texel| {
         let around = [-0.5, 0.0, 0.5].map(|dy| [-0.5, 0.0, 0.5].map(|dx| DVec2::new(dx, dy)));
         around.as_flattened().iter().any(|offset| {
-            let at = centre_px(run.plan.region.origin_px + texel) + *offset;
-            let (origin, direction) = run.stand.camera_ray(at);
+            let at = centre_px(rect.origin_px + texel) + *offset;
+            let (origin, direction) = stand.camera_ray(at);
             occluder.nearest(origin, direction).is_some()
         })
     })
@@ -33,7 +36,7 @@ fn receiver_in_codes() {
             residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
             grids: run.grids.clone(),
         };
-        let hidden = shows_toy(run);
+        let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
         let texels = Raster::from_fn(run.region.size_px, |texel| texel);
         let pairs = texels
             .texels()
@@ -80,7 +83,7 @@ fn setups_meet_every_branch() {
     ];
     for (what, is_met) in conditions {
         let is_met_somewhere = runs().iter().any(|run| {
-            let hidden = shows_toy(run);
+            let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
             let texels = Raster::from_fn(run.region.size_px, |texel| texel);
             texels
                 .texels()

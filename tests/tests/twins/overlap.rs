@@ -11,8 +11,9 @@ use app_core::preset::{Method, PUBLISHED, Preset};
 use app_core::region::PixelRect;
 use app_core::scene::Image;
 use app_core::wgpu;
-use glam::UVec2;
+use glam::{DVec3, UVec2};
 use harness::reference::eligible::masks;
+use harness::reference::raster::Raster;
 use harness::reference::sets::LightSet;
 
 use crate::device::Device;

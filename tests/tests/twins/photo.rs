@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use app_core::scene::Image;
+use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use harness::reference::fit::toy_columns;
 use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
@@ -54,39 +55,111 @@ fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
     region.receiver_point(at).unwrap_or_else(beyond)
 }
 
-/// The plate and the frame.
+/// Plate and frame of wood under the true light, with a little that no model explains.
 pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
-    photograph_lit(stand, &truth(stand.setup.lights.len()))
+    let photo = Photo {
+        solution: truth(stand.setup.lights.len()),
+        albedo: wood,
+        unmodelled: faint_light,
+    };
+    [photo.plate(stand), photo.frame(stand, &stand.physical)]
 }
 
-/// The same with another light.
-pub(crate) fn photograph_lit(stand: &Stand, solution: &Solution) -> [Arc<Image>; 2] {
-    let region = stand.region(&stand.whole_image());
-    let size = region.size_px;
-    let lights: Vec<Raster<f64>> = (0..region.lights.len())
-        .map(|i| visibility_map(&stand.light_casters(&stand.physical, i, N_POINTS), &region, size))
-        .collect();
-    let ambient = visibility_map(&stand.ambient_casters(&stand.physical, N_POINTS), &region, size);
-    let plate_at = |point: ReceiverPoint| albedo(point) * solution.plate_falloff(&region, point);
-    let plate = Raster::from_fn(size, |texel| plate_at(point_seen(&region, texel)));
-    let frame = Raster::from_fn(size, |texel| {
-        if let Some(color) = toy_color(stand, &region, solution, texel) {
-            return color;
+/// How pictures of a stand are made.
+#[derive(Clone, Debug)]
+pub(crate) struct Photo {
+    pub(crate) solution: Solution,
+    pub(crate) albedo: fn(ReceiverPoint) -> DVec3,
+    /// What comes to the frame alone, in plates.
+    pub(crate) unmodelled: fn(ReceiverPoint) -> DVec3,
+}
+
+impl Photo {
+    /// A smooth table under the true light, and nothing else.
+    pub(crate) fn plain(n_lights: usize) -> Self {
+        Self {
+            solution: truth(n_lights),
+            albedo: smooth,
+            unmodelled: |_| DVec3::ZERO,
         }
-        let at = point_seen(&region, texel);
-        let mut visibility = DVec4::ZERO;
-        lights
-            .iter()
-            .enumerate()
-            .for_each(|(i, light)| visibility[i] = light.at(texel));
-        let model = solution.receiver_model(&region, at, ambient.at(texel), visibility);
-        solution.gain * plate_at(at) * (model + unmodelled(at))
-    });
-    [plate, frame].map(|picture| Arc::new(image(&picture)))
+    }
+
+    /// The place without the toy, linear.
+    pub(crate) fn plate_at(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
+        (self.albedo)(point) * self.solution.plate_falloff(region, point)
+    }
+
+    pub(crate) fn plate(&self, stand: &Stand) -> Arc<Image> {
+        self.exposed_plate(stand, DVec3::ONE)
+    }
+
+    /// The plate at another exposure and white balance.
+    pub(crate) fn exposed_plate(&self, stand: &Stand, gain: DVec3) -> Arc<Image> {
+        let region = stand.region(&stand.whole_image());
+        let plate = Raster::from_fn(region.size_px, |texel| {
+            gain * self.plate_at(&region, point_seen(&region, texel))
+        });
+        Arc::new(image(&plate))
+    }
+
+    /// The toy in a pose, with its shadows.
+    pub(crate) fn frame(&self, stand: &Stand, posed: &PosedMesh) -> Arc<Image> {
+        self.frame_casting(stand, posed, |_| posed)
+    }
+
+    /// The toy in a pose, with each light's shadow of another.
+    pub(crate) fn frame_casting<'a>(
+        &self,
+        stand: &Stand,
+        posed: &PosedMesh,
+        caster_of: impl Fn(usize) -> &'a PosedMesh,
+    ) -> Arc<Image> {
+        let region = stand.region(&stand.whole_image());
+        let size = region.size_px;
+        let light = |i| stand.light_casters(caster_of(i), i, N_POINTS);
+        let lights: Vec<Raster<f64>> = (0..region.lights.len())
+            .map(|i| visibility_map(&light(i), &region, size))
+            .collect();
+        let ambient = visibility_map(&stand.ambient_casters(posed, N_POINTS), &region, size);
+        let occluder = stand.occluder(posed);
+        let light_points: Vec<_> = (0..region.lights.len())
+            .map(|i| stand.light_points(i, N_POINTS))
+            .collect();
+        let frame = Raster::from_fn(size, |texel| {
+            let (origin, direction) = stand.camera_ray(centre_px(texel));
+            if let Some(hit) = occluder.nearest(origin, direction) {
+                let normal = posed.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
+                let at = origin + hit.distance * direction;
+                let received = received(&region, &occluder, &light_points, at, normal);
+                let columns = toy_columns(normal, received, light_points.len());
+                let terms = columns.iter().zip(&self.solution.toy);
+                let light: DVec3 = terms.map(|(column, light)| *column * *light).sum();
+                return self.solution.gain * toy::base_color(hit.triangle) * light;
+            }
+            let at = point_seen(&region, texel);
+            let mut visibility = DVec4::ZERO;
+            lights
+                .iter()
+                .enumerate()
+                .for_each(|(i, light)| visibility[i] = light.at(texel));
+            let model = self
+                .solution
+                .receiver_model(&region, at, ambient.at(texel), visibility);
+            self.solution.gain * self.plate_at(&region, at) * (model + (self.unmodelled)(at))
+        });
+        Arc::new(image(&frame))
+    }
+}
+
+/// A place of slow changes of colour, which keep their edges out of comparisons.
+fn smooth(point: ReceiverPoint) -> DVec3 {
+    let at = point.in_plane;
+    let colors = [DVec3::new(0.42, 0.36, 0.3), DVec3::new(0.3, 0.34, 0.4)];
+    colors[point.receiver] * (1.0 + 0.2 * (25.0 * at.x).sin() * (21.0 * at.y).cos())
 }
 
 /// Wood, more or less: grain, knots and a speckle.
-fn albedo(point: ReceiverPoint) -> DVec3 {
+fn wood(point: ReceiverPoint) -> DVec3 {
     let at = point.in_plane;
     let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
     let speckle = (9000.0 * at.x).sin() * (8000.0 * at.y).sin();
@@ -95,28 +168,10 @@ fn albedo(point: ReceiverPoint) -> DVec3 {
 }
 
 /// A faint light that no list names.
-fn unmodelled(point: ReceiverPoint) -> DVec3 {
+fn faint_light(point: ReceiverPoint) -> DVec3 {
     let middles = [DVec2::new(0.08, 0.03), DVec2::new(-0.03, 0.01)];
     let from_middle = point.in_plane - middles[point.receiver];
     0.012 * (-from_middle.length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
-}
-
-fn toy_color(stand: &Stand, region: &Region, solution: &Solution, texel: UVec2) -> Option<DVec3> {
-    let (origin, direction) = stand.camera_ray(centre_px(texel));
-    let occluder = stand.occluder(&stand.physical);
-    let hit = occluder.nearest(origin, direction)?;
-    let normal = stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-    let in_plane = origin + hit.distance * direction;
-    let n_lights = region.lights.len();
-    let light_points: Vec<_> = (0..n_lights).map(|i| stand.light_points(i, N_POINTS)).collect();
-    let received = received(region, &occluder, &light_points, in_plane, normal);
-    let columns = toy_columns(normal, received, n_lights);
-    let light: DVec3 = columns
-        .iter()
-        .zip(&solution.toy)
-        .map(|(column, light)| *column * *light)
-        .sum();
-    Some(solution.gain * toy::base_color(hit.triangle) * light)
 }
 
 fn image(linear: &Raster<DVec3>) -> Image {

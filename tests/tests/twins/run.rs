@@ -65,15 +65,9 @@ pub(crate) fn runs() -> &'static [Run] {
 
 impl Run {
     fn new(stand: Stand, decoded: &[f64]) -> Result<Self, CoreError> {
-        let instance = wgpu::Instance::default();
-        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
         let [plate, frame] = photograph(&stand);
-        core.set_scene(scene(&stand, &plate), Preset::Balanced)?;
-        let report = core.frame(&FrameInput {
-            image: Arc::clone(&frame),
-            world_from_camera: stand.world_from_camera,
-            shown_pose: stand.shown_pose,
-        })?;
+        let mut core = core_on(scene(&stand, &plate), Preset::Balanced)?;
+        let report = core.frame(&input(&stand, &frame))?;
         assert!(report.warnings.is_empty(), "{:?}", report.warnings);
         let plan = core.plan().expect("the toy moves").clone();
         let (origin, size) = (plan.region.origin_px, plan.region.size_px);
@@ -113,6 +107,23 @@ impl Run {
     }
 }
 
+/// A core that has a scene.
+pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<Core, CoreError> {
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+    core.set_scene(scene, preset)?;
+    Ok(core)
+}
+
+/// A frame of a stand, from its camera.
+pub(crate) fn input(stand: &Stand, image: &Arc<Image>) -> FrameInput {
+    FrameInput {
+        image: Arc::clone(image),
+        world_from_camera: stand.world_from_camera,
+        shown_pose: stand.shown_pose,
+    }
+}
+
 pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
     Scene {
         name: stand.setup.name.to_owned(),
@@ -124,11 +135,16 @@ pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
         physical_pose: stand.physical_pose,
         receivers: stand.receivers.clone(),
         lights: stand.setup.lights.to_vec(),
-        plates: vec![Plate {
-            world_from_camera: stand.world_from_camera,
-            image: Arc::clone(plate),
-        }],
+        plates: vec![plate_of(stand, plate)],
         probe: None,
+    }
+}
+
+/// A plate that the stand's camera took.
+pub(crate) fn plate_of(stand: &Stand, image: &Arc<Image>) -> Plate {
+    Plate {
+        world_from_camera: stand.world_from_camera,
+        image: Arc::clone(image),
     }
 }
 
