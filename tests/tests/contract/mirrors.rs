@@ -78,6 +78,12 @@ macro_rules! mirror {
 
 /// Every struct of `gpu/layout.rs`.
 pub(crate) fn mirrors() -> Vec<Mirror> {
+    let mut all = mirrors_of_the_scene();
+    all.extend(mirrors_of_passes());
+    all
+}
+
+fn mirrors_of_the_scene() -> Vec<Mirror> {
     vec![
         mirror!(ReceiverPlane {
             plane_from_stage,
@@ -146,6 +152,11 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
             is_same_view,
             _pad
         }),
+    ]
+}
+
+fn mirrors_of_passes() -> Vec<Mirror> {
+    vec![
         mirror!(SelfShadow {
             atlas_from_stage,
             first_tile,
