@@ -9,6 +9,7 @@ use crate::plan::{LeftOut, Path};
 use crate::region::PixelRect;
 use crate::scene::{Image, PoseTime};
 use crate::session::SessionFrame;
+use crate::unknown::Unknown;
 
 /// A camera frame of the real, static toy, and the pose to show.
 #[derive(Clone, Debug)]
@@ -86,6 +87,8 @@ pub enum Warning {
         /// What would have to be seen.
         unseen: Vec<UnseenShadow>,
     },
+    /// The camera sees what the model cannot explain.
+    Unknown(Unknown),
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
     /// The camera's centre is not above the receiver.
@@ -139,6 +142,7 @@ impl fmt::Display for Warning {
                     .collect::<Vec<_>>()
                     .join(", ")
             ),
+            Self::Unknown(unknown) => unknown.fmt(f),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")

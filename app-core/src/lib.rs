@@ -23,6 +23,7 @@ pub mod region;
 pub mod scene;
 pub mod session;
 pub mod toy;
+pub mod unknown;
 pub mod view;
 
 mod capture;

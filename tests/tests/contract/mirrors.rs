@@ -3,6 +3,7 @@
 use std::mem::{offset_of, size_of};
 
 use app_core::gpu::layout;
+use app_core::unknown;
 use naga::ScalarKind;
 
 /// A struct of `gpu/layout.rs`.
@@ -201,4 +202,6 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
 pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
     ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
     ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
+    ("composite", "UNKNOWN_ALL", unknown::UNKNOWN_ALL),
+    ("composite", "SHADOW_EVENNESS", unknown::SHADOW_EVENNESS),
 ];
