@@ -3,12 +3,20 @@
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
 //! A plan holds what the scene needs and names what it leaves out, with the reason.
 
+mod passes;
+mod published;
+
 use glam::{DMat4, DVec3, UVec2};
 use wgpu::TextureFormat;
 
 use crate::gpu::layout::MAX_LIGHTS;
-use crate::preset::{PublishedSettings, Settings};
+use crate::preset::Settings;
 use crate::region::PixelRect;
+
+pub use passes::{Change, Path, PlannedPass, runs};
+pub use published::PublishedPlan;
+
+use passes::{ESTIMATE_PASSES, PASSES};
 
 /// A penumbra narrower than this is drawn as a hard edge.
 const HARD_PENUMBRA_PX: f64 = 1.0;
@@ -25,26 +33,6 @@ const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
-/// Which of the two paths a pass belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
-    /// When the place or the view of it is new.
-    Capture,
-    /// For every picture.
-    Frame,
-}
-
-impl Path {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Capture => "capture",
-            Self::Frame => "frame",
-        }
-    }
-}
-
 /// Facts of a scene that decide its plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFacts {
@@ -56,19 +44,6 @@ pub struct SceneFacts {
     pub n_receivers: u32,
     /// One plate shows all of the region.
     pub is_plate_complete: bool,
-}
-
-/// How much of a frame is new; each takes in those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Change {
-    /// Only the pose that is shown.
-    Pose,
-    /// The camera's picture.
-    Picture,
-    /// The camera's place, or the part of the picture that is worked on.
-    View,
-    /// Nothing is known yet.
-    Place,
 }
 
 /// How one light's visibility is made.
@@ -154,15 +129,6 @@ pub struct Plan {
     pub left_out: Vec<LeftOut>,
 }
 
-/// A pass on its path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PlannedPass {
-    /// The pass's name.
-    pub name: &'static str,
-    /// Its path.
-    pub path: Path,
-}
-
 /// Work that a scene does not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftOut {
@@ -171,151 +137,6 @@ pub struct LeftOut {
     /// Why.
     pub why: &'static str,
 }
-
-const PASSES: &[PlannedPass] = &[
-    PlannedPass {
-        name: "self_shadow",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "object",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "evidence",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "occlusion",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "visibility",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "plate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "lit",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "estimate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fit",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fit_solve",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "residual",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fill",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "detail",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "appearance",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "occlusion",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "visibility",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "self_shadow",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "motion",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "toy",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "composite",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "present",
-        path: Path::Frame,
-    },
-];
-
-/// The published method, in order.
-const PUBLISHED_PASSES: &[PlannedPass] = &[
-    PlannedPass {
-        name: "plate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "masks",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "warp",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "pcss",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "eligible",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "census",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "warp",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "pcss",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "search",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "box_filter",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "retarget",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "present",
-        path: Path::Frame,
-    },
-];
-/// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "detail", "appearance"];
-/// What a scene does without when one plate shows all of it.
-const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
-/// What a shadow of constant strength does without.
-const SAMPLING_PASSES: &[&str] = &["census", "search", "box_filter"];
 
 impl Plan {
     /// Plans a scene. Lights beyond the fourth are left out.
@@ -370,72 +191,6 @@ impl Plan {
             lights: self.lights.clone(),
             self_shadow: self.self_shadow.clone(),
             ..Self::new(facts, settings)
-        }
-    }
-}
-
-/// Which of the planned passes run when that much is new, all but `present`, and on which path.
-///
-/// A new picture of a known view needs the toy's colours and the light's levels anew: these count as the frame's.
-pub fn runs(passes: &[PlannedPass], change: Change) -> impl Iterator<Item = (Path, &'static str)> + '_ {
-    passes
-        .iter()
-        .filter(|pass| pass.name != "present")
-        .filter_map(move |pass| {
-            let is_pictures = change == Change::Picture && PICTURE_PASSES.contains(&pass.name);
-            if pass.path == Path::Frame || change >= Change::View {
-                Some((pass.path, pass.name))
-            } else {
-                is_pictures.then_some((Path::Frame, pass.name))
-            }
-        })
-}
-
-/// A plan of the published method.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PublishedPlan {
-    /// The work region.
-    pub region: PixelRect,
-    /// Lights whose shadows are moved, at most four.
-    pub n_lights: u32,
-    /// Receivers that they are moved on, each by itself.
-    pub n_receivers: u32,
-    /// Sets of these lights, the empty one left out: each has an appearance of its own where its shadows overlap.
-    pub n_sets: u32,
-    /// Format of the visibility map, one channel a light.
-    pub visibility_format: TextureFormat,
-    /// The passes in the order they run.
-    pub passes: Vec<PlannedPass>,
-    /// What the scene does not need.
-    pub left_out: Vec<LeftOut>,
-}
-
-impl PublishedPlan {
-    /// Plans a scene. Lights beyond the fourth are left out.
-    #[must_use]
-    pub fn new(facts: &SceneFacts, settings: &PublishedSettings) -> Self {
-        let is_constant = settings.constant_ratio.is_some();
-        let mut left_out = Vec::new();
-        if is_constant {
-            left_out.push(LeftOut {
-                what: "samples of the real shadow",
-                why: "the preset's shadow is constant",
-            });
-        }
-        let lights = facts.penumbra_px.iter().take(MAX_LIGHTS);
-        let n_lights = lights.fold(0, |n_lights, _| n_lights + 1);
-        Self {
-            region: facts.region,
-            n_lights,
-            n_receivers: facts.n_receivers,
-            n_sets: (1 << n_lights) - 1,
-            visibility_format: visibility_format(facts.penumbra_px.len()),
-            passes: PUBLISHED_PASSES
-                .iter()
-                .filter(|pass| !(is_constant && SAMPLING_PASSES.contains(&pass.name)))
-                .copied()
-                .collect(),
-            left_out,
         }
     }
 }
