@@ -29,7 +29,8 @@ const MOST_KEPT: f32 = 8.0;
 struct Sums {
   product: vec3f,
   energy: vec3f,
-  weight: f32,
+  // Points that are evidence, whether the model explains them or not: a hand is known to be there.
+  n_points: f32,
 }
 
 fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
@@ -48,11 +49,12 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   // At the pixel's centre, where the visibilities are those of.
   let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
-  let weight = is_evidence(f, b.rgb) * (seen / (1.0 + relative));
+  let usable = seen * is_evidence(f, b.rgb);
+  let weight = usable / (1.0 + relative);
   return Sums(
     sums.product + weight * b.rgb * e,
     sums.energy + weight * b.rgb * b.rgb,
-    sums.weight + dot(weight, vec3f(1.0 / 3.0)),
+    sums.n_points + dot(usable, vec3f(1.0 / 3.0)),
   );
 }
 
@@ -67,7 +69,7 @@ fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
     let in_plane = grid.origin_in_plane + (vec2f(cell.xy) + within) * grid.cell_m;
     sums = add_point(sums, ReceiverPoint(receiver, in_plane));
   }
-  let certainty = min(1.0, sums.weight / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
+  let certainty = min(1.0, sums.n_points / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
   let r = select(vec3f(0.0), sums.product / sums.energy, sums.energy > vec3f(0.0));
   let index = cell.y * grid.size.x + cell.x;
   let slot = receiver * MAX_CELLS + index;

@@ -102,7 +102,8 @@ struct Sums {
     product: DVec3,
     /// Weighted squares of the plate.
     energy: DVec3,
-    n_pixels: f64,
+    /// Points that are evidence, whether the model explains them or not.
+    n_points: f64,
 }
 
 impl Sums {
@@ -128,10 +129,11 @@ impl Sums {
         let relative = unexplained.length_squared() / (brightness * constants.cauchy_scale.powi(2));
         for channel in 0..3 {
             let usable = constants.evidence.holds(frame[channel], plate[channel]);
-            let weight = usable * pictures.seen.at(texel) / (1.0 + relative);
+            let usable = usable * pictures.seen.at(texel);
+            let weight = usable / (1.0 + relative);
             self.product[channel] += weight * plate[channel] * unexplained[channel];
             self.energy[channel] += weight * plate[channel] * plate[channel];
-            self.n_pixels += weight / 3.0;
+            self.n_points += usable / 3.0;
         }
     }
 
@@ -145,7 +147,7 @@ impl Sums {
         };
         Cell {
             residual: DVec3::new(ratio(0), ratio(1), ratio(2)),
-            certainty: (self.n_pixels / n_full).min(1.0),
+            certainty: (self.n_points / n_full).min(1.0),
         }
     }
 }
