@@ -129,7 +129,10 @@ fn receiver(position: vec4f) -> Receiver {
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
   var own = f + lit * (after - before);
-  if HAS_DETAIL && b.a == 1.0 { own = lit * (after + textureLoad(detail, texel, 0).rgb); }
+  if HAS_DETAIL && b.a == 1.0 {
+    // What is nearly black in the plate tells nothing.
+    own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_EVIDENCE));
+  }
   let kept = mix(own, f, is_object);
   let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);

@@ -5,7 +5,7 @@
 // shadow keeps its pixels as they are.
 //
 // Reads: frame, plate, evidence, visibility, ambient. Writes: r, in plates.
-// Twin: reference/detail.rs. Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
+// Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 
 @group(1) @binding(0) var frame: texture_2d<f32>;

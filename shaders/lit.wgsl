@@ -36,7 +36,8 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   let receiver = cell.z;
   let grid = grids.grids[receiver];
-  if any(cell.xy >= grid.size) { return; }
+  // Nothing reaches a receiver whose cells have no extent.
+  if any(cell.xy >= grid.size) || grid.cell_m == 0.0 { return; }
   var sum = vec4f(0.0);
   for (var k = 0u; k < N_POINTS * N_POINTS; k++) {
     let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);

@@ -9,9 +9,9 @@ struct Surface {
 }
 
 @vertex
-fn vs_physical(@location(0) physical_in_plane: vec3f, @location(1) in_plane: vec3f) -> Surface {
-  let shown = globals.clip_from_stage * vec4f(in_plane, 1.0);
-  let physical = globals.clip_from_stage * vec4f(physical_in_plane, 1.0);
+fn vs_physical(@location(0) physical_in_stage: vec3f, @location(1) in_stage: vec3f) -> Surface {
+  let shown = globals.clip_from_stage * vec4f(in_stage, 1.0);
+  let physical = globals.clip_from_stage * vec4f(physical_in_stage, 1.0);
   return Surface(physical, shown, physical);
 }
 

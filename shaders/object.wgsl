@@ -4,7 +4,7 @@
 // alpha 1 on the toy), unit normal in stage space, each light's cosine times its visibility, reversed depth.
 
 struct Vertex {
-  @location(0) in_plane: vec3f,
+  @location(0) in_stage: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
   @location(3) color: vec4f,
@@ -15,12 +15,12 @@ struct Surface {
   @location(0) normal: vec3f,
   @location(1) uv: vec2f,
   @location(2) color: vec4f,
-  @location(3) in_plane: vec3f,
+  @location(3) in_stage: vec3f,
 }
 
 @vertex
 fn vs_project(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_stage * vec4f(in.in_plane, 1.0), in.normal, in.uv, in.color, in.in_plane);
+  return Surface(globals.clip_from_stage * vec4f(in.in_stage, 1.0), in.normal, in.uv, in.color, in.in_stage);
 }
 
 struct ObjectTexel {
@@ -33,5 +33,5 @@ struct ObjectTexel {
 fn fs_describe(in: Surface) -> ObjectTexel {
   let base = vec4f(base_color(in.uv, in.color), 1.0);
   let normal = unit_normal(in.normal);
-  return ObjectTexel(base, vec4f(normal, 0.0), light_received(normal, in.in_plane));
+  return ObjectTexel(base, vec4f(normal, 0.0), light_received(normal, in.in_stage));
 }

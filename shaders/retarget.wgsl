@@ -75,7 +75,8 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let plate_texel = textureLoad(plate, texel, 0);
   let b = plate_texel.rgb;
   // What no plate shows stays as it is.
-  let lit = mix(f, b, cropped(texel) * plate_texel.a);
+  if plate_texel.a == 0.0 { return vec4f(f, 1.0); }
+  let lit = mix(f, b, cropped(texel));
   let v = textureLoad(visibility, texel, 0);
   var color = weight(v, 0u) * lit;
   for (var lights = 1u; lights < 1u << globals.n_lights; lights++) {
@@ -91,8 +92,8 @@ struct Surface {
 }
 
 @vertex
-fn vs_toy(@location(0) in_plane: vec3f, @location(1) physical_in_plane: vec3f) -> Surface {
-  return Surface(globals.clip_from_stage * vec4f(in_plane, 1.0), globals.clip_from_stage * vec4f(physical_in_plane, 1.0));
+fn vs_toy(@location(0) in_stage: vec3f, @location(1) physical_in_stage: vec3f) -> Surface {
+  return Surface(globals.clip_from_stage * vec4f(in_stage, 1.0), globals.clip_from_stage * vec4f(physical_in_stage, 1.0));
 }
 
 @fragment

@@ -5,8 +5,8 @@
 // Twin: reference/self_shadow.rs.
 
 @vertex
-fn vs_light(@location(0) in_plane: vec3f, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
-  return self_shadow.atlas_from_stage[tile] * vec4f(in_plane, 1.0);
+fn vs_light(@location(0) in_stage: vec3f, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
+  return self_shadow.atlas_from_stage[tile] * vec4f(in_stage, 1.0);
 }
 
 @fragment

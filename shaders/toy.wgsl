@@ -30,29 +30,29 @@ const OTHER_LIGHT: f32 = 0.08;
 const CARRIED_WEIGHT: f32 = 1e-3;
 
 struct Vertex {
-  @location(0) in_plane: vec3f,
+  @location(0) in_stage: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
   @location(3) color: vec4f,
-  @location(4) physical_in_plane: vec3f,
+  @location(4) physical_in_stage: vec3f,
   @location(5) physical_normal: vec3f,
 }
 
 struct Surface {
   @builtin(position) clip: vec4f,
-  @location(0) in_plane: vec3f,
+  @location(0) in_stage: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
   @location(3) color: vec4f,
-  @location(4) physical_in_plane: vec3f,
+  @location(4) physical_in_stage: vec3f,
   @location(5) physical_normal: vec3f,
 }
 
 @vertex
 fn vs_toy(in: Vertex) -> Surface {
-  var clip = globals.clip_from_stage * vec4f(in.in_plane, 1.0);
+  var clip = globals.clip_from_stage * vec4f(in.in_stage, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
-  return Surface(clip, in.in_plane, in.normal, in.uv, in.color, in.physical_in_plane, in.physical_normal);
+  return Surface(clip, in.in_stage, in.normal, in.uv, in.color, in.physical_in_stage, in.physical_normal);
 }
 
 fn largest(c: vec3f) -> f32 {
@@ -105,10 +105,10 @@ fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
 }
 
 // Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
-fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
-  let across = cross(dpdx(in_plane), dpdy(in_plane));
+fn facing(in_stage: vec3f, normal: vec3f) -> f32 {
+  let across = cross(dpdx(in_stage), dpdy(in_stage));
   let outward = unit_normal(across * sign(dot(across, normal)));
-  return dot(outward, normalize(globals.camera_in_stage - in_plane));
+  return dot(outward, normalize(globals.camera_in_stage - in_stage));
 }
 
 // How far the light on a surface is from what it was. A pixel at a fold shows several sides: that of them counts which is
@@ -137,15 +137,15 @@ fn fs_toy(in: Surface) -> Drawn {
   let base = base_color(in.uv, in.color);
   let normal = unit_normal(in.normal);
   let physical_normal = unit_normal(in.physical_normal);
-  let physical_facing = facing(in.physical_in_plane, physical_normal);
-  let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
-  let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
+  let physical_facing = facing(in.physical_in_stage, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in.in_stage, normal), physical_facing), physical_facing > 0.0);
+  let clip = globals.clip_from_stage * vec4f(in.physical_in_stage, 1.0);
   let physical_px = region_px(clip);
-  let lit = toy_radiance_over_base(normal, light_received(normal, in.in_plane));
+  let lit = toy_radiance_over_base(normal, light_received(normal, in.in_stage));
   let unseen = fit.gain.rgb * base * lit;
   let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_plane, 1.0)), physical_px);
+  let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_stage, 1.0)), physical_px);
   let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
 }

@@ -13,7 +13,7 @@ use crate::light_points::ambient_directions;
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::detail::DETAIL_FORMAT;
-use crate::passes::estimate::Detail;
+use crate::passes::estimate::Fineness;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::motion::MotionTargets;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
@@ -132,6 +132,8 @@ impl Capture {
                 (PLATE_FORMAT, 1),
             ));
         }
+        self.physical.injected = None;
+        self.shown.injected = None;
         self.plan = plan;
         self.known = *globals;
         gpu.queue
@@ -207,19 +209,20 @@ impl Capture {
             frame: pictures.frame,
         };
         if !is_first {
-            learner.estimate_plate(encoder, Detail::Smooth);
+            learner.estimate_plate(encoder, Fineness::Smooth);
             learner.fit_levels(encoder);
         }
         learner.pool_lit(encoder);
-        learner.estimate_plate(encoder, Detail::Smooth);
+        learner.estimate_plate(encoder, Fineness::Smooth);
         learner.fit_receivers(encoder, is_first);
-        learner.estimate_plate(encoder, Detail::Full);
+        learner.estimate_plate(encoder, Fineness::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
         learner.pool_residual(encoder);
         learner.separate_detail(encoder);
     }
 
-    /// Encodes what follows each new camera picture of a known view: its exposure and the lights' power.
+    /// Encodes what follows each new camera picture of a known view: its exposure, the lights' power, and what has come
+    /// into the picture or left it.
     pub(crate) fn encode_levels(
         &self,
         gpu: &Gpu,
@@ -236,6 +239,7 @@ impl Capture {
             frame,
         };
         learner.fit_levels(encoder);
+        learner.pool_residual(encoder);
         learner.separate_detail(encoder);
     }
 

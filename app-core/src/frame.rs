@@ -113,7 +113,7 @@ impl fmt::Display for Warning {
             Self::ReceiversLeftOut { names } => {
                 write!(
                     f,
-                    "the shadow on {} stays as photographed: one receiver is handled",
+                    "the shadow on {} stays as photographed: the preset handles fewer receivers",
                     names.join(", ")
                 )
             }
@@ -124,7 +124,7 @@ impl fmt::Display for Warning {
                 )
             }
             Self::LightBelowReceiver { light } => {
-                write!(f, "light {light} is not above the receiver and is left out")
+                write!(f, "light {light} is above none of the receivers and is left out")
             }
             Self::FaintShadow { contrast } => write!(
                 f,

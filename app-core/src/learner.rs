@@ -6,7 +6,7 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Subject;
 use crate::knowledge::Knowledge;
 use crate::passes::detail::DetailInputs;
-use crate::passes::estimate::{Detail, EstimateInputs};
+use crate::passes::estimate::{EstimateInputs, Fineness};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
 use crate::passes::residual::ResidualInputs;
@@ -91,7 +91,7 @@ impl Learner<'_> {
     }
 
     /// Completes the plate, where plates do not show everything.
-    pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, detail: Detail) {
+    pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, fineness: Fineness) {
         let (capture, knowledge) = (self.capture, self.knowledge);
         let (Some(pass), Some(target)) = (&self.passes.estimate, &capture.estimated) else {
             return;
@@ -111,7 +111,7 @@ impl Learner<'_> {
             ambient: &capture.physical.ambient.view,
         };
         pass.estimate
-            .encode(self.gpu, encoder, &inputs, detail, &target.view);
+            .encode(self.gpu, encoder, &inputs, fineness, &target.view);
     }
 
     /// What each pixel knows of its own residual, where noise is to be removed.

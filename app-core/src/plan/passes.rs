@@ -97,7 +97,7 @@ pub(super) const PUBLISHED_PASSES: &[PlannedPass] = &[
     frame("present"),
 ];
 /// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "detail", "appearance"];
+const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "residual", "fill", "detail", "appearance"];
 /// What a scene does without when one plate shows all of it.
 pub(super) const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.
