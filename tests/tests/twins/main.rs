@@ -6,10 +6,12 @@
 mod composite;
 mod device;
 mod errors;
+mod estimate;
 mod fill;
 mod fit;
 mod inject;
 mod levels;
+mod moving;
 mod occlusion;
 mod photo;
 mod place;
@@ -18,3 +20,4 @@ mod published;
 mod residual;
 mod run;
 mod toy;
+mod unknown;
