@@ -76,8 +76,12 @@ macro_rules! mirror {
     }};
 }
 
-/// Every struct of `gpu/layout.rs`.
+/// Every struct of `gpu/layout.rs`, in its order.
 pub(crate) fn mirrors() -> Vec<Mirror> {
+    [of_the_model(), of_pictures()].into_iter().flatten().collect()
+}
+
+fn of_the_model() -> Vec<Mirror> {
     vec![
         mirror!(ReceiverPlane {
             plane_from_stage,
@@ -134,6 +138,11 @@ pub(crate) fn mirrors() -> Vec<Mirror> {
             n_points,
             _pad
         }),
+    ]
+}
+
+fn of_pictures() -> Vec<Mirror> {
+    vec![
         mirror!(PlateView {
             plate_px_from_plane,
             camera_in_plane,
