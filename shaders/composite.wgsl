@@ -1,11 +1,11 @@
-// The picture: plate times new shadow, real toy and real shadow gone, animated toy drawn with its camera pixels.
+// The picture: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 //
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
 //   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
 //                                     passes; also where the frame shows what the model cannot explain
 //
-// Reads: all that was captured, visibility and ambient of the animated pose. Writes: linear colour, opaque.
-// Twin: reference/composite.rs.
+// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes: linear
+// colour, opaque. Twin: reference/composite.rs.
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
@@ -16,10 +16,21 @@
 @group(1) @binding(7) var visibility: texture_2d<f32>;
 @group(1) @binding(8) var ambient: texture_2d<f32>;
 @group(1) @binding(9) var linear_sampler: sampler;
-@group(1) @binding(10) var appearance: texture_2d<f32>;
-@group(1) @binding(11) var object_depth: texture_depth_2d;
-@group(1) @binding(12) var object_base: texture_2d<f32>;
-@group(1) @binding(13) var object_normal: texture_2d<f32>;
+// Premultiplied radiance of the toy, alpha its coverage, one for each draw.
+@group(1) @binding(10) var toy_0: texture_2d<f32>;
+@group(1) @binding(11) var toy_1: texture_2d<f32>;
+@group(1) @binding(12) var toy_2: texture_2d<f32>;
+@group(1) @binding(13) var toy_3: texture_2d<f32>;
+// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+@group(1) @binding(14) var toy_moved: texture_2d<f32>;
+@group(1) @binding(15) var motion: texture_2d<f32>;
+// Each pixel's own residual, in plates.
+@group(1) @binding(16) var detail: texture_2d<f32>;
+
+// Number of draws of the toy, 1 or 4.
+override N_TOY_DRAWS: u32 = 1u;
+// Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
+override HAS_DETAIL: bool = false;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -30,18 +41,16 @@ const RESIDUAL_HALF: f32 = 0.5;
 // listed, and from which nothing else counts: what the camera saw stays.
 const UNKNOWN_NONE: f32 = 0.15;
 const UNKNOWN_ALL: f32 = 0.3;
-// A turned surface is never made more than this much brighter or darker than its camera pixel.
-const MAX_TURN: f32 = 4.0;
-// Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
-// a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
-const STRETCH_ALL: f32 = 0.3;
-const STRETCH_NONE: f32 = 0.1;
-// Difference of base colours, against the lighter one, from which two points of the model are of two materials.
-const OTHER_MATERIAL: f32 = 0.25;
-// Cosine between two normals below which they are of two sides.
-const OTHER_SIDE_COSINE: f32 = 0.9;
-// Weight of colours carried past the outline, against those of the surface itself.
-const CARRIED_WEIGHT: f32 = 1e-3;
+
+// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own colour.
+const SHADOW_EVENNESS: f32 = 0.4;
+const OBJECT_EVENNESS: f32 = 0.2;
+// Distance over which the toy's colours bleed into a pixel beside it.
+const BLEED_PX: f32 = 6.0;
+// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from which it is
+// what bled into it.
+const BLED_NONE: f32 = 0.03;
+const BLED_ALL: f32 = 0.1;
 
 // 1 inside, falling to 0 at an inner border of the region.
 fn inside_border(region_px: vec2f) -> f32 {
@@ -50,8 +59,48 @@ fn inside_border(region_px: vec2f) -> f32 {
   return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
 }
 
-@fragment
-fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn largest(c: vec3f) -> f32 {
+  return max(c.r, max(c.g, c.b));
+}
+
+// Whether the toy's surface beside this pixel is no longer in its place.
+fn has_moved_beside(texel: vec2i) -> bool {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var k = 0u; k < 16u; k++) {
+    let turn = f32(k) * 0.78539816;
+    let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
+    let tap = clamp(texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
+    most = max(most, textureLoad(motion, tap, 0).r);
+  }
+  return most > 0.0;
+}
+
+// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
+fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
+  if evident.r == 0.0 { return 0.0; }
+  if !has_moved { return 1.0; }
+  return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
+}
+
+// Whether a residual may be a shadow: all channels are darker, and none much more than the others.
+fn shadow_likeness(residual: vec3f) -> f32 {
+  let least = -largest(residual);
+  let most = largest(-residual);
+  if least <= 0.0 { return 0.0; }
+  return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
+}
+
+struct Receiver {
+  color: vec3f,
+  frame: vec3f,
+  // By what the model has changed since the frame, where the receiver shows.
+  change: vec3f,
+  // How far the frame may stand where it shows the toy as well: 1 where the change is little.
+  keep_mixed: f32,
+}
+
+fn receiver(position: vec4f) -> Receiver {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let image_texel = texel + vec2u(globals.region_origin_px);
@@ -59,11 +108,11 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
   let lit = fit.gain.rgb * b.rgb;
-  let seen = textureLoad(evidence, texel, 0).r;
+  let evident = textureLoad(evidence, texel, 0);
   // Nothing is known of what is behind.
-  if b.a == 0.0 { return vec4f(f, 1.0); }
+  if b.a == 0.0 { return Receiver(f, f, vec3f(0.0), 1.0); }
   // Beyond the receivers nothing changes but that the real toy goes.
-  if !is_hit(point) { return vec4f(mix(lit, f, seen), 1.0); }
+  if !is_hit(point) { return Receiver(mix(lit, f, evident.r), f, vec3f(0.0), 1.0 - evident.r); }
   let uv = at / globals.region_size_px;
   let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
@@ -73,105 +122,54 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_unknown = smoothstep(UNKNOWN_NONE, UNKNOWN_ALL, largest(abs(pooled)));
-  let keep = seen * max(1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most), is_unknown);
+  let is_object = is_unknown * (1.0 - shadow_likeness(pooled));
+  let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_EVIDENCE)));
+  let has_moved = evident.b == 0.0 && has_moved_beside(vec2i(texel));
+  let seen = own_share(evident, has_moved, deviation);
+  let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
-  let kept = f + lit * (after - before);
-  let inside = max(inside_border(at), 1.0 - seen);
-  return vec4f(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), 1.0);
-}
-
-struct Vertex {
-  @location(0) in_plane: vec3f,
-  @location(1) normal: vec3f,
-  @location(2) uv: vec2f,
-  @location(3) color: vec4f,
-  @location(4) physical_in_plane: vec3f,
-  @location(5) physical_normal: vec3f,
-}
-
-struct Surface {
-  @builtin(position) clip: vec4f,
-  @location(0) in_plane: vec3f,
-  @location(1) normal: vec3f,
-  @location(2) uv: vec2f,
-  @location(3) color: vec4f,
-  @location(4) physical_in_plane: vec3f,
-  @location(5) physical_normal: vec3f,
-}
-
-@vertex
-fn vs_toy(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_stage * vec4f(in.in_plane, 1.0), in.in_plane, in.normal, in.uv, in.color,
-    in.physical_in_plane, in.physical_normal);
-}
-
-fn toy_radiance_over_base(normal: vec3f, in_plane: vec3f) -> vec3f {
-  var sum = vec3f(0.0);
-  for (var i = 0u; i < 2u + globals.n_lights; i++) { sum += fit.toy[i].rgb * toy_column(i, normal, in_plane); }
-  return fit.gain.rgb * max(sum, vec3f(0.0));
-}
-
-fn largest(c: vec3f) -> f32 {
-  return max(c.r, max(c.g, c.b));
-}
-
-// Whether the camera sees another side of the toy at `texel`: turned away and of another colour. Either alone is common
-// on one surface, at a fold or in a pattern.
-fn is_other_side(texel: vec2u, base: vec3f, normal: vec3f) -> bool {
-  let other = textureLoad(object_base, texel, 0).rgb;
-  let is_other_color = largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
-  return is_other_color && dot(textureLoad(object_normal, texel, 0).xyz, normal) < OTHER_SIDE_COSINE;
-}
-
-// The camera's colour of a point of the physical toy, alpha 0 where something hides it.
-//
-// Of the four pixels around it only those count that show its own surface and side, or that lie beyond the toy's
-// outline where `appearance` carried its colours.
-fn camera_color(clip: vec4f, region_px: vec2f, base: vec3f, normal: vec3f) -> vec4f {
-  let depth = clip.z / clip.w;
-  let at = region_px - 0.5;
-  let low = floor(at);
-  let t = at - low;
-  let last = globals.region_size_px - 1.0;
-  var sum = vec4f(0.0);
-  for (var k = 0u; k < 4u; k++) {
-    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let tap = low + corner;
-    if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
-    let texel = vec2u(tap);
-    let surface = textureLoad(object_depth, texel, 0);
-    if surface > depth && !is_same_surface(surface, depth) { continue; }
-    if surface > 0.0 && is_other_side(texel, base, normal) { continue; }
-    let color = textureLoad(appearance, texel, 0);
-    let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
-    sum += weight * vec4f(color.rgb, 1.0);
+  var own = f + lit * (after - before);
+  if HAS_DETAIL && b.a == 1.0 {
+    // What is nearly black in the plate tells nothing.
+    own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_EVIDENCE));
   }
-  if sum.a == 0.0 { return sum; }
-  return vec4f(sum.rgb / sum.a, 1.0);
+  let kept = mix(own, f, is_object);
+  let keep = seen * max(is_near, is_unknown);
+  let inside = max(inside_border(at), 1.0 - seen);
+  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
+    select(1.0 - evident.r, 0.0, has_moved) * is_near);
 }
 
-// Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
-fn facing(in_plane: vec3f, normal: vec3f) -> f32 {
-  let across = cross(dpdx(in_plane), dpdy(in_plane));
-  let outward = unit_normal(across * sign(dot(across, normal)));
-  return dot(outward, normalize(globals.camera_in_stage - in_plane));
+fn drawn_toy(texel: vec2u) -> vec4f {
+  let first = textureLoad(toy_0, texel, 0);
+  if N_TOY_DRAWS == 1u { return first; }
+  return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
+}
+
+// 1 where everything in and around a pixel is as the camera saw it.
+fn stillness(texel: vec2i) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(motion, other, 0).r));
+    }
+  }
+  return 1.0 - most;
 }
 
 @fragment
-fn fs_toy(in: Surface) -> @location(0) vec4f {
-  let base = base_color(in.uv, in.color);
-  let normal = unit_normal(in.normal);
-  let physical_normal = unit_normal(in.physical_normal);
-  let physical_facing = facing(in.physical_in_plane, physical_normal);
-  let stretch = select(0.0, physical_facing / max(facing(in.in_plane, normal), physical_facing), physical_facing > 0.0);
-  let clip = globals.clip_from_stage * vec4f(in.physical_in_plane, 1.0);
-  let region_px = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
-  let pixel = camera_color(clip, region_px, base, physical_normal);
-  let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  let lit = toy_radiance_over_base(normal, in.in_plane);
-  let was_lit = toy_radiance_over_base(physical_normal, in.physical_in_plane);
-  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
-  let carried = pixel.rgb * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
-  return vec4f(mix(base * lit, carried, seen), 1.0);
+fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(position.xy);
+  let toy = drawn_toy(texel);
+  let still = stillness(vec2i(texel));
+  if toy.a == 1.0 {
+    let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+    return vec4f(mix(toy.rgb, frame_color, still), 1.0);
+  }
+  let behind = receiver(position);
+  let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
 }

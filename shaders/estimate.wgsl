@@ -1,7 +1,7 @@
 // The plate, with an estimate where no plate shows the place.
 //
 // At first the estimate is smooth, so that the fit can find the shadow in it. Then a pixel that shows the receiver tells
-// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides stays smooth.
+// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into, stays smooth.
 // Reads: plate, frame, evidence, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate.
 
@@ -28,7 +28,7 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let point = receiver_point(position.xy);
   if photographed.a == 1.0 || !is_hit(point) { return photographed; }
   let smooth_color = cell_at(point).rgb;
-  if !IS_FINAL || textureLoad(evidence, texel, 0).r == 0.0 { return vec4f(smooth_color, ESTIMATED); }
+  if !IS_FINAL || textureLoad(evidence, texel, 0).b == 0.0 { return vec4f(smooth_color, ESTIMATED); }
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));

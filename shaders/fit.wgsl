@@ -2,7 +2,7 @@
 //
 // Receiver: frame / gain = plate c (A + bounce (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
 // is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
-// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0)).
+// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0) V_i), V_i with the toy's shadow on itself.
 // Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
 // before. Sums run over pixels here and over workgroups in `fit_solve`.
@@ -20,6 +20,8 @@
 @group(1) @binding(7) var ambient_sampler: sampler;
 @group(1) @binding(8) var object_base: texture_2d<f32>;
 @group(1) @binding(9) var object_normal: texture_2d<f32>;
+// Each light's cosine times its visibility.
+@group(1) @binding(10) var object_received: texture_2d<f32>;
 
 const WORKGROUP: u32 = 256u;
 // Upper triangle of the symmetric matrix row by row, then the right-hand side.
@@ -29,7 +31,7 @@ const N_PART: u32 = 9u;
 const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
-// As above for the toy, whose shadows on itself and curved faces the model does not know.
+// As above for the toy, of whose light from itself and curved faces the model does not know.
 const TOY_CAUCHY_SCALE: f32 = 0.12;
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
@@ -59,6 +61,8 @@ struct Observation {
   visibility: vec4f,
   // 0 where it is no evidence.
   weight: vec3f,
+  // The plate there is an estimate, made with the levels as they were.
+  is_estimated: bool,
 }
 
 fn observe(texel: vec2u) -> Observation {
@@ -72,6 +76,7 @@ fn observe(texel: vec2u) -> Observation {
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
+  seen.is_estimated = plate_texel.a < 1.0;
   seen.weight = evident * plate_texel.a * is_evidence(seen.frame, seen.plate);
   return seen;
 }
@@ -103,9 +108,12 @@ fn levels_equation(seen: Observation, channel: u32) -> Equation {
   eq.columns[0] = b * ambient_model(seen.point, seen.ambient)[channel];
   var predicted = eq.columns[0];
   for (var i = 0u; i < globals.n_lights; i++) {
-    eq.columns[2u + i] = b * light_share(i, seen.point)[channel] * seen.visibility[i];
-    predicted += fit.level[i][channel] * eq.columns[2u + i];
+    let column = b * light_share(i, seen.point)[channel] * seen.visibility[i];
+    predicted += fit.level[i][channel] * column;
+    if !seen.is_estimated { eq.columns[2u + i] = column; }
   }
+  // It tells the exposure alone.
+  if seen.is_estimated { eq.columns[0] = predicted; }
   let gain = fit.gain[channel];
   eq.weight = seen.weight[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
@@ -119,12 +127,11 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   if textureLoad(evidence, texel, 0).g == 0.0 { return eq; }
   let normal = textureLoad(object_normal, texel, 0).xyz;
   eq.value = f[channel] / fit.gain[channel];
-  let reference = globals.receivers[0].reference_in_plane;
-  var predicted = 0.0;
-  for (var i = 0u; i < 2u + globals.n_lights; i++) {
-    eq.columns[i] = base[channel] * toy_column(i, normal, vec3f(reference.x, 0.0, reference.y));
-    predicted += fit.toy[i][channel] * eq.columns[i];
-  }
+  let received = textureLoad(object_received, texel, 0);
+  eq.columns[0] = base[channel];
+  eq.columns[1] = base[channel] * normal.y;
+  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * received[i]; }
+  let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
   eq.weight = is_evidence(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
   return eq;

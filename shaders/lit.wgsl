@@ -22,7 +22,7 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return vec4f(0.0); }
   let texel = vec2u(at);
   let here = receiver_point(vec2f(texel) + 0.5);
-  let seen = textureLoad(evidence, texel, 0).r;
+  let seen = textureLoad(evidence, texel, 0).b;
   if seen == 0.0 || here.receiver != point.receiver { return vec4f(0.0); }
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
@@ -36,7 +36,8 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   let receiver = cell.z;
   let grid = grids.grids[receiver];
-  if any(cell.xy >= grid.size) { return; }
+  // Nothing reaches a receiver whose cells have no extent.
+  if any(cell.xy >= grid.size) || grid.cell_m == 0.0 { return; }
   var sum = vec4f(0.0);
   for (var k = 0u; k < N_POINTS * N_POINTS; k++) {
     let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);

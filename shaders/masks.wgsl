@@ -1,11 +1,11 @@
 // The paper's mask 3a: where the camera sees the physical toy.
 //
-// Reads: physical positions in plane space. Writes: 0 or 1.
+// Reads: physical positions in stage space. Writes: 0 or 1.
 // Source: Casas et al. 2018, section 4.2.
 
 @vertex
-fn vs_object(@location(0) in_plane: vec3f) -> @builtin(position) vec4f {
-  return globals.clip_from_stage * vec4f(in_plane, 1.0);
+fn vs_object(@location(0) in_stage: vec3f) -> @builtin(position) vec4f {
+  return globals.clip_from_stage * vec4f(in_stage, 1.0);
 }
 
 @fragment

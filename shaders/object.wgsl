@@ -1,10 +1,10 @@
-// The toy in its physical pose as the camera sees it: base colour, normal and depth.
+// The toy in its physical pose as the camera sees it: base colour, normal, what it receives of each light, and depth.
 //
-// Reads: physical positions and normals in plane space, materials. Writes: base colour (linear, alpha 1 on the toy),
-// unit normal in plane space, reversed depth.
+// Reads: physical positions and normals in stage space, materials, depth maps from the lights. Writes: base colour (linear,
+// alpha 1 on the toy), unit normal in stage space, each light's cosine times its visibility, reversed depth.
 
 struct Vertex {
-  @location(0) in_plane: vec3f,
+  @location(0) in_stage: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
   @location(3) color: vec4f,
@@ -15,19 +15,23 @@ struct Surface {
   @location(0) normal: vec3f,
   @location(1) uv: vec2f,
   @location(2) color: vec4f,
+  @location(3) in_stage: vec3f,
 }
 
 @vertex
 fn vs_project(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_stage * vec4f(in.in_plane, 1.0), in.normal, in.uv, in.color);
+  return Surface(globals.clip_from_stage * vec4f(in.in_stage, 1.0), in.normal, in.uv, in.color, in.in_stage);
 }
 
 struct ObjectTexel {
   @location(0) base: vec4f,
   @location(1) normal: vec4f,
+  @location(2) received: vec4f,
 }
 
 @fragment
 fn fs_describe(in: Surface) -> ObjectTexel {
-  return ObjectTexel(vec4f(base_color(in.uv, in.color), 1.0), vec4f(unit_normal(in.normal), 0.0));
+  let base = vec4f(base_color(in.uv, in.color), 1.0);
+  let normal = unit_normal(in.normal);
+  return ObjectTexel(base, vec4f(normal, 0.0), light_received(normal, in.in_stage));
 }

@@ -83,6 +83,8 @@ fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candid
   if inside == 0.0 || is_hidden(k, point) { return Candidate(px, 0.0); }
   let at_right = plate_px(k, ReceiverPoint(point.receiver, right));
   let at_below = plate_px(k, ReceiverPoint(point.receiver, below));
+  // The plane ends at the horizon.
+  if at_right.z <= 0.0 || at_below.z <= 0.0 { return Candidate(px, 0.0); }
   let x = at_right.xy / at_right.z - px;
   let y = at_below.xy / at_below.z - px;
   // Plate pixels per pixel here: fewer than one lose detail.

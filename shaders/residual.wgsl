@@ -62,7 +62,8 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   let receiver = cell.z;
   let grid = grids.grids[receiver];
-  if any(cell.xy >= grid.size) { return; }
+  // Nothing reaches a receiver whose cells have no extent.
+  if any(cell.xy >= grid.size) || grid.cell_m == 0.0 { return; }
   var sums = Sums(vec3f(0.0), vec3f(0.0), 0.0);
   for (var k = 0u; k < N_POINTS * N_POINTS; k++) {
     let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);

@@ -1,57 +1,130 @@
-// The shadow term of each texel of the new shadow: the warped sample where it is eligible, else the closest eligible one.
+// The shadow term of each texel of the new shadows: the warped sample where the same lights are shadowed there, else the
+// closest such sample.
 //
-// Reads: warp, eligible, frame, plate. Writes: term (ratio to the plate, or colour), 1 where found; taps taken.
-// Twin: reference/search.rs. Source: Casas et al. 2018, section 3.3 (concentric rings, all candidates of a ring, the
-// closest wins, early exit) and section 3.4 with its ratio the right way up: shadow over light at the sample.
+// Where no sample of the receiver has the same lights, the closest of those sets that differ least will do, and where it
+// has no sample at all another receiver's: the papers name this as where their method fails.
+//
+// Reads: warp of each light, mask 3c and the sets that occur in it, frame, plate. Writes: term (ratio to the plate, or
+// colour), and the texel's label, 0 where nothing was found; taps taken.
+// Twin: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a ring, the
+// closest wins, early exit), 4.6 (no sample until all masks agree), 2019, section 5.7 (each receiver by itself) and 3.4 with its ratio the right way up: shadow over
+// light at the sample.
 
-@group(1) @binding(0) var warp: texture_2d<f32>;
-@group(1) @binding(1) var eligible: texture_2d<f32>;
+@group(1) @binding(0) var warp: texture_2d_array<f32>;
+@group(1) @binding(1) var eligible: texture_2d<u32>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
 @group(1) @binding(3) var plate: texture_2d<f32>;
+@group(1) @binding(4) var<storage, read> seen_sets: array<u32, MAX_RECEIVERS>;
 
 struct Term {
   @location(0) term: vec4f,
   @location(1) taps: vec4f,
 }
 
-fn is_eligible(texel: vec2i) -> bool {
-  let size = vec2i(textureDimensions(eligible));
-  return all(texel >= vec2i(0)) && all(texel < size) && textureLoad(eligible, texel, 0).r > 0.0;
+struct Found {
+  texel: vec2i,
+  is_found: bool,
+  taps: u32,
 }
 
-fn term_at(texel: vec2i) -> vec4f {
-  let image_texel = texel + vec2i(globals.region_origin_px);
-  let shaded = textureLoad(frame, image_texel, 0).rgb;
-  if published.is_textured == 0u { return vec4f(shaded, 1.0); }
+// What will do as a sample: its receiver, and bit s where the set s will.
+struct Wanted {
+  receiver: u32,
+  sets: u32,
+}
+
+fn is_eligible(texel: vec2i, wanted: Wanted) -> bool {
+  let size = vec2i(textureDimensions(eligible));
+  if any(texel < vec2i(0)) || any(texel >= size) { return false; }
+  let label = textureLoad(eligible, texel, 0).r;
+  return label / N_SETS == wanted.receiver && ((wanted.sets >> (label % N_SETS)) & 1u) != 0u;
+}
+
+fn ratio_at(texel: vec2i) -> vec3f {
+  let shaded = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
   let lit = textureLoad(plate, texel, 0).rgb;
   // Black in the plate tells nothing of the shadow: no change. Nor does a shadow add light: noise in the dark would.
-  return vec4f(select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0)), 1.0);
+  return select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0));
 }
 
-@fragment
-fn fs_search(@builtin(position) at: vec4f) -> Term {
-  let warped = textureLoad(warp, vec2i(at.xy), 0);
-  if warped.a == 0.0 { return Term(vec4f(0.0), vec4f(0.0)); }
-  let start = vec2i(floor(warped.xy));
-  if is_eligible(start) { return Term(term_at(start), vec4f(0.0)); }
+// The term for a texel of `receiver` from a sample, of that receiver or `borrowed` from another.
+fn term_at(texel: vec2i, found: vec2i, receiver: u32, borrowed: bool) -> vec3f {
+  if ((published.textured_receivers >> receiver) & 1u) != 0u { return ratio_at(found); }
+  if borrowed { return ratio_at(found) * textureLoad(plate, texel, 0).rgb; }
+  return textureLoad(frame, found + vec2i(globals.region_origin_px), 0).rgb;
+}
+
+// Of the sets in `remaining`, those least unlike `wanted`.
+fn closest_sets(wanted: u32, remaining: u32) -> u32 {
+  var least = 0xffffffffu;
+  var accepted = 0u;
+  for (var lights = 1u; lights < 1u << globals.n_lights; lights++) {
+    if ((remaining >> lights) & 1u) == 0u { continue; }
+    let far = unlikeness(wanted, lights);
+    if far < least { accepted = 0u; }
+    least = min(least, far);
+    if far == least { accepted |= 1u << lights; }
+  }
+  return accepted;
+}
+
+// Where the shadow of each light of the set came from, and rings around.
+fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
+  for (var light = 0u; light < globals.n_lights; light++) {
+    if ((lights >> light) & 1u) == 0u { continue; }
+    let start = vec2i(floor(textureLoad(warp, texel, light, 0).xy));
+    if is_eligible(start, wanted) { return Found(start, true, 0u); }
+  }
   var taps = 0u;
   for (var ring = 1u; ring <= published.n_rings; ring++) {
     var best = 1e9;
     var found = vec2i(0);
-    for (var k = 0u; k < published.n_ring_directions; k++) {
-      // Every other ring is turned by half a step, so that rays are not left out altogether.
-      let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(published.n_ring_directions) * 6.2831853;
-      let candidate = vec2i(floor(warped.xy + f32(ring) * published.ring_step_px * vec2f(cos(turn), sin(turn))));
-      taps++;
-      if is_eligible(candidate) {
-        let away = distance(vec2f(candidate) + 0.5, warped.xy);
-        if away < best {
-          best = away;
-          found = candidate;
+    for (var light = 0u; light < globals.n_lights; light++) {
+      if ((lights >> light) & 1u) == 0u { continue; }
+      let warped = textureLoad(warp, texel, light, 0).xy;
+      for (var k = 0u; k < published.n_ring_directions; k++) {
+        // Every other ring is turned by half a step, so that rays are not left out altogether.
+        let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(published.n_ring_directions) * 6.2831853;
+        let candidate = vec2i(floor(warped + f32(ring) * published.ring_step_px * vec2f(cos(turn), sin(turn))));
+        taps++;
+        if is_eligible(candidate, wanted) {
+          let away = distance(vec2f(candidate) + 0.5, warped);
+          if away < best {
+            best = away;
+            found = candidate;
+          }
         }
       }
     }
-    if best < 1e9 { return Term(term_at(found), vec4f(f32(taps))); }
+    if best < 1e9 { return Found(found, true, taps); }
+  }
+  return Found(vec2i(0), false, taps);
+}
+
+@fragment
+fn fs_search(@builtin(position) at: vec4f) -> Term {
+  let texel = vec2i(at.xy);
+  var lights = 0u;
+  for (var light = 0u; light < globals.n_lights; light++) {
+    if textureLoad(warp, texel, light, 0).a > 0.0 { lights |= 1u << light; }
+  }
+  if lights == 0u { return Term(vec4f(0.0), vec4f(0.0)); }
+  let receiver = receiver_at(texel);
+  var taps = 0u;
+  for (var k = 0u; k < globals.n_receivers; k++) {
+    let source = (receiver + k) % globals.n_receivers;
+    // A set that occurs may still be out of reach, so that others get their turn.
+    var remaining = seen_sets[source];
+    while remaining != 0u {
+      let sets = closest_sets(lights, remaining);
+      let found = search(texel, lights, Wanted(source, sets));
+      taps += found.taps;
+      if found.is_found {
+        let term = term_at(texel, found.texel, receiver, source != receiver);
+        return Term(vec4f(term, f32(label_of(receiver, lights))), vec4f(f32(taps)));
+      }
+      remaining &= ~sets;
+    }
   }
   return Term(vec4f(0.0), vec4f(f32(taps)));
 }

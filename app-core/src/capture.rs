@@ -10,14 +10,18 @@ use crate::gpu::texture::{Texture, TextureShape};
 use crate::knowledge::Knowledge;
 use crate::learner::Learner;
 use crate::light_points::ambient_directions;
-use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs};
-use crate::passes::composite::{N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
+use crate::passes::composite::PICTURE_FORMAT;
+use crate::passes::detail::DETAIL_FORMAT;
+use crate::passes::estimate::Fineness;
 use crate::passes::evidence::EVIDENCE_FORMAT;
-use crate::passes::estimate::Detail;
-use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectOutputs};
+use crate::passes::motion::MotionTargets;
+use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::plate::PLATE_FORMAT;
-use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
+use crate::passes::toy::ToyTargets;
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
 use crate::plan::{Change, Plan};
 
@@ -42,6 +46,7 @@ pub(crate) struct Capture {
     pub(crate) shown: Visibilities,
     pub(crate) object_base: Texture,
     pub(crate) object_normal: Texture,
+    pub(crate) object_received: Texture,
     pub(crate) object_depth: Texture,
     pub(crate) evidence: Texture,
     /// What was photographed without the toy.
@@ -49,10 +54,18 @@ pub(crate) struct Capture {
     /// The same, with an estimate where nothing was.
     pub(crate) estimated: Option<Texture>,
     pub(crate) appearance: Texture,
-    pub(crate) samples: Texture,
-    pub(crate) samples_depth: Texture,
+    pub(crate) appearance_lit: Texture,
+    pub(crate) appearance_base: Texture,
+    pub(crate) physical_self_shadow: SelfShadowMaps,
+    pub(crate) shown_self_shadow: SelfShadowMaps,
+    pub(crate) motion: MotionTargets,
+    pub(crate) toy: ToyTargets,
+    /// Each pixel's own residual, cleared of noise.
+    pub(crate) detail: Option<Texture>,
     pub(crate) picture: Texture,
     pub(crate) light_points: Vec<Vec<glam::Vec4>>,
+    /// Those of them that are in stage space.
+    stage_points: Vec<Vec<glam::Vec4>>,
     light_targets: Vec<OcclusionTargets>,
     ambient_targets: OcclusionTargets,
     ambient_directions: Vec<glam::Vec4>,
@@ -71,6 +84,7 @@ impl Capture {
             shown: visibilities(gpu, &plan),
             object_base: target("object base", BASE_FORMAT),
             object_normal: target("object normal", NORMAL_FORMAT),
+            object_received: target("object received", RECEIVED_FORMAT),
             object_depth: target("object depth", TextureFormat::Depth32Float),
             evidence: target("evidence", EVIDENCE_FORMAT),
             photographed: target("plate", PLATE_FORMAT),
@@ -78,22 +92,31 @@ impl Capture {
                 .is_plate_estimated
                 .then(|| target("estimated plate", PLATE_FORMAT)),
             appearance: target("appearance", APPEARANCE_FORMAT),
-            samples: texture(gpu, "composite samples", region_px, (PICTURE_FORMAT, N_SAMPLES)),
-            samples_depth: texture(
-                gpu,
-                "composite depth",
-                region_px,
-                (TextureFormat::Depth32Float, N_SAMPLES),
-            ),
+            appearance_lit: target("appearance lit", LIT_FORMAT),
+            appearance_base: target("appearance base", BASE_FORMAT),
+            physical_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
+            shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
+            motion: MotionTargets::new(gpu, region_px),
+            toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
+            detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan
                 .lights
                 .iter()
                 .map(|light| OcclusionTargets::new(gpu, region_px, region_px, light.n_points))
                 .collect(),
-            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, region_px, plan.n_ambient_directions),
+            ambient_targets: OcclusionTargets::new(
+                gpu,
+                plan.ambient_px,
+                region_px,
+                plan.n_ambient_directions,
+            ),
             // Each receiver has its own hemisphere.
             ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
+            stage_points: light_points
+                .iter()
+                .map(|points| points[..points.len() / n_receivers.max(1)].to_vec())
+                .collect(),
             light_points,
             plan,
         }
@@ -102,8 +125,15 @@ impl Capture {
     /// Follows the camera: the same textures show another part of another picture.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
         if plan.is_plate_estimated && self.estimated.is_none() {
-            self.estimated = Some(texture(gpu, "estimated plate", plan.region.size_px, (PLATE_FORMAT, 1)));
+            self.estimated = Some(texture(
+                gpu,
+                "estimated plate",
+                plan.region.size_px,
+                (PLATE_FORMAT, 1),
+            ));
         }
+        self.physical.injected = None;
+        self.shown.injected = None;
         self.plan = plan;
         self.known = *globals;
         gpu.queue
@@ -127,12 +157,20 @@ impl Capture {
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
     ) {
+        let physical = (toy, &toy.physical);
+        self.encode_self_shadow(gpu, encoder, passes, physical, &self.physical_self_shadow);
+        let inputs = ObjectInputs {
+            globals: &self.globals,
+            toy,
+            self_shadow: &self.physical_self_shadow,
+        };
         let outputs = ObjectOutputs {
             base: &self.object_base.view,
             normal: &self.object_normal.view,
+            received: &self.object_received.view,
             depth: &self.object_depth.view,
         };
-        passes.object.encode(gpu, encoder, &self.globals, toy, &outputs);
+        passes.object.encode(gpu, encoder, &inputs, &outputs);
         passes
             .evidence
             .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
@@ -171,18 +209,20 @@ impl Capture {
             frame: pictures.frame,
         };
         if !is_first {
-            learner.estimate_plate(encoder, Detail::Smooth);
+            learner.estimate_plate(encoder, Fineness::Smooth);
             learner.fit_levels(encoder);
         }
         learner.pool_lit(encoder);
-        learner.estimate_plate(encoder, Detail::Smooth);
+        learner.estimate_plate(encoder, Fineness::Smooth);
         learner.fit_receivers(encoder, is_first);
-        learner.estimate_plate(encoder, Detail::Full);
+        learner.estimate_plate(encoder, Fineness::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
         learner.pool_residual(encoder);
+        learner.separate_detail(encoder);
     }
 
-    /// Encodes what follows each new camera picture of a known view: its exposure and the lights' power.
+    /// Encodes what follows each new camera picture of a known view: its exposure, the lights' power, and what has come
+    /// into the picture or left it.
     pub(crate) fn encode_levels(
         &self,
         gpu: &Gpu,
@@ -199,6 +239,8 @@ impl Capture {
             frame,
         };
         learner.fit_levels(encoder);
+        learner.pool_residual(encoder);
+        learner.separate_detail(encoder);
     }
 
     /// Encodes the toy's own colours, which follow each new camera frame.
@@ -207,16 +249,43 @@ impl Capture {
         gpu: &Gpu,
         encoder: &mut Encoder,
         passes: &Passes,
-        frame: &wgpu::TextureView,
+        (knowledge, frame): (&Knowledge, &wgpu::TextureView),
     ) {
         let inputs = AppearanceInputs {
+            globals: &self.globals,
+            solution: &knowledge.solution,
             frame,
             evidence: &self.evidence.view,
             object_depth: &self.object_depth.view,
+            object_normal: &self.object_normal.view,
+            object_received: &self.object_received.view,
+            object_base: &self.object_base.view,
+        };
+        let outputs = AppearanceOutputs {
+            color: &self.appearance.view,
+            lit: &self.appearance_lit.view,
+            base: &self.appearance_base.view,
+        };
+        passes.appearance.encode(gpu, encoder, &inputs, &outputs);
+    }
+
+    /// Encodes the shadow that the toy casts on itself in a pose.
+    pub(crate) fn encode_self_shadow(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        passes: &Passes,
+        (toy, pose): (&ToyMesh, &PoseBuffers),
+        maps: &SelfShadowMaps,
+    ) {
+        let shadowed = Shadowed {
+            toy,
+            pose,
+            light_points: &self.stage_points,
         };
         passes
-            .appearance
-            .encode(gpu, encoder, &self.globals, &inputs, &self.appearance.view);
+            .self_shadow
+            .encode(gpu, encoder, &self.plan.self_shadow, &shadowed, maps);
     }
 
     /// Encodes visibility and ambient visibility of the toy at `positions`.

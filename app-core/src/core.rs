@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::encoder::{Encoder, PassTime, Stamps};
-use crate::gpu::layout::{Fit, Grid};
+use crate::gpu::layout::{Fit, Grid, MAX_CELLS};
 use crate::gpu::{AdapterChoice, Gpu, GpuError};
 use crate::inject::InjectedVisibility;
 use crate::maps::{FloatMap, Map};
@@ -16,6 +16,7 @@ use crate::preset::Preset;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::toy::ToyError;
+use crate::unknown::{Unknown, unknowns};
 use crate::window::Window;
 use crate::work::Work;
 
@@ -224,20 +225,34 @@ impl Core {
         Ok(Some(fit))
     }
 
-    /// Waits for the device and returns what the fit gives to worry about.
+    /// Waits for the device and returns what was learned that gives to worry about.
     ///
     /// # Errors
     /// When the device is lost.
     pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
         let Some(fit) = self.read_fit()? else {
-            return Ok(Vec::new());
+            let work = self.stage.as_ref().and_then(Stage::work);
+            let warnings = work.map(|work| work.read_warnings(&self.gpu)).transpose()?;
+            return Ok(warnings.unwrap_or_default());
         };
         let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
         let contrast = contrasts.copied().fold(0.0, f32::max);
-        Ok((contrast < FAINT_CONTRAST)
-            .then_some(Warning::FaintShadow { contrast })
-            .into_iter()
-            .collect())
+        let faint = (contrast < FAINT_CONTRAST).then_some(Warning::FaintShadow { contrast });
+        let unknown = self.read_unknowns()?.into_iter().map(Warning::Unknown);
+        Ok(faint.into_iter().chain(unknown).collect())
+    }
+
+    fn read_unknowns(&self) -> Result<Vec<Unknown>, CoreError> {
+        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
+            return Ok(Vec::new());
+        };
+        let kept = self.gpu.read_buffer(&model.knowledge.residual.kept)?;
+        let kept: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&kept);
+        let receivers = kept.chunks(MAX_CELLS).map(unknowns);
+        let mut found: Vec<Unknown> = receivers.flatten().collect();
+        found.sort_unstable_by_key(|unknown| *unknown as u8);
+        found.dedup();
+        Ok(found)
     }
 
     /// Replaces visibilities of the lights in what follows, so that errors of visibility can be told from all others.

@@ -9,6 +9,7 @@ use crate::plan::{LeftOut, Path};
 use crate::region::PixelRect;
 use crate::scene::{Image, PoseTime};
 use crate::session::SessionFrame;
+use crate::unknown::Unknown;
 
 /// A camera frame of the real, static toy, and the pose to show.
 #[derive(Clone, Debug)]
@@ -79,6 +80,15 @@ pub enum Warning {
         /// Energy of the lights' columns over that of the plate.
         contrast: f32,
     },
+    /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
+    NothingToSample,
+    /// New shadows fall or overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
+    ShadowsUnseen {
+        /// What would have to be seen.
+        unseen: Vec<UnseenShadow>,
+    },
+    /// The camera sees what the model cannot explain.
+    Unknown(Unknown),
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
     /// The camera's centre is not above the receiver.
@@ -103,7 +113,7 @@ impl fmt::Display for Warning {
             Self::ReceiversLeftOut { names } => {
                 write!(
                     f,
-                    "the shadow on {} stays as photographed: one receiver is handled",
+                    "the shadow on {} stays as photographed: the preset handles fewer receivers",
                     names.join(", ")
                 )
             }
@@ -114,16 +124,50 @@ impl fmt::Display for Warning {
                 )
             }
             Self::LightBelowReceiver { light } => {
-                write!(f, "light {light} is not above the receiver and is left out")
+                write!(f, "light {light} is above none of the receivers and is left out")
             }
             Self::FaintShadow { contrast } => write!(
                 f,
                 "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
             ),
+            Self::NothingToSample => f.write_str(
+                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",
+            ),
+            Self::ShadowsUnseen { unseen } => write!(
+                f,
+                "no real shadow is seen of {}: the new one there has the shade of others",
+                unseen
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
+            Self::Unknown(unknown) => unknown.fmt(f),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
         }
+    }
+}
+
+/// A place on a receiver that just some lights do not reach.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnseenShadow {
+    /// The receiver's place in the scene's list.
+    pub receiver: usize,
+    /// The lights, by their place among those in use.
+    pub lights: Vec<usize>,
+}
+
+impl fmt::Display for UnseenShadow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lights: Vec<_> = self.lights.iter().map(ToString::to_string).collect();
+        write!(
+            f,
+            "light {} alone on receiver {}",
+            lights.join(" + "),
+            self.receiver
+        )
     }
 }

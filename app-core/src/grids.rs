@@ -38,11 +38,11 @@ fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
     };
     let size_m = rect.max - rect.min;
     let longest_m = size_m.max_element();
-    // A receiver that nothing reaches has a grid of one cell, which stays empty.
-    if !(longest_m.is_finite() && longest_m > 0.0) {
+    // A receiver that nothing reaches has a grid of one cell without extent, which stays empty.
+    if !is_reached(&rect) {
         return Grid {
             origin_in_plane: [0.0; 2],
-            cell_m: 1.0,
+            cell_m: 0.0,
             first_cell,
             size: UNREACHED,
             _pad: [0; 2],
@@ -84,6 +84,12 @@ impl CellBuffers {
     }
 }
 
+/// Whether anything reaches a receiver, over more than a point.
+fn is_reached(rect: &PlaneRect) -> bool {
+    let longest_m = (rect.max - rect.min).max_element();
+    longest_m.is_finite() && longest_m > 0.0
+}
+
 /// Whether the grids cover the rectangles.
 #[must_use]
 pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
@@ -92,9 +98,8 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
         let size = glam::UVec2::from(grid.size).as_dvec2() * f64::from(grid.cell_m);
         // A cell more or less is of no account: what lies beyond takes the value at the border.
         let slack = f64::from(grid.cell_m);
-        let is_reached = rect.min.cmple(rect.max).all();
         let is_laid = grid.size != UNREACHED;
-        !is_reached
+        !is_reached(rect)
             || (is_laid
                 && rect.min.cmpge(origin - slack).all()
                 && rect.max.cmple(origin + size + slack).all())

@@ -5,7 +5,8 @@ use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Subject;
 use crate::knowledge::Knowledge;
-use crate::passes::estimate::{Detail, EstimateInputs};
+use crate::passes::detail::DetailInputs;
+use crate::passes::estimate::{EstimateInputs, Fineness};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
 use crate::passes::residual::ResidualInputs;
@@ -48,6 +49,7 @@ impl Learner<'_> {
             ambient: &capture.physical.ambient.view,
             object_base: &capture.object_base.view,
             object_normal: &capture.object_normal.view,
+            object_received: &capture.object_received.view,
         };
         let task = FitTask {
             subject,
@@ -89,7 +91,7 @@ impl Learner<'_> {
     }
 
     /// Completes the plate, where plates do not show everything.
-    pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, detail: Detail) {
+    pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, fineness: Fineness) {
         let (capture, knowledge) = (self.capture, self.knowledge);
         let (Some(pass), Some(target)) = (&self.passes.estimate, &capture.estimated) else {
             return;
@@ -109,7 +111,25 @@ impl Learner<'_> {
             ambient: &capture.physical.ambient.view,
         };
         pass.estimate
-            .encode(self.gpu, encoder, &inputs, detail, &target.view);
+            .encode(self.gpu, encoder, &inputs, fineness, &target.view);
+    }
+
+    /// What each pixel knows of its own residual, where noise is to be removed.
+    pub(crate) fn separate_detail(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let (Some(pass), Some(target)) = (&self.passes.detail, &capture.detail) else {
+            return;
+        };
+        let inputs = DetailInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            frame: self.frame,
+            plate: &capture.plate().view,
+            evidence: &capture.evidence.view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        pass.encode(self.gpu, encoder, &inputs, &target.view);
     }
 
     /// What the model leaves unexplained, also where the toy hides it.

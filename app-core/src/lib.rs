@@ -14,6 +14,7 @@ pub mod gpu;
 pub mod grids;
 pub mod inject;
 pub mod light_points;
+pub mod light_tiles;
 pub mod maps;
 pub mod outline;
 pub mod plan;
@@ -22,6 +23,7 @@ pub mod region;
 pub mod scene;
 pub mod session;
 pub mod toy;
+pub mod unknown;
 pub mod view;
 
 mod capture;

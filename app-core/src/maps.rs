@@ -4,7 +4,6 @@ use glam::{UVec2, Vec2, Vec3, Vec4};
 use wgpu::TextureFormat;
 
 use crate::gpu::layout::{Fit, Globals};
-use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, GpuError};
 use crate::published::Published;
 use crate::work::Model;
@@ -13,10 +12,13 @@ use crate::work::Model;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {
-    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy.
+    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy, b where it shows the
+    /// receiver well clear of the toy.
     Evidence,
     /// Base colour of the physical toy, linear; alpha is its coverage.
     ObjectBase,
+    /// Cosine to each light times its visibility, on the physical toy, light 0 in r.
+    ObjectReceived,
     /// The toy's own colours, linear, carried past its outline; alpha is 1 where there is one.
     Appearance,
     /// Visibility of each light with the physical toy, light 0 in r.
@@ -36,13 +38,16 @@ pub enum Map {
     Share,
     /// The paper's mask 3a, the physical toy, in r.
     Masks,
-    /// The paper's masks: r is the shadow to sample from (3c), g the real shadow (3b).
+    /// The paper's masks: r labels the shadow to sample from (3c), g is 1 in the real shadow (3b). A label is 16 times the
+    /// receiver plus the set of lights that do not reach it, bit i for light i; 0 where there is nothing to sample.
     Eligible,
-    /// The paper's warp: where in the region's pixels to sample, the occluder's height in metres; alpha is coverage.
+    /// The paper's warp: where in the region's pixels to sample, the occluder's height in metres; alpha is coverage. The
+    /// maps of several lights lie below each other.
     Warp,
-    /// Shadow terms as they were sampled; alpha is 1 where there is one.
+    /// Shadow terms as they were sampled; alpha is the label of what they stand for, 0 where there is none.
     Terms,
-    /// Sums of shadow terms over the box; alpha is their number.
+    /// Sums of shadow terms over the box; alpha is their number. The maps of several sets of lights, from the set 1 on, lie
+    /// below each other.
     FilteredTerms,
     /// Candidates that the ring search looked at, in r; 0 where it was not needed.
     SearchTaps,
@@ -53,6 +58,7 @@ impl Map {
     pub const ALL: &[Self] = &[
         Self::Evidence,
         Self::ObjectBase,
+        Self::ObjectReceived,
         Self::Appearance,
         Self::PhysicalVisibility,
         Self::PhysicalAmbient,
@@ -86,14 +92,15 @@ impl Model {
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let capture = &self.capture;
         let map = match map {
-            Map::Evidence => read_texture(gpu, &capture.evidence),
-            Map::ObjectBase => read_texture(gpu, &capture.object_base),
-            Map::Appearance => read_texture(gpu, &capture.appearance),
-            Map::PhysicalVisibility => read_texture(gpu, &capture.physical.lights),
-            Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient),
-            Map::Visibility => read_texture(gpu, &capture.shown.lights),
-            Map::Ambient => read_texture(gpu, &capture.shown.ambient),
-            Map::Plate => read_texture(gpu, capture.plate()),
+            Map::Evidence => read_texture(gpu, &capture.evidence.raw),
+            Map::ObjectBase => read_texture(gpu, &capture.object_base.raw),
+            Map::ObjectReceived => read_texture(gpu, &capture.object_received.raw),
+            Map::Appearance => read_texture(gpu, &capture.appearance.raw),
+            Map::PhysicalVisibility => read_texture(gpu, &capture.physical.lights.raw),
+            Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient.raw),
+            Map::Visibility => read_texture(gpu, &capture.shown.lights.raw),
+            Map::Ambient => read_texture(gpu, &capture.shown.ambient.raw),
+            Map::Plate => read_texture(gpu, &capture.plate().raw),
             Map::Residual => self.read_residual(gpu, 0),
             Map::Share => self.read_share(gpu),
             Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
@@ -188,23 +195,23 @@ impl Published {
     /// Waits for the device and returns a map, if the published method makes it.
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let texture = match map {
-            Map::Plate => &self.plate,
-            Map::Masks => &self.masks,
-            Map::Eligible => &self.eligible,
-            Map::Warp => &self.warp,
-            Map::Terms => &self.terms,
-            Map::FilteredTerms => &self.filtered_terms,
-            Map::SearchTaps => &self.taps,
-            Map::Visibility => &self.visibility,
+            Map::Plate => &self.plate.raw,
+            Map::Masks => &self.masks.raw,
+            Map::Eligible => &self.eligible.raw,
+            Map::Warp => &self.warp.raw,
+            Map::Terms => &self.terms.raw,
+            Map::FilteredTerms => &self.filtered_terms.raw,
+            Map::SearchTaps => &self.taps.raw,
+            Map::Visibility => &self.visibility.raw,
             _ => return Ok(None),
         };
         read_texture(gpu, texture).map(Some)
     }
 }
 
-fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
-    let bytes = gpu.read_texture(&texture.raw)?;
-    let format = texture.raw.format();
+fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<FloatMap, GpuError> {
+    let bytes = gpu.read_texture(texture)?;
+    let format = texture.format();
     let n_channels = usize::from(format.components());
     let values: Vec<f32> = match format {
         TextureFormat::R16Float | TextureFormat::Rg16Float | TextureFormat::Rgba16Float => bytes
@@ -227,6 +234,7 @@ fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
                 }
             })
             .collect(),
+        TextureFormat::Rg8Uint => bytes.iter().map(|number| f32::from(*number)).collect(),
         _ => bytes.iter().map(|code| f32::from(*code) / 255.0).collect(),
     };
     let texels = values
@@ -238,8 +246,8 @@ fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<FloatMap, GpuError> {
         })
         .collect();
     Ok(FloatMap {
-        width: texture.raw.width(),
-        height: texture.raw.height(),
+        width: texture.width(),
+        height: texture.height() * texture.depth_or_array_layers(),
         texels,
     })
 }

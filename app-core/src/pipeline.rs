@@ -6,17 +6,21 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Placement;
 use crate::knowledge::Knowledge;
 use crate::passes::appearance::Appearance;
-use crate::passes::composite::{Composite, CompositeInputs, CompositeTargets};
+use crate::passes::composite::{Composite, CompositeInputs};
+use crate::passes::detail::Detail;
 use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
 use crate::passes::fill::Fill;
 use crate::passes::fit::Fit;
 use crate::passes::lit::Lit;
+use crate::passes::motion::Motion;
 use crate::passes::object::Object;
 use crate::passes::occlusion::Occlusion;
 use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
+use crate::passes::self_shadow::SelfShadow;
+use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
 use crate::plan::Plan;
@@ -45,6 +49,7 @@ impl EstimatePasses {
 
 /// Every pass that a plan runs.
 pub(crate) struct Passes {
+    pub(crate) self_shadow: SelfShadow,
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
@@ -55,6 +60,9 @@ pub(crate) struct Passes {
     pub(crate) fit: Fit,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
+    pub(crate) detail: Option<Detail>,
+    pub(crate) motion: Motion,
+    pub(crate) toy: Toy,
     pub(crate) composite: Composite,
 }
 
@@ -65,6 +73,7 @@ impl Passes {
             visibility: Visibility::new(gpu, n_points, channel, format),
         };
         Self {
+            self_shadow: SelfShadow::new(gpu),
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
@@ -80,7 +89,10 @@ impl Passes {
             fit: Fit::new(gpu),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
-            composite: Composite::new(gpu),
+            detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
+            motion: Motion::new(gpu),
+            toy: Toy::new(gpu, plan.n_toy_draws),
+            composite: Composite::new(gpu, plan.n_toy_draws, plan.is_noise_removed),
         }
     }
 
@@ -101,6 +113,20 @@ impl Passes {
         frame: &wgpu::TextureView,
     ) {
         capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
+        let shown = (toy, &toy.shown);
+        capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
+        self.motion
+            .encode(gpu, encoder, &capture.globals, toy, &capture.motion);
+        let inputs = ToyInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            appearance: &capture.appearance.view,
+            appearance_lit: &capture.appearance_lit.view,
+            object_depth: &capture.object_depth.view,
+            appearance_base: &capture.appearance_base.view,
+            self_shadow: &capture.shown_self_shadow,
+        };
+        self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
@@ -113,17 +139,12 @@ impl Passes {
             physical_ambient: &capture.physical.ambient.view,
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
-            appearance: &capture.appearance.view,
-            object_depth: &capture.object_depth.view,
-            object_base: &capture.object_base.view,
-            object_normal: &capture.object_normal.view,
+            toy: &capture.toy,
+            detail: capture.detail.as_ref().map(|detail| &detail.view),
+            motion: &capture.motion.moved.view,
         };
-        let targets = CompositeTargets {
-            samples: &capture.samples.view,
-            depth: &capture.samples_depth.view,
-            picture: &capture.picture.view,
-        };
-        self.composite.encode(gpu, encoder, toy, &inputs, &targets);
+        self.composite
+            .encode(gpu, encoder, &inputs, &capture.picture.view);
     }
 }
 

@@ -21,12 +21,7 @@ impl PlateStore {
     pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Self {
         let n_layers = scene.plates.len().clamp(1, MAX_PLATES);
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
-        let pictures = Texture::pictures(
-            gpu,
-            "plates",
-            [scene.width_px, scene.height_px],
-            n_layers as u32,
-        );
+        let pictures = Texture::pictures(gpu, "plates", [scene.width_px, scene.height_px], n_layers as u32);
         Self {
             pictures,
             loaded: vec![None; n_layers],

@@ -34,7 +34,11 @@ pub(crate) struct PlateChoice {
 /// Chooses from the scene's plates for a camera that looks at `toy_in_world`.
 pub(crate) fn choose(scene: &Scene, world_from_camera: &DMat4, toy_in_world: DVec3) -> PlateChoice {
     let plates = &scene.plates;
-    let is_same = |plate: &Plate| plate.world_from_camera.abs_diff_eq(*world_from_camera, SAME_CAMERA);
+    let is_same = |plate: &Plate| {
+        plate
+            .world_from_camera
+            .abs_diff_eq(*world_from_camera, SAME_CAMERA)
+    };
     if let Some(same) = plates.iter().position(is_same) {
         return PlateChoice {
             indices: vec![same],
@@ -84,8 +88,7 @@ pub(crate) fn covered_share(
             let there = plate_view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
             let plate_px = there.truncate() / there.z;
             let end_px = plate_view.image_px.as_dvec2() - 1.0;
-            let is_inside =
-                there.z > 0.0 && plate_px.cmpge(DVec2::ONE).all() && plate_px.cmple(end_px).all();
+            let is_inside = there.z > 0.0 && plate_px.cmpge(DVec2::ONE).all() && plate_px.cmple(end_px).all();
             // A nearer receiver may hide it from that camera.
             let hit = is_inside
                 .then(|| nearest_receiver(plate_view, place.receivers, plate_px))

@@ -1,28 +1,33 @@
 //! The published method on one scene: its textures, its passes and the order they run in.
 
-use glam::DMat4;
+mod uniform;
+mod unseen;
+
 use wgpu::TextureFormat;
 
 use crate::capture::Pictures;
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, Published as PublishedLayout};
-use crate::gpu::texture::{Texture, TextureShape};
+use crate::gpu::texture::{Texture, TextureLayers, TextureShape};
 use crate::inject::Injected;
-use crate::light_points::light_in_plane;
 use crate::passes::box_filter::BoxFilter;
-use crate::passes::composite::{CompositeTargets, N_SAMPLES, PICTURE_FORMAT};
+use crate::passes::census::{Census, SeenSets};
+use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::eligible::{ELIGIBLE_FORMAT, Eligible};
 use crate::passes::masks::{MASKS_FORMAT, Masks};
-use crate::passes::pcss::{PCSS_FORMAT, Pcss};
+use crate::passes::pcss::Pcss;
 use crate::passes::plate::{PLATE_FORMAT, Plate};
-use crate::passes::retarget::{Retarget, RetargetInputs};
+use crate::passes::retarget::{N_SAMPLES, Retarget, RetargetInputs, RetargetTargets};
 use crate::passes::search::{Search, SearchInputs, TAPS_FORMAT, TERM_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
-use crate::passes::warp::{WARP_FORMAT, Warp};
+use crate::passes::warp::{Shadow, WARP_FORMAT, Warp};
 use crate::plan::PublishedPlan;
-use crate::preset::PublishedSettings;
-use crate::scene::{Light, Surface};
+
+pub(crate) use uniform::uniform;
+
+/// The census is written and read on the device, cleared, and read back for warnings.
+const CENSUS_USAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_SRC);
 
 /// Everything of the region's size, and the passes.
 pub(crate) struct Published {
@@ -36,14 +41,18 @@ pub(crate) struct Published {
     pub(crate) injected: Injected,
     globals: wgpu::Buffer,
     published: wgpu::Buffer,
-    pub(crate) warp: Texture,
+    /// A layer a light.
+    pub(crate) warp: TextureLayers,
     warp_depth: Texture,
+    /// A word a receiver: bit s where the set s of lights occurs in its mask 3c.
+    pub(crate) seen_sets: wgpu::Buffer,
     pub(crate) terms: Texture,
     terms_between: Texture,
-    pub(crate) filtered_terms: Texture,
+    /// A layer a set of lights.
+    pub(crate) filtered_terms: TextureLayers,
     samples: Texture,
     samples_depth: Texture,
-    is_constant: bool,
+    pub(crate) is_constant: bool,
     passes: Passes,
 }
 
@@ -51,6 +60,7 @@ struct Passes {
     plate: Plate,
     masks: Masks,
     eligible: Eligible,
+    census: Census,
     warp: Warp,
     search: Search,
     box_filter: BoxFilter,
@@ -59,26 +69,21 @@ struct Passes {
 }
 
 impl Published {
-    /// Allocates what `plan` asks for. `tallest_m` bounds the height of the toy in any pose.
+    /// Allocates what `plan` asks for.
     pub(crate) fn new(
         gpu: &Gpu,
         plan: PublishedPlan,
         globals: &Globals,
         published: &PublishedLayout,
-        tallest_m: f64,
     ) -> Self {
-        let target = |label, format, n_samples| {
-            let size_px = plan.region.size_px.to_array();
-            Texture::target(
-                gpu,
-                label,
-                TextureShape {
-                    size_px,
-                    format,
-                    n_samples,
-                },
-            )
+        let shape = |format, n_samples| TextureShape {
+            size_px: plan.region.size_px.to_array(),
+            format,
+            n_samples,
         };
+        let target = |label, format, n_samples| Texture::target(gpu, label, shape(format, n_samples));
+        let targets =
+            |label, format, n_layers| TextureLayers::targets(gpu, label, shape(format, 1), n_layers);
         Self {
             globals: gpu.uniform("globals", globals),
             published: gpu.uniform("published", published),
@@ -86,13 +91,18 @@ impl Published {
             plate: target("plate", PLATE_FORMAT, 1),
             masks: target("masks", MASKS_FORMAT, 1),
             eligible: target("eligible", ELIGIBLE_FORMAT, 1),
-            warp: target("warp", WARP_FORMAT, 1),
+            warp: targets("warp", WARP_FORMAT, plan.n_lights),
             warp_depth: target("warp depth", TextureFormat::Depth32Float, 1),
+            seen_sets: gpu.buffer(
+                "seen sets",
+                bytemuck::bytes_of(&SeenSets::default()),
+                CENSUS_USAGE,
+            ),
             terms: target("terms", TERM_FORMAT, 1),
             terms_between: target("terms between", TERM_FORMAT, 1),
-            filtered_terms: target("filtered terms", TERM_FORMAT, 1),
+            filtered_terms: targets("filtered terms", TERM_FORMAT, plan.n_sets),
             taps: target("taps", TAPS_FORMAT, 1),
-            visibility: target("visibility", PCSS_FORMAT, 1),
+            visibility: target("visibility", plan.visibility_format, 1),
             injected: Injected::default(),
             samples: target("retarget samples", PICTURE_FORMAT, N_SAMPLES),
             samples_depth: target("retarget depth", TextureFormat::Depth32Float, N_SAMPLES),
@@ -101,10 +111,11 @@ impl Published {
                 plate: Plate::new(gpu),
                 masks: Masks::new(gpu),
                 eligible: Eligible::new(gpu),
+                census: Census::new(gpu),
                 warp: Warp::new(gpu),
                 search: Search::new(gpu),
-                box_filter: BoxFilter::new(gpu),
-                pcss: Pcss::new(gpu, tallest_m),
+                box_filter: BoxFilter::new(gpu, plan.n_receivers, plan.n_sets),
+                pcss: Pcss::new(gpu, plan.visibility_format),
                 retarget: Retarget::new(gpu),
             },
             plan,
@@ -135,13 +146,18 @@ impl Published {
             (toy, &toy.physical.positions),
             self.injected.physical.as_ref(),
         );
+        let shared = (&self.globals, &self.published);
         let sources = (&self.masks.view, &self.visibility.view);
         self.passes
             .eligible
-            .encode(gpu, encoder, &self.published, sources, &self.eligible.view);
+            .encode(gpu, encoder, shared, sources, &self.eligible.view);
+        if !self.is_constant {
+            let mask = (&self.eligible.view, self.plan.region.size_px);
+            self.passes.census.encode(gpu, encoder, mask, &self.seen_sets);
+        }
     }
 
-    /// Encodes warp and visibility of the pose at `shown`; a visibility that is `injected` replaces the latter.
+    /// Encodes warps and visibility of the pose at `shown`; a visibility that is `injected` replaces the latter.
     fn encode_visibility(
         &self,
         gpu: &Gpu,
@@ -149,14 +165,17 @@ impl Published {
         shown: (&ToyMesh, &wgpu::Buffer),
         injected: Option<&Texture>,
     ) {
+        for (light, layer) in (0..).zip(&self.warp.layers) {
+            let targets = (layer, &self.warp_depth.view);
+            let shadow = Shadow {
+                light,
+                n_receivers: self.plan.n_receivers,
+            };
+            self.passes
+                .warp
+                .encode(gpu, encoder, (&self.globals, shadow), shown, targets);
+        }
         let shared = (&self.globals, &self.published);
-        self.passes.warp.encode(
-            gpu,
-            encoder,
-            shared,
-            shown,
-            (&self.warp.view, &self.warp_depth.view),
-        );
         self.passes
             .pcss
             .encode(gpu, encoder, shared, &self.warp.view, &self.visibility.view);
@@ -185,6 +204,7 @@ impl Published {
                 published: &self.published,
                 warp: &self.warp.view,
                 eligible: &self.eligible.view,
+                seen_sets: &self.seen_sets,
                 frame: pictures.frame,
                 plate: &self.plate.view,
             };
@@ -194,9 +214,9 @@ impl Published {
             self.passes.box_filter.encode(
                 gpu,
                 encoder,
-                &self.published,
+                (&self.globals, &self.published),
                 &self.terms.view,
-                (&self.terms_between.view, &self.filtered_terms.view),
+                (&self.terms_between.view, &self.filtered_terms.layers),
             );
         }
         let inputs = RetargetInputs {
@@ -209,41 +229,11 @@ impl Published {
             visibility: &self.visibility.view,
             terms: &self.filtered_terms.view,
         };
-        let targets = CompositeTargets {
+        let targets = RetargetTargets {
             samples: &self.samples.view,
             depth: &self.samples_depth.view,
             picture: &self.picture.view,
         };
         self.passes.retarget.encode(gpu, encoder, toy, &inputs, &targets);
-    }
-}
-
-/// The shaders' view of the settings and of the one light that the published method takes here.
-pub(crate) fn uniform(
-    light: &Light,
-    plane_from_world: &DMat4,
-    surface: Surface,
-    settings: &PublishedSettings,
-) -> PublishedLayout {
-    PublishedLayout {
-        light: light_in_plane(light, plane_from_world).as_vec4().to_array(),
-        #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]
-        light_radius: match *light {
-            Light::Sphere { radius_m, .. } => radius_m,
-            Light::Directional {
-                angular_radius_rad, ..
-            } => angular_radius_rad.tan(),
-        } as f32,
-        is_textured: u32::from(surface == Surface::Textured),
-        is_constant: u32::from(settings.constant_ratio.is_some()),
-        constant_ratio: settings.constant_ratio.unwrap_or_default(),
-        eligible_margin_px: settings.eligible_margin_px,
-        ring_step_px: settings.ring_step_px,
-        n_ring_directions: settings.n_ring_directions,
-        n_rings: settings.n_rings,
-        box_radius_px: settings.box_radius_px,
-        seam_px: settings.seam_px,
-        n_blocker_taps: settings.n_blocker_taps,
-        n_filter_taps: settings.n_filter_taps,
     }
 }

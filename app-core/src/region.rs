@@ -181,7 +181,10 @@ impl<'a> Reach<'a> {
 
     /// Takes in a point of the toy, in stage space, its shadows and the receivers near it.
     pub fn include(&mut self, in_stage: DVec3) {
-        self.include_px(self.view.image_px_from(&self.world_from_stage, in_stage.extend(1.0)));
+        self.include_px(
+            self.view
+                .image_px_from(&self.world_from_stage, in_stage.extend(1.0)),
+        );
         for k in 0..self.planes.len() {
             let in_plane = self.planes[k].plane_from_stage.transform_point3(in_stage);
             // A wall far from the toy keeps its ambient light.

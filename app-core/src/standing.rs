@@ -3,15 +3,9 @@
 use glam::DMat4;
 
 use crate::frame::Warning;
+use crate::gpu::layout::{MAX_LIGHTS, MAX_RECEIVERS};
 use crate::light_points::light_in_plane;
 use crate::scene::{Light, Receiver, Scene};
-
-/// Lights and receivers that a preset takes, of each the first ones.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Most {
-    pub(crate) lights: usize,
-    pub(crate) receivers: usize,
-}
 
 /// What is used of a scene.
 pub(crate) struct Usable {
@@ -22,11 +16,9 @@ pub(crate) struct Usable {
 }
 
 /// The first receivers, and the first lights that stand above one of them.
-pub(crate) fn usable(scene: &Scene, most: Most) -> Usable {
+pub(crate) fn usable(scene: &Scene) -> Usable {
     let mut warnings = Vec::new();
-    let (used, left_out) = scene
-        .receivers
-        .split_at(most.receivers.min(scene.receivers.len()));
+    let (used, left_out) = scene.receivers.split_at(MAX_RECEIVERS.min(scene.receivers.len()));
     if !left_out.is_empty() {
         warnings.push(Warning::ReceiversLeftOut {
             names: left_out.iter().map(|receiver| receiver.name.clone()).collect(),
@@ -45,11 +37,11 @@ pub(crate) fn usable(scene: &Scene, most: Most) -> Usable {
             warnings.push(Warning::LightBelowReceiver { light: index });
         }
     }
-    if lights.len() > most.lights {
+    if lights.len() > MAX_LIGHTS {
         warnings.push(Warning::LightsLeftOut {
-            n_lights: lights.len() - most.lights,
+            n_lights: lights.len() - MAX_LIGHTS,
         });
-        lights.truncate(most.lights);
+        lights.truncate(MAX_LIGHTS);
     }
     Usable {
         lights,

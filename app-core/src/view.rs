@@ -44,7 +44,8 @@ impl Place<'_> {
         let plane_from_world = receiver.world_from_plane.inverse();
         let plane_from_stage = plane_from_world * self.world_from_stage();
         let nearest = plane_from_stage.transform_point3(self.toy_in_stage);
-        let reference = DVec2::new(nearest.x, nearest.z).clamp(-receiver.half_extent_m, receiver.half_extent_m);
+        let reference =
+            DVec2::new(nearest.x, nearest.z).clamp(-receiver.half_extent_m, receiver.half_extent_m);
         ReceiverPlane {
             plane_from_stage: plane_from_stage.as_mat4().to_cols_array_2d(),
             plane_from_region_px: columns(view.plane_from_region_px(rect, &receiver.world_from_plane)),
@@ -147,7 +148,10 @@ impl View {
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let count = |n: usize, most: usize| n.min(most) as u32;
         Globals {
-            clip_from_stage: self.clip_from(rect, &world_from_stage).as_mat4().to_cols_array_2d(),
+            clip_from_stage: self
+                .clip_from(rect, &world_from_stage)
+                .as_mat4()
+                .to_cols_array_2d(),
             receivers,
             lights: lights_in(place.lights, &world_from_stage.inverse()),
             border_px: [

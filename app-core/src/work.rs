@@ -1,6 +1,7 @@
 //! The two ways to a picture behind one face: the model, and the published method.
 
 use crate::capture::{Capture, Pictures};
+use crate::frame::Warning;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Globals;
 use crate::gpu::texture::Texture;
@@ -114,6 +115,14 @@ impl Work {
             Self::Published(published) => published.read_map(gpu, map),
         }
     }
+
+    /// Waits for the device and returns what the published method lacks; the model tells by its fit.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+        match self {
+            Self::Model(_) => Ok(Vec::new()),
+            Self::Published(published) => published.read_warnings(gpu),
+        }
+    }
 }
 
 impl Model {
@@ -139,7 +148,7 @@ impl Model {
             capture.encode_levels(gpu, encoder, passes, knowledge, pictures.frame);
         }
         if change >= Change::Picture {
-            capture.encode_appearance(gpu, encoder, passes, pictures.frame);
+            capture.encode_appearance(gpu, encoder, passes, (knowledge, pictures.frame));
         }
         encoder.path = Path::Frame;
         passes.encode_frame(gpu, encoder, (capture, knowledge), toy, pictures.frame);

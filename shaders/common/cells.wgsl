@@ -2,6 +2,7 @@
 
 fn cell_at(point: ReceiverPoint) -> vec4f {
   let grid = grids.grids[point.receiver];
+  if grid.cell_m == 0.0 { return vec4f(0.0); }
   let at = (point.in_plane - grid.origin_in_plane) / grid.cell_m - 0.5;
   let low = floor(at);
   let t = at - low;

@@ -1,14 +1,18 @@
 """The photographer: builds Mitsuba scenes of the toy on its table and develops them to 8-bit sRGB."""
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
 from PIL import Image
 
+import hand
+import sky
+from setup import COOL, EVEN, Glow
+
 mi.set_variant("llvm_ad_rgb")
 
-WARM, COOL = np.array([1.05, 1.0, 0.91]), np.array([0.93, 1.0, 1.1])
 PATH_DEPTH = 5
 GRAIN_DEGREES = 24.0  # turn of the table's picture
 SAMPLES_A_PASS = 64  # a square, as the multijitter sampler wants; keeps a pass within memory
@@ -46,49 +50,71 @@ def write_ply(path, baked, world_from_object):
     path.write_bytes("\n".join(lines).encode() + corners.astype("<f4").tobytes() + faces.tobytes())
 
 
+@dataclass
+class Shot:
+    """One photograph: the toy's baked primitives, a seed of its own, and what differs from the setup's first frame."""
+
+    baked: list
+    seed: int
+    view: int = 0
+    power: float = 1.0  # of the first light
+    gain: tuple = EVEN  # linear, per channel
+    with_hand: bool = False
+
+
 class Photographer:
-    """Camera, light and table of one setup; `scene` puts a posed toy there, `shoot` takes the picture."""
+    """Receivers, lights and cameras of one setup; `shoot` puts a posed toy there and takes the picture."""
 
-    def __init__(self, setup, reflectance, spp):
-        self.setup, self.passes = setup, max(1, round(spp / SAMPLES_A_PASS))
+    def __init__(self, setup, spp):
+        self.setup, self.passes = setup, setup.effort * max(1, round(spp / SAMPLES_A_PASS))
         self.folder = tempfile.TemporaryDirectory()
-        self.parts = {"type": "scene", "table": self.table(reflectance), "bulb": self.bulb(), "sky": self.sky(), "camera": self.camera(),
-                      "integrator": {"type": "path", "max_depth": PATH_DEPTH, "rr_depth": 1000}}
+        self.parts = {"type": "scene"} | {f"receiver_{k}": self.receiver(r) for k, r in enumerate(setup.receivers)}
+        self.parts |= {"sky": self.sky(), "integrator": {"type": "path", "max_depth": PATH_DEPTH, "rr_depth": 1000}}
 
-    def table(self, reflectance):
-        """Diffuse square of 3 m with its repeating picture; Mitsuba's rectangle spans -1..1 in its own x and y."""
-        flat = mi.ScalarTransform4f().rotate([1, 0, 0], -90).scale(1.5)
-        surface = picture(reflectance, "repeat") | {"to_uv": mi.ScalarTransform3f().rotate(GRAIN_DEGREES).scale(3.0 / self.setup.tile)}
-        return {"type": "rectangle", "to_world": flat, "bsdf": {"type": "diffuse", "reflectance": surface}}
+    def receiver(self, receiver):
+        """Diffuse rectangle with its repeating picture; Mitsuba's spans -1..1 in its own x and y."""
+        width, depth = receiver.half_extent
+        flat = mi.ScalarTransform4f(receiver.world_from_plane()).rotate([1, 0, 0], -90).scale([width, depth, 1.0])
+        repeats = [2 * width / receiver.tile, 2 * depth / receiver.tile]
+        surface = picture(receiver.reflectance(), "repeat") | {"to_uv": mi.ScalarTransform3f().rotate(GRAIN_DEGREES).scale(repeats)}
+        matt = {"type": "diffuse", "reflectance": surface}
+        return {"type": "rectangle", "to_world": flat, "bsdf": {"type": "twosided", "bsdf": matt} if receiver.upright else matt}
 
-    def bulb(self):
-        """Sphere whose irradiance on the table's origin is its share of the plate's level."""
-        position, radius = self.setup.light_position(), self.setup.light_radius
-        distance = np.linalg.norm(position)
-        form_factor = radius**2 / distance**2 * position[1] / distance
-        radiance = PLATE_LEVEL * self.setup.light_share / form_factor * WARM
-        light = {"type": "area", "radiance": {"type": "rgb", "value": radiance.tolist()}}
-        return {"type": "sphere", "center": position.tolist(), "radius": radius, "emitter": light}
+    def bulbs(self, power):
+        """Spheres or points that give the table's origin their shares of the plate's level; the first times `power`."""
+        out = {}
+        for k, light in enumerate(self.setup.lights):
+            if isinstance(light, Glow):
+                continue
+            position, radius = light.centre(), light.radius
+            distance = np.linalg.norm(position)
+            colour = PLATE_LEVEL * light.share * np.array(light.colour) * (power if k == 0 else 1.0)
+            if radius == 0:
+                intensity = np.pi * colour * distance**3 / position[1]
+                out[f"bulb_{k}"] = {"type": "point", "position": position.tolist(), "intensity": {"type": "rgb", "value": intensity.tolist()}}
+                continue
+            form_factor = radius**2 / distance**2 * position[1] / distance
+            glow = {"type": "area", "radiance": {"type": "rgb", "value": (colour / form_factor).tolist()}}
+            out[f"bulb_{k}"] = {"type": "sphere", "center": position.tolist(), "radius": radius, "emitter": glow}
+        return out
 
     def sky(self):
-        """Constant surroundings with the rest of the plate's level, found by diffuse bounces alone: half the noise of aiming at them too."""
-        radiance = PLATE_LEVEL * (1 - self.setup.light_share) * COOL
+        """Surroundings with the rest of the plate's level. Even ones are found by diffuse bounces alone: half the noise of aiming at them too."""
+        if self.setup.sky != "even":
+            return {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(sky.paint(self.setup) * PLATE_LEVEL, np.float32))}
+        radiance = PLATE_LEVEL * (1 - sum(light.share for light in self.setup.lights)) * COOL
         return {"type": "constant", "sampling_weight": 0.0, "radiance": {"type": "rgb", "value": radiance.tolist()}}
 
-    def camera(self):
-        """Pinhole at the setup's pose; Mitsuba's own camera looks along +Z with +X to the left."""
+    def camera(self, view):
+        """Pinhole at one of the setup's poses; Mitsuba's own camera looks along +Z with +X to the left."""
         width, height = self.setup.size
-        pose = self.setup.world_from_camera() @ np.diag([-1.0, 1.0, -1.0, 1.0])
+        pose = self.setup.cameras()[view] @ np.diag([-1.0, 1.0, -1.0, 1.0])
         film = {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb", "component_format": "float32",
                 "rfilter": {"type": "box"}}
         sampler = {"type": "multijitter", "sample_count": SAMPLES_A_PASS}
         fov = float(np.degrees(2 * np.arctan(width / 2 / self.setup.focal_px())))
         return {"type": "perspective", "fov_axis": "x", "fov": fov, "near_clip": 0.01, "far_clip": 20.0,
                 "to_world": mi.ScalarTransform4f(pose), "film": film, "sampler": sampler}
-
-    def scene(self, baked):
-        """Scene with the given baked primitives on the table."""
-        return mi.load_dict(self.parts | self.meshes(baked))
 
     def casters(self, baked):
         """The baked primitives alone, for ray tests: neither table nor bulb can get in the way of a ray that ends on them."""
@@ -107,8 +133,10 @@ class Photographer:
             parts[f"toy_{k}"] = {"type": "ply", "filename": str(path), "face_normals": True, "bsdf": matt}
         return parts
 
-    def shoot(self, baked, seed, path):
-        """Renders and develops a photograph of the baked primitives; `seed` sets it apart from the others of the session."""
-        scene, passes = self.scene(baked), range(self.passes)
-        image = sum(np.array(mi.render(scene, spp=SAMPLES_A_PASS, seed=seed * 1000 + k), np.float64) for k in passes) / self.passes
-        Image.fromarray(srgb(image)).save(path, optimize=True)
+    def shoot(self, shot, path):
+        """Renders and develops a photograph."""
+        parts = self.parts | self.bulbs(shot.power) | {"camera": self.camera(shot.view)} | self.meshes(shot.baked)
+        scene = mi.load_dict(parts | (hand.shapes(*self.setup.hand) if shot.with_hand else {}))
+        renders = (mi.render(scene, spp=SAMPLES_A_PASS, seed=shot.seed * 1000 + k) for k in range(self.passes))
+        image = sum(np.array(render, np.float64) for render in renders) / self.passes
+        Image.fromarray(srgb(image * shot.gain)).save(path, optimize=True)

@@ -1,144 +1,128 @@
-"""Photographs the toy with Mitsuba 3 and writes `shadow-capture` folders.
+"""Photographs toys with Mitsuba 3 and writes `shadow-capture` folders.
 
 usage: session.py [--variant NAME] [--out DIR] [--spp N]
-World: right-handed, metres, +Y up. The camera looks along its -Z with +Y up.
+       session.py --all DIR [--held-out] [--spp N]
 """
 import argparse
 import json
-import shutil
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-import ground
-from mask import mask_png
-from photo import Photographer
+import held_out
+import setups
+from mask import channels, mask_png
+from photo import Photographer, Shot
+from setup import EVEN, columns
 from skin import Toy
+from toys import toy_file
 
 SESSIONS = Path(__file__).parent.parent / "sessions"
-LOOKS = (("Look", 0.6), ("Look", 1.8), ("Step", 0.5), ("Step", 1.25))
+PLATE_SEED, FRAME_SEED, TRUTH_SEED = 1, 2, 3  # of the first of each kind
+LATER_SEEDS = 100  # plate or frame k of several has its first seed + 100 k
 
 
-@dataclass
-class Setup:
-    """One table, light and camera. Lengths in metres, angles in degrees."""
-
-    name: str
-    description: str
-    size: tuple = (640, 360)
-    eye: tuple = (0.03, 0.222, 0.325)
-    target: tuple = (0.026, 0.046, 0.0)
-    yaw: float = -52.0
-    scale: float = 1.0
-    light_azimuth: float = 186.0  # from +X towards +Z
-    light_elevation: float = 47.0
-    light_distance: float = 1.0
-    light_radius: float = 0.015
-    light_share: float = 0.6  # of the plate's irradiance below the light
-    table: str = "wood"
-    tile: float = 0.9  # side of the table's repeating picture
-    poses: tuple = LOOKS
-    ends_in_physical_pose: bool = True
-
-    def light_position(self):
-        """Centre of the bulb in the world."""
-        azimuth, elevation = np.radians(self.light_azimuth), np.radians(self.light_elevation)
-        return self.light_distance * np.array([np.cos(elevation) * np.cos(azimuth), np.sin(elevation), np.cos(elevation) * np.sin(azimuth)])
-
-    def focal_px(self):
-        """Focal length in pixels, the same for both axes."""
-        return 0.9 * self.size[0]
-
-    def world_from_camera(self):
-        """Camera pose, 4x4 for column vectors."""
-        back = np.subtract(self.eye, self.target)
-        back /= np.linalg.norm(back)
-        right = np.cross((0.0, 1.0, 0.0), back)
-        right /= np.linalg.norm(right)
-        out = np.eye(4)
-        out[:3, :4] = np.stack([right, np.cross(back, right), back, self.eye], axis=1)
-        return out
-
-    def world_from_object(self):
-        """Toy's pose: a turn about +Y and a uniform scale."""
-        cos, sin = self.scale * np.cos(np.radians(self.yaw)), self.scale * np.sin(np.radians(self.yaw))
-        return np.array([[cos, 0, sin, 0], [0, self.scale, 0, 0], [-sin, 0, cos, 0], [0, 0, 0, 1.0]])
-
-    def reflectance(self):
-        """Table's linear reflectance picture, and whether it counts as textured."""
-        if self.table == "uniform":
-            return np.full((2, 2, 3), (0.56, 0.55, 0.53)), "uniform"
-        return getattr(ground, self.table)(), "textured"
+def frame_name(setup, k):
+    """Picture of frame k; they share one as long as the camera sees the same."""
+    return f"frame_{k if setup.has_own_frames() else 0:04}.png"
 
 
-HD = {"size": (1280, 720), "poses": (("Look", 0.6), ("Look", 1.8), ("Step", 0.5)), "ends_in_physical_pose": False}
-SETUPS = {s.name: s for s in (
-    Setup("llama", "A jointed wooden llama on waxed planks under one frosted bulb, fixed camera."),
-    Setup("bulb-uniform", "One small bulb, hard shadow, uniform table, fixed camera.", light_radius=0.006, table="uniform", **HD),
-    Setup("area-wood", "One large lamp, wide penumbra, wooden table, fixed camera.", light_radius=0.07, **HD),
-    Setup("bulb-tiles", "One small bulb, tiles, another side of the toy, fixed camera.",
-          eye=(-0.13, 0.26, 0.33), target=(-0.01, 0.05, 0.025), yaw=38.0,
-          light_azimuth=330.0, light_elevation=55.0, light_radius=0.01, table="tiles", tile=0.4, **HD),
-)}
+def plate_names(setup):
+    """Pictures of the plates, after their views."""
+    return [f"background_{view:04}.png" for view in setup.plates]
 
 
-def columns(matrix):
-    """16 numbers, column-major."""
-    return [float(x) for x in matrix.T.ravel()]
+def truth_name(setup, k):
+    """A frame that shows the physical pose is its own truth."""
+    return frame_name(setup, k) if setup.clips()[k] == setup.physical else f"truth_{k:04}.png"
 
 
-def capture_json(setup, surface, clips):
-    """The session's description; pose k of the toy is frame k."""
-    camera = columns(setup.world_from_camera())
+def capture_json(setup):
+    """The session's description."""
+    cameras = [columns(camera) for camera in setup.cameras()]
     width, height = setup.size
     frames = []
-    for k, (clip, time) in enumerate(clips):
-        truth = "frame_0000.png" if clip is None else f"truth_{k:04}.png"
-        frames.append({"time": round(k / 30, 6), "image": "frame_0000.png", "world_from_camera": camera,
-                       "animation": {"clip": clip, "time": time}, "truth": truth, "mask": f"mask_{k:04}.png"})
+    for k, (clip, time) in enumerate(setup.clips()):
+        frames.append({"time": round(k / setup.rate, 6), "image": frame_name(setup, k), "world_from_camera": cameras[k % len(cameras)],
+                       "animation": {"clip": clip, "time": time}, "truth": truth_name(setup, k), "mask": f"mask_{k:04}.png"})
+    clip, time = setup.physical
     return {
         "format": "shadow-capture", "version": 1, "name": setup.name, "description": setup.description,
         "credits": "Toy, table and pictures: this project's own work (tests/make).", "units": "metre",
         "width": width, "height": height, "encoding": "srgb",
         "intrinsics": {"fx": setup.focal_px(), "fy": setup.focal_px(), "cx": width / 2, "cy": height / 2},
-        "toy": {"file": "toy.glb", "world_from_object": columns(setup.world_from_object()), "physical_pose": {"clip": None, "time": 0.0}},
-        "receivers": [{"name": "table", "world_from_plane": columns(np.eye(4)), "half_extent": [1.5, 1.5], "surface": surface}],
-        "lights": [{"kind": "sphere", "position": setup.light_position().tolist(), "radius": setup.light_radius}],
-        "backgrounds": [{"image": "background_0000.png", "world_from_camera": camera}],
+        "toy": {"file": "toy.glb", "world_from_object": columns(setup.world_from_object()), "physical_pose": {"clip": clip, "time": time}},
+        "receivers": [receiver.listing() for receiver in setup.receivers],
+        "lights": [light.listing() for light in setup.lights if light.listed],
+        "backgrounds": [{"image": name, "world_from_camera": cameras[view]} for name, view in zip(plate_names(setup), setup.plates)],
         "frames": frames,
     }
 
 
+def plates(setup):
+    """File and shot of each plate."""
+    for k, (name, view) in enumerate(zip(plate_names(setup), setup.plates)):
+        gain = setup.plate_gains[k] if setup.plate_gains else EVEN
+        yield name, Shot([], PLATE_SEED + LATER_SEEDS * k, view, gain=gain)
+
+
+def photographs(setup, toy):
+    """File and shot of each frame's picture, and of its truth where the toy moved."""
+    physical, views = toy.bake(*setup.physical), len(setup.cameras())
+    for k, (clip, time) in enumerate(setup.clips()):
+        same = {"view": k % views, "power": setup.powers[k] if setup.powers else 1.0,
+                "gain": setup.frame_gains[k] if setup.frame_gains else EVEN, "with_hand": setup.hand is not None}
+        if k == 0 or setup.has_own_frames():
+            yield frame_name(setup, k), Shot(physical, FRAME_SEED + LATER_SEEDS * k, **same)
+        if (clip, time) != setup.physical:
+            yield truth_name(setup, k), Shot(toy.bake(clip, time), TRUTH_SEED + (0 if setup.same_noise else k), **same)
+
+
+def masks(setup, toy, photographer, out):
+    """Writes the score masks; what a camera sees of the real toy is found once."""
+    physical, views = {}, len(setup.cameras())
+    for k, (clip, time) in enumerate(setup.clips()):
+        view = k % views
+        if view not in physical:
+            physical[view] = channels(setup, view, photographer.casters(toy.bake(*setup.physical)))
+        posed = channels(setup, view, photographer.casters(toy.bake(clip, time)))
+        mask_png(setup, posed, physical[view], out / f"mask_{k:04}.png")
+
+
 def make(setup, out, spp):
-    """Renders one session into the folder `out`, which gets a copy of the toy."""
+    """Renders one session into the folder `out`, which gets the toy too."""
     out.mkdir(parents=True, exist_ok=True)
-    source = SESSIONS / "llama" / "toy.glb"
-    if out.resolve() != source.parent.resolve():
-        shutil.copyfile(source, out / "toy.glb")
-    toy = Toy(source)
-    clips = list(setup.poses) + ([(None, 0.0)] if setup.ends_in_physical_pose else [])
-    reflectance, surface = setup.reflectance()
-    photographer = Photographer(setup, reflectance, spp)
-    physical = toy.bake(None, 0.0)
-    photographer.shoot([], 1, out / "background_0000.png")
-    photographer.shoot(physical, 2, out / "frame_0000.png")
-    for k, (clip, time) in enumerate(clips):
-        posed = toy.bake(clip, time)
-        if clip:
-            photographer.shoot(posed, 3 + k, out / f"truth_{k:04}.png")
-        mask_png(setup, photographer.casters(posed), photographer.casters(physical), out / f"mask_{k:04}.png")
-    (out / "capture.json").write_text(json.dumps(capture_json(setup, surface, clips), indent=1) + "\n")
-    print(f"{out}: {sum(f.stat().st_size for f in out.iterdir()) / 1e6:.2f} MB")
+    toy_file(setup.toy, out / "toy.glb")
+    toy = Toy(out / "toy.glb")
+    photographer = Photographer(setup, spp)
+    for name, shot in [*plates(setup), *photographs(setup, toy)]:
+        photographer.shoot(shot, out / name)
+    masks(setup, toy, photographer, out)
+    (out / "capture.json").write_text(json.dumps(capture_json(setup), indent=1) + "\n")
+
+
+def make_all(wanted, folder, spp):
+    """Renders each setup into `folder`/NAME unless that exists; a folder has its name only when it is whole."""
+    for setup in wanted:
+        if (folder / setup.name).exists():
+            continue
+        unfinished = folder / f".{setup.name}"
+        make(setup, unfinished, spp)
+        unfinished.rename(folder / setup.name)
+        print(f"{setup.name}: {setup.description}", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--variant", choices=SETUPS, default="llama")
+    named = {setup.name: setup for setup in (*setups.BUNDLED, *setups.SCENES, *held_out.SCENES)}
+    parser.add_argument("--variant", choices=named, default="llama")
     parser.add_argument("--out", type=Path, help="folder to write, by default tests/sessions/VARIANT")
-    parser.add_argument("--spp", type=int, default=1024, help="samples a pixel, in multiples of 64")
+    parser.add_argument("--all", type=Path, metavar="DIR", help="renders all scenes into DIR/NAME, but for those that exist")
+    parser.add_argument("--held-out", action="store_true", help="with --all: the scenes that nothing is tuned on")
+    parser.add_argument("--spp", type=int, help="samples a pixel, in multiples of 64; by default 1024, with --all 128")
     args = parser.parse_args()
-    make(SETUPS[args.variant], args.out or SESSIONS / args.variant, args.spp)
+    if args.all:
+        make_all(held_out.SCENES if args.held_out else setups.SCENES, args.all, args.spp or 128)
+    else:
+        make(named[args.variant], args.out or SESSIONS / args.variant, args.spp or 1024)
 
 
 if __name__ == "__main__":

@@ -111,3 +111,11 @@ def is_closed(solid):
         for start, end in zip(triangle, triangle[1:] + triangle[:1]):
             edges[start, end] = edges.get((start, end), 0) + 1
     return all(count == 1 and edges.get((end, start)) == 1 for (start, end), count in edges.items())
+
+
+def checked(solids):
+    """The solids, once each is known to be closed with outward faces and the lowest stands on y = 0."""
+    for solid in solids:
+        assert is_closed(solid) and signed_volume(solid) > 0, f"{solid.material}: not a closed solid with outward faces"
+    assert min(solid.positions[:, 1].min() for solid in solids) == 0.0, "the feet are not on y = 0"
+    return solids

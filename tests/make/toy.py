@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from glb import Clip, Joint, Material, write_glb
-from solids import Ring, bead, is_closed, loft, saddle, signed_volume, superellipse
+from solids import Ring, bead, checked, loft, saddle, superellipse
 
 CM = 0.01
 LEGS = {"front_left": (1.35, 2.35), "front_right": (-1.35, 2.35), "hind_left": (1.35, -2.75), "hind_right": (-1.35, -2.75)}
@@ -198,10 +198,7 @@ def carve():
     solids = trunk() + head() + collar() + blanket()
     for name, (x, z) in LEGS.items():
         solids += leg(name, x, z)
-    for solid in solids:
-        assert is_closed(solid) and signed_volume(solid) > 0, f"{solid.material}: not a closed solid with outward faces"
-    assert min(solid.positions[:, 1].min() for solid in solids) == 0.0, "the feet are not on y = 0"
-    return solids
+    return checked(solids)
 
 
 def main():

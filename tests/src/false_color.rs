@@ -108,6 +108,13 @@ pub fn describe(map: Map) -> Option<Shown> {
             "Base colour of the real toy's model where the camera sees it; its outline must fit the camera frame.",
             None,
         ),
+        Map::ObjectReceived => (
+            "received",
+            "Light on the toy",
+            "What each point of the real toy receives of each light, its own shadow on itself included; three lights as \
+             red, green, blue.",
+            Some(("turned away or hidden", "in full light", GRAY)),
+        ),
         Map::Appearance => (
             "appearance",
             "Toy's own colours",

@@ -171,7 +171,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
         }
     }
     // Inputs, then picture, error and maps of each preset.
-    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 4 + 2 + 9));
+    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 4 + 2 + 10));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::plan::Path;
 use super::{Gpu, GpuError};
 
 /// Most passes of one submission that are timed.
-const MAX_TIMED: u32 = 64;
+const MAX_TIMED: u32 = 512;
 /// Bytes of one time stamp.
 const STAMP_BYTES: u64 = 8;
 

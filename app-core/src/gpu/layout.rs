@@ -15,6 +15,9 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 /// Most light points of one occlusion pass: 16 a colour target, four targets.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
+/// Most depth maps of the toy from the lights.
+pub const MAX_TILES: usize = 64;
+
 /// What the fit takes a toy to throw back until it knows better.
 pub const PRIOR_BOUNCE: f32 = 0.2;
 /// What the fit takes all lights' shares to sum to until it knows better.
@@ -142,6 +145,17 @@ pub struct PlateViews {
     pub _pad: [u32; 2],
 }
 
+/// `SelfShadow` in `common/self_shadow.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct SelfShadow {
+    pub atlas_from_stage: [[[f32; 4]; 4]; MAX_TILES],
+    pub first_tile: [u32; MAX_LIGHTS],
+    pub n_tiles: [u32; MAX_LIGHTS],
+    pub texel_m: [f32; MAX_LIGHTS],
+}
+
 /// `Material` in `common/material.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -164,9 +178,9 @@ pub struct Placement {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Published {
-    pub light: [f32; 4],
-    pub light_radius: f32,
-    pub is_textured: u32,
+    pub light_radii: [f32; MAX_LIGHTS],
+    pub tallest_m: [f32; MAX_RECEIVERS],
+    pub textured_receivers: u32,
     pub is_constant: u32,
     pub constant_ratio: f32,
     pub eligible_margin_px: i32,
@@ -177,6 +191,7 @@ pub struct Published {
     pub seam_px: i32,
     pub n_blocker_taps: u32,
     pub n_filter_taps: u32,
+    pub _pad: u32,
 }
 
 /// What is fitted: `SUBJECT_RECEIVER`, `SUBJECT_TOY` and `SUBJECT_LEVELS` in `common/fit_step.wgsl`.

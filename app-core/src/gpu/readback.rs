@@ -17,12 +17,13 @@ impl Gpu {
         self.map(&staging)
     }
 
-    /// Waits for the device and returns the texels of a texture, row by row without padding.
+    /// Waits for the device and returns the texels of a texture, row by row without padding, layer after layer.
     pub(crate) fn read_texture(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
         let texel_bytes = texture.format().block_copy_size(None).unwrap_or(4);
         let row_bytes = texture.width() * texel_bytes;
         let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let staging = self.staging(u64::from(padded_bytes) * u64::from(texture.height()));
+        let n_rows = texture.height() * texture.depth_or_array_layers();
+        let staging = self.staging(u64::from(padded_bytes) * u64::from(n_rows));
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -33,7 +34,7 @@ impl Gpu {
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(padded_bytes),
-                    rows_per_image: None,
+                    rows_per_image: Some(texture.height()),
                 },
             },
             texture.size(),

@@ -34,13 +34,21 @@ const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
+const MOVED: &str = wgsl!("common/moved");
 const PIXEL: &str = wgsl!("common/pixel");
 const PUBLISHED: &str = wgsl!("common/published");
-const TOY: &str = wgsl!("common/toy");
+const SELF_SHADOW_MAPS: &str = wgsl!("common/self_shadow");
+const TOY_LIGHT: &str = wgsl!("common/toy_light");
+const TOY_RADIANCE: &str = wgsl!("common/toy_radiance");
 
+pub(crate) const SELF_SHADOW: Shader = Shader {
+    name: "self_shadow",
+    parts: &[GLOBALS, TOY_LIGHT, SELF_SHADOW_MAPS, wgsl!("self_shadow")],
+    entry_points: &["vs_light", "fs_depth"],
+};
 pub(crate) const OBJECT: Shader = Shader {
     name: "object",
-    parts: &[GLOBALS, MATERIAL, wgsl!("object")],
+    parts: &[GLOBALS, TOY_LIGHT, SELF_SHADOW_MAPS, MATERIAL, wgsl!("object")],
     entry_points: &["vs_project", "fs_describe"],
 };
 pub(crate) const EVIDENCE: Shader = Shader {
@@ -50,7 +58,7 @@ pub(crate) const EVIDENCE: Shader = Shader {
 };
 pub(crate) const APPEARANCE: Shader = Shader {
     name: "appearance",
-    parts: &[GLOBALS, DEPTH, FULLSCREEN, wgsl!("appearance")],
+    parts: &[GLOBALS, FIT, TOY_RADIANCE, DEPTH, FULLSCREEN, wgsl!("appearance")],
     entry_points: &["vs_fullscreen", "fs_clean"],
 };
 pub(crate) const OCCLUSION: Shader = Shader {
@@ -65,7 +73,7 @@ pub(crate) const VISIBILITY: Shader = Shader {
 };
 pub(crate) const FIT_SUMS: Shader = Shader {
     name: "fit",
-    parts: &[GLOBALS, FIT, FIT_STEP, MODEL, TOY, PIXEL, wgsl!("fit")],
+    parts: &[GLOBALS, FIT, FIT_STEP, MODEL, TOY_RADIANCE, PIXEL, wgsl!("fit")],
     entry_points: &["cs_accumulate"],
 };
 pub(crate) const FIT_SOLVE: Shader = Shader {
@@ -98,21 +106,44 @@ pub(crate) const FILL: Shader = Shader {
     parts: &[GRID, wgsl!("fill")],
     entry_points: &["cs_pull_push"],
 };
+pub(crate) const MOTION: Shader = Shader {
+    name: "motion",
+    parts: &[GLOBALS, MOVED, wgsl!("motion")],
+    entry_points: &["vs_physical", "fs_motion"],
+};
+pub(crate) const DETAIL: Shader = Shader {
+    name: "detail",
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, FULLSCREEN, wgsl!("detail")],
+    entry_points: &["vs_fullscreen", "fs_separate"],
+};
+pub(crate) const TOY: Shader = Shader {
+    name: "toy",
+    parts: &[
+        GLOBALS,
+        FIT,
+        TOY_LIGHT,
+        TOY_RADIANCE,
+        SELF_SHADOW_MAPS,
+        MATERIAL,
+        DEPTH,
+        MOVED,
+        wgsl!("toy"),
+    ],
+    entry_points: &["vs_toy", "fs_toy"],
+};
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
     parts: &[
         GLOBALS,
         FIT,
         MODEL,
-        TOY,
+        PIXEL,
         GRID,
         CELLS,
-        MATERIAL,
-        DEPTH,
         FULLSCREEN,
         wgsl!("composite"),
     ],
-    entry_points: &["vs_fullscreen", "fs_receiver", "vs_toy", "fs_toy"],
+    entry_points: &["vs_fullscreen", "fs_compose"],
 };
 pub(crate) const PRESENT: Shader = Shader {
     name: "present",
@@ -129,6 +160,11 @@ pub(crate) const ELIGIBLE: Shader = Shader {
     name: "eligible",
     parts: &[GLOBALS, PUBLISHED, FULLSCREEN, wgsl!("eligible")],
     entry_points: &["vs_fullscreen", "fs_mark"],
+};
+pub(crate) const CENSUS: Shader = Shader {
+    name: "census",
+    parts: &[GLOBALS, PUBLISHED, wgsl!("census")],
+    entry_points: &["cs_count"],
 };
 pub(crate) const WARP: Shader = Shader {
     name: "warp",
@@ -158,6 +194,30 @@ pub(crate) const RETARGET: Shader = Shader {
 
 /// Every shader there is.
 pub const ALL: &[Shader] = &[
-    OBJECT, EVIDENCE, APPEARANCE, OCCLUSION, VISIBILITY, PLATE, LIT, ESTIMATE, FIT_SUMS, FIT_SOLVE, RESIDUAL,
-    FILL, COMPOSITE, PRESENT, MASKS, ELIGIBLE, WARP, SEARCH, BOX_FILTER, PCSS, RETARGET,
+    SELF_SHADOW,
+    OBJECT,
+    EVIDENCE,
+    APPEARANCE,
+    OCCLUSION,
+    VISIBILITY,
+    PLATE,
+    LIT,
+    ESTIMATE,
+    FIT_SUMS,
+    FIT_SOLVE,
+    RESIDUAL,
+    FILL,
+    DETAIL,
+    MOTION,
+    TOY,
+    COMPOSITE,
+    PRESENT,
+    MASKS,
+    ELIGIBLE,
+    CENSUS,
+    WARP,
+    SEARCH,
+    BOX_FILTER,
+    PCSS,
+    RETARGET,
 ];

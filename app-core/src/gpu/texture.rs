@@ -29,7 +29,7 @@ impl Texture {
                 | wgpu::TextureUsages::COPY_SRC
                 | wgpu::TextureUsages::COPY_DST
         };
-        let raw = Self::create(gpu, label, (shape, 1), usage);
+        let raw = create_raw(gpu, label, (shape, 1), usage);
         let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
         Self { raw, view }
     }
@@ -41,7 +41,13 @@ impl Texture {
 
     /// An array of pictures to read from, sRGB-encoded.
     pub(crate) fn pictures(gpu: &Gpu, label: &str, size_px: [u32; 2], n_pictures: u32) -> Self {
-        Self::layers(gpu, label, size_px, n_pictures, wgpu::TextureViewDimension::D2Array)
+        Self::layers(
+            gpu,
+            label,
+            size_px,
+            n_pictures,
+            wgpu::TextureViewDimension::D2Array,
+        )
     }
 
     fn layers(
@@ -57,39 +63,12 @@ impl Texture {
             n_samples: 1,
         };
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let raw = Self::create(gpu, label, (shape, n_layers), usage);
+        let raw = create_raw(gpu, label, (shape, n_layers), usage);
         let view = raw.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(dimension),
             ..Default::default()
         });
         Self { raw, view }
-    }
-
-    fn create(
-        gpu: &Gpu,
-        label: &str,
-        (shape, n_layers): (TextureShape, u32),
-        usage: wgpu::TextureUsages,
-    ) -> wgpu::Texture {
-        // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
-        let view_formats: &[_] = match (shape.format, shape.n_samples) {
-            (wgpu::TextureFormat::Rgba8UnormSrgb, 1) => &[wgpu::TextureFormat::Rgba8Unorm],
-            _ => &[],
-        };
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d {
-                width: shape.size_px[0],
-                height: shape.size_px[1],
-                depth_or_array_layers: n_layers,
-            },
-            mip_level_count: 1,
-            sample_count: shape.n_samples,
-            dimension: wgpu::TextureDimension::D2,
-            format: shape.format,
-            usage,
-            view_formats,
-        })
     }
 
     /// Encodes a copy of all of `from`, of the same size and format.
@@ -136,4 +115,67 @@ impl Texture {
             },
         );
     }
+}
+
+/// Targets of one shape, drawn to one by one and read together.
+#[derive(Debug)]
+pub(crate) struct TextureLayers {
+    pub(crate) raw: wgpu::Texture,
+    /// All of them, as an array.
+    pub(crate) view: wgpu::TextureView,
+    /// Each by itself.
+    pub(crate) layers: Vec<wgpu::TextureView>,
+}
+
+impl TextureLayers {
+    /// `n_layers` textures that passes draw to and read from.
+    pub(crate) fn targets(gpu: &Gpu, label: &str, shape: TextureShape, n_layers: u32) -> Self {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC;
+        let raw = create_raw(gpu, label, (shape, n_layers), usage);
+        let layer = |index| {
+            raw.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        Self {
+            view: raw.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
+            layers: (0..n_layers).map(layer).collect(),
+            raw,
+        }
+    }
+}
+
+fn create_raw(
+    gpu: &Gpu,
+    label: &str,
+    (shape, n_layers): (TextureShape, u32),
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
+    let view_formats: &[_] = match (shape.format, shape.n_samples) {
+        (wgpu::TextureFormat::Rgba8UnormSrgb, 1) => &[wgpu::TextureFormat::Rgba8Unorm],
+        _ => &[],
+    };
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: shape.size_px[0],
+            height: shape.size_px[1],
+            depth_or_array_layers: n_layers,
+        },
+        mip_level_count: 1,
+        sample_count: shape.n_samples,
+        dimension: wgpu::TextureDimension::D2,
+        format: shape.format,
+        usage,
+        view_formats,
+    })
 }

@@ -1,22 +1,19 @@
-//! `composite`: plate times new shadow, real toy and real shadow gone, animated toy with its camera pixels.
+//! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
-use wgpu::{CompareFunction, DepthStencilState, StoreOp, TextureFormat, VertexFormat};
+use wgpu::TextureFormat;
 
 use crate::gpu::Gpu;
-use crate::gpu::encoder::{Encoder, resolved};
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface, view};
+use crate::gpu::encoder::Encoder;
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::COMPOSITE;
 
-use super::toy_mesh::{Stream, ToyMesh};
+use super::toy::ToyTargets;
 
-/// Format of the picture: the resolve averages linear light.
+/// Format of the picture.
 pub(crate) const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// Multisampling of the toy's silhouette.
-pub(crate) const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Composite {
-    receiver: wgpu::RenderPipeline,
-    toy: wgpu::RenderPipeline,
+    pipeline: wgpu::RenderPipeline,
     linear: wgpu::Sampler,
 }
 
@@ -32,44 +29,21 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) physical_ambient: &'a wgpu::TextureView,
     pub(crate) visibility: &'a wgpu::TextureView,
     pub(crate) ambient: &'a wgpu::TextureView,
-    pub(crate) appearance: &'a wgpu::TextureView,
-    pub(crate) object_depth: &'a wgpu::TextureView,
-    pub(crate) object_base: &'a wgpu::TextureView,
-    pub(crate) object_normal: &'a wgpu::TextureView,
-}
-
-/// Textures of the region's size: two multisampled ones that stay on the chip, and the picture.
-pub(crate) struct CompositeTargets<'a> {
-    pub(crate) samples: &'a wgpu::TextureView,
-    pub(crate) depth: &'a wgpu::TextureView,
-    pub(crate) picture: &'a wgpu::TextureView,
+    pub(crate) toy: &'a ToyTargets,
+    pub(crate) motion: &'a wgpu::TextureView,
+    /// Each pixel's own residual; without it that is what the frame shows.
+    pub(crate) detail: Option<&'a wgpu::TextureView>,
 }
 
 impl Composite {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
-        let module = gpu.module(&COMPOSITE);
-        let streams = [
-            Stream::new(2, VertexFormat::Float32x2),
-            Stream::new(3, VertexFormat::Float32x4),
-            Stream::new(0, VertexFormat::Float32x3),
-            Stream::new(1, VertexFormat::Float32x3),
-            Stream::new(4, VertexFormat::Float32x3),
-            Stream::new(5, VertexFormat::Float32x3),
+    /// For a toy drawn once or four times, with or without residuals cleared of noise.
+    pub(crate) fn new(gpu: &Gpu, n_toy_draws: u32, is_noise_removed: bool) -> Self {
+        let constants = [
+            ("N_TOY_DRAWS", f64::from(n_toy_draws)),
+            ("HAS_DETAIL", f64::from(u8::from(is_noise_removed))),
         ];
-        let buffers: Vec<_> = streams.iter().map(Stream::layout).collect();
-        let receiver = Stages {
-            vertex: "vs_fullscreen",
-            fragment: "fs_receiver",
-            buffers: &[],
-        };
-        let toy = Stages {
-            vertex: "vs_toy",
-            fragment: "fs_toy",
-            buffers: &buffers,
-        };
         Self {
-            receiver: gpu.render_pipeline(&COMPOSITE, &module, &receiver, &picture_shape(behind_all())),
-            toy: gpu.render_pipeline(&COMPOSITE, &module, &toy, &picture_shape(nearest_surface())),
+            pipeline: gpu.fullscreen_pipeline(&COMPOSITE, "fs_compose", PICTURE_FORMAT, &constants),
             linear: gpu.linear_sampler(),
         }
     }
@@ -78,29 +52,20 @@ impl Composite {
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        toy: &ToyMesh,
         inputs: &CompositeInputs<'_>,
-        targets: &CompositeTargets<'_>,
+        picture: &wgpu::TextureView,
     ) {
-        let receiver_groups = [
-            shared(gpu, &self.receiver, inputs),
-            self.receiver_inputs(gpu, inputs),
-        ];
-        let toy_groups = [shared(gpu, &self.toy, inputs), self.toy_inputs(gpu, inputs)];
-        let materials = toy.material_groups(gpu, &self.toy);
-        let colors = [Some(resolved(targets.samples, targets.picture))];
-        let mut render = encoder.render(COMPOSITE.name, &colors, Some(targets.depth), StoreOp::Discard);
-        render.set_pipeline(&self.receiver);
-        set_groups(&mut render, &receiver_groups);
-        render.draw(0..3, 0..1);
-        render.set_pipeline(&self.toy);
-        set_groups(&mut render, &toy_groups);
-        toy.draw_parts(&mut render, &[&toy.shown, &toy.physical], &materials);
-    }
-
-    fn receiver_inputs(&self, gpu: &Gpu, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
-        gpu.bind(
-            &self.receiver.get_bind_group_layout(GROUP_PASS),
+        let layout = |group| self.pipeline.get_bind_group_layout(group);
+        let shared = gpu.bind(
+            &layout(GROUP_GLOBALS),
+            &[
+                (0, inputs.globals.as_entire_binding()),
+                (1, inputs.solution.as_entire_binding()),
+            ],
+        );
+        let [toy_0, toy_1, toy_2, toy_3] = inputs.toy.views();
+        let own = gpu.bind(
+            &layout(GROUP_PASS),
             &[
                 (0, inputs.grids.as_entire_binding()),
                 (1, inputs.cells.as_entire_binding()),
@@ -112,59 +77,21 @@ impl Composite {
                 (7, view(inputs.visibility)),
                 (8, view(inputs.ambient)),
                 (9, wgpu::BindingResource::Sampler(&self.linear)),
+                (10, view(toy_0)),
+                (11, view(toy_1)),
+                (12, view(toy_2)),
+                (13, view(toy_3)),
+                (14, view(&inputs.toy.moved.view)),
+                (15, view(inputs.motion)),
+                // Not read where there is none.
+                (16, view(inputs.detail.unwrap_or(inputs.plate))),
             ],
-        )
-    }
-
-    fn toy_inputs(&self, gpu: &Gpu, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
-        gpu.bind(
-            &self.toy.get_bind_group_layout(GROUP_PASS),
-            &[
-                (10, view(inputs.appearance)),
-                (11, view(inputs.object_depth)),
-                (12, view(inputs.object_base)),
-                (13, view(inputs.object_normal)),
-            ],
-        )
-    }
-}
-
-fn shared(gpu: &Gpu, pipeline: &wgpu::RenderPipeline, inputs: &CompositeInputs<'_>) -> wgpu::BindGroup {
-    gpu.bind(
-        &pipeline.get_bind_group_layout(GROUP_GLOBALS),
-        &[
-            (0, inputs.globals.as_entire_binding()),
-            (1, inputs.solution.as_entire_binding()),
-        ],
-    )
-}
-
-fn set_groups(render: &mut wgpu::RenderPass<'_>, [shared, own]: &[wgpu::BindGroup; 2]) {
-    render.set_bind_group(GROUP_GLOBALS, shared, &[]);
-    render.set_bind_group(GROUP_PASS, own, &[]);
-}
-
-const PICTURE_TARGETS: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu::ColorTargetState {
-    format: PICTURE_FORMAT,
-    blend: None,
-    write_mask: wgpu::ColorWrites::ALL,
-})];
-
-/// For pipelines that draw the region's picture.
-pub(crate) fn picture_shape(depth: DepthStencilState) -> RenderShape<'static> {
-    RenderShape {
-        targets: &PICTURE_TARGETS,
-        n_samples: N_SAMPLES,
-        depth: Some(depth),
-        constants: &[],
-    }
-}
-
-/// For what is drawn before all else and hides nothing.
-pub(crate) fn behind_all() -> DepthStencilState {
-    DepthStencilState {
-        depth_write_enabled: Some(false),
-        depth_compare: Some(CompareFunction::Always),
-        ..nearest_surface()
+        );
+        encoder.fullscreen(
+            COMPOSITE.name,
+            &self.pipeline,
+            &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
+            picture,
+        );
     }
 }

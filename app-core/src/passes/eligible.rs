@@ -7,8 +7,8 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::ELIGIBLE;
 
-/// Format of the masks: r is 3c, g is 3b.
-pub(crate) const ELIGIBLE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
+/// Format of the masks: r is 3c as a set of lights, g is 3b.
+pub(crate) const ELIGIBLE_FORMAT: TextureFormat = TextureFormat::Rg8Uint;
 
 pub(crate) struct Eligible {
     pipeline: wgpu::RenderPipeline,
@@ -25,12 +25,18 @@ impl Eligible {
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        published: &wgpu::Buffer,
+        (globals, published): (&wgpu::Buffer, &wgpu::Buffer),
         (masks, visibility): (&wgpu::TextureView, &wgpu::TextureView),
         eligible: &wgpu::TextureView,
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(2, published.as_entire_binding())]);
+        let shared = gpu.bind(
+            &layout(GROUP_GLOBALS),
+            &[
+                (0, globals.as_entire_binding()),
+                (2, published.as_entire_binding()),
+            ],
+        );
         let own = gpu.bind(&layout(GROUP_PASS), &[(0, view(masks)), (1, view(visibility))]);
         encoder.fullscreen(
             ELIGIBLE.name,

@@ -27,7 +27,7 @@ pub(crate) struct EstimateInputs<'a> {
 
 /// How much of the frame an estimate may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Detail {
+pub(crate) enum Fineness {
     /// Smooth: to find the shadow in.
     Smooth,
     /// Each seen pixel tells its own, once the shadow is known.
@@ -51,12 +51,12 @@ impl Estimate {
         gpu: &Gpu,
         encoder: &mut Encoder,
         inputs: &EstimateInputs<'_>,
-        detail: Detail,
+        fineness: Fineness,
         target: &wgpu::TextureView,
     ) {
-        let pipeline = match detail {
-            Detail::Smooth => &self.smooth,
-            Detail::Full => &self.last,
+        let pipeline = match fineness {
+            Fineness::Smooth => &self.smooth,
+            Fineness::Full => &self.last,
         };
         let shared = gpu.bind(
             &pipeline.get_bind_group_layout(GROUP_GLOBALS),

@@ -7,8 +7,8 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_PASS, view};
 use crate::gpu::shaders::EVIDENCE;
 
-/// Format of the evidence: r for the receiver, g for the toy.
-pub(crate) const EVIDENCE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
+/// Format of the evidence: r for the receiver, g for the toy, b for the receiver well clear of the toy.
+pub(crate) const EVIDENCE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Evidence {
     pipeline: wgpu::RenderPipeline,

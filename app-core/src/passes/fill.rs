@@ -33,7 +33,12 @@ impl Fill {
             &self.pipeline.get_bind_group_layout(GROUP_PASS),
             &[(0, grids.as_entire_binding()), (1, cells.as_entire_binding())],
         );
-        encoder.compute(FILL.name, &self.pipeline, &[(GROUP_PASS, &own)], [n_receivers, 1, 1]);
+        encoder.compute(
+            FILL.name,
+            &self.pipeline,
+            &[(GROUP_PASS, &own)],
+            [n_receivers, 1, 1],
+        );
     }
 }
 

@@ -28,6 +28,7 @@ pub(crate) struct FitInputs<'a> {
     pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) object_base: &'a wgpu::TextureView,
     pub(crate) object_normal: &'a wgpu::TextureView,
+    pub(crate) object_received: &'a wgpu::TextureView,
 }
 
 impl Fit {
@@ -77,7 +78,10 @@ impl Fit {
         });
         let globals = (0, shared.globals.as_entire_binding());
         let solution = (1, shared.solution.as_entire_binding());
-        let to_sum = gpu.bind(&self.sums.get_bind_group_layout(GROUP_GLOBALS), &[globals.clone(), solution]);
+        let to_sum = gpu.bind(
+            &self.sums.get_bind_group_layout(GROUP_GLOBALS),
+            &[globals.clone(), solution],
+        );
         let to_solve = gpu.bind(&self.solve.get_bind_group_layout(GROUP_GLOBALS), &[globals]);
         for step in 0..task.n_steps {
             let uniform = gpu.uniform("fit step", &fit_step(plan, &task, step));
@@ -126,6 +130,7 @@ impl Fit {
                 (7, wgpu::BindingResource::Sampler(&self.linear)),
                 (8, view(inputs.object_base)),
                 (9, view(inputs.object_normal)),
+                (10, view(inputs.object_received)),
             ],
         )
     }

@@ -4,7 +4,9 @@
 
 pub(crate) mod appearance;
 pub(crate) mod box_filter;
+pub(crate) mod census;
 pub(crate) mod composite;
+pub(crate) mod detail;
 pub(crate) mod eligible;
 pub(crate) mod estimate;
 pub(crate) mod evidence;
@@ -12,6 +14,7 @@ pub(crate) mod fill;
 pub(crate) mod fit;
 pub(crate) mod lit;
 pub(crate) mod masks;
+pub(crate) mod motion;
 pub(crate) mod object;
 pub(crate) mod occlusion;
 pub(crate) mod pcss;
@@ -20,6 +23,8 @@ pub(crate) mod present;
 pub(crate) mod residual;
 pub(crate) mod retarget;
 pub(crate) mod search;
+pub(crate) mod self_shadow;
+pub(crate) mod toy;
 pub(crate) mod toy_mesh;
 pub(crate) mod visibility;
 pub(crate) mod warp;

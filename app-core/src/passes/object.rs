@@ -1,4 +1,4 @@
-//! `object`: the physical toy as the camera sees it: base colour, normal and depth.
+//! `object`: the physical toy as the camera sees it: base colour, normal, received light and depth.
 
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
@@ -7,6 +7,7 @@ use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::pipeline::{GROUP_GLOBALS, RenderShape, Stages, nearest_surface};
 use crate::gpu::shaders::OBJECT;
 
+use super::self_shadow::{GROUP_SELF_SHADOW, SelfShadowMaps};
 use super::toy_mesh::{Stream, ToyMesh};
 
 /// Format of the base colour, whose alpha is the toy's coverage.
@@ -14,14 +15,24 @@ pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the normals.
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
+/// Format of what each light gives.
+pub(crate) const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
 pub(crate) struct Object {
     pipeline: wgpu::RenderPipeline,
+}
+
+pub(crate) struct ObjectInputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) self_shadow: &'a SelfShadowMaps,
 }
 
 /// Textures of the region's size.
 pub(crate) struct ObjectOutputs<'a> {
     pub(crate) base: &'a wgpu::TextureView,
     pub(crate) normal: &'a wgpu::TextureView,
+    pub(crate) received: &'a wgpu::TextureView,
     pub(crate) depth: &'a wgpu::TextureView,
 }
 
@@ -40,7 +51,11 @@ impl Object {
             buffers: &buffers,
         };
         let shape = RenderShape {
-            targets: &[Some(BASE_FORMAT.into()), Some(NORMAL_FORMAT.into())],
+            targets: &[
+                Some(BASE_FORMAT.into()),
+                Some(NORMAL_FORMAT.into()),
+                Some(RECEIVED_FORMAT.into()),
+            ],
             n_samples: 1,
             depth: Some(nearest_surface()),
             constants: &[],
@@ -54,19 +69,21 @@ impl Object {
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        globals: &wgpu::Buffer,
-        toy: &ToyMesh,
+        inputs: &ObjectInputs<'_>,
         outputs: &ObjectOutputs<'_>,
     ) {
         let group = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[(0, globals.as_entire_binding())],
+            &[(0, inputs.globals.as_entire_binding())],
         );
-        let materials = toy.material_groups(gpu, &self.pipeline);
-        let colors = [Some(cleared(outputs.base)), Some(cleared(outputs.normal))];
+        let self_shadow = inputs.self_shadow.bind(gpu, &self.pipeline);
+        let materials = inputs.toy.material_groups(gpu, &self.pipeline);
+        let colors = [outputs.base, outputs.normal, outputs.received].map(|view| Some(cleared(view)));
         let mut render = encoder.render(OBJECT.name, &colors, Some(outputs.depth), StoreOp::Store);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &group, &[]);
+        render.set_bind_group(GROUP_SELF_SHADOW, &self_shadow, &[]);
+        let toy = inputs.toy;
         toy.draw_parts(&mut render, &[&toy.physical], &materials);
     }
 }

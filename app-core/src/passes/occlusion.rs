@@ -98,7 +98,10 @@ impl Occlusion {
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
-        let points = gpu.uniform("light points", &self.light_points_uniform(caster.points, targets.texel_px));
+        let points = gpu.uniform(
+            "light points",
+            &self.light_points_uniform(caster.points, targets.texel_px),
+        );
         let own = gpu.bind(&layout(GROUP_PASS), &[(0, points.as_entire_binding())]);
         let colors: Vec<_> = targets
             .samples

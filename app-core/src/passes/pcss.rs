@@ -1,4 +1,4 @@
-//! `pcss`: percentage-closer soft shadows of the animated toy, in the edge region.
+//! `pcss`: percentage-closer soft shadows of a posed toy, of each light, in the edge region.
 
 use wgpu::TextureFormat;
 
@@ -7,19 +7,15 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::PCSS;
 
-/// Format of the visibility.
-pub(crate) const PCSS_FORMAT: TextureFormat = TextureFormat::R16Float;
-
 pub(crate) struct Pcss {
     pipeline: wgpu::RenderPipeline,
 }
 
 impl Pcss {
-    /// For a toy no taller than `tallest_m`.
-    pub(crate) fn new(gpu: &Gpu, tallest_m: f64) -> Self {
-        let constants = [("TALLEST_M", tallest_m)];
+    /// Into a map of `format`.
+    pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
         Self {
-            pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", PCSS_FORMAT, &constants),
+            pipeline: gpu.fullscreen_pipeline(&PCSS, "fs_soften", format, &[]),
         }
     }
 

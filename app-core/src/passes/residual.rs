@@ -33,7 +33,13 @@ impl Residual {
     }
 
     /// Pools the residual on `n_receivers` grids.
-    pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, inputs: &ResidualInputs<'_>, n_receivers: u32) {
+    pub(crate) fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut Encoder,
+        inputs: &ResidualInputs<'_>,
+        n_receivers: u32,
+    ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
         let shared = gpu.bind(
             &layout(GROUP_GLOBALS),

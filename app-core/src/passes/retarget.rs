@@ -1,14 +1,17 @@
 //! `retarget`: the published picture: plate in the masks, the new shadow over it, the toy by projective texturing.
 
-use wgpu::{StoreOp, VertexFormat};
+use wgpu::{CompareFunction, DepthStencilState, StoreOp, VertexFormat};
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::{Encoder, resolved};
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, Stages, nearest_surface, view};
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface, view};
 use crate::gpu::shaders::RETARGET;
 
-use super::composite::{CompositeTargets, behind_all, picture_shape};
+use super::composite::PICTURE_FORMAT;
 use super::toy_mesh::{Stream, ToyMesh};
+
+/// Multisampling of the toy's silhouette.
+pub(crate) const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Retarget {
     receiver: wgpu::RenderPipeline,
@@ -25,6 +28,13 @@ pub(crate) struct RetargetInputs<'a> {
     pub(crate) eligible: &'a wgpu::TextureView,
     pub(crate) visibility: &'a wgpu::TextureView,
     pub(crate) terms: &'a wgpu::TextureView,
+}
+
+/// Textures of the region's size: two multisampled ones that stay on the chip, and the picture.
+pub(crate) struct RetargetTargets<'a> {
+    pub(crate) samples: &'a wgpu::TextureView,
+    pub(crate) depth: &'a wgpu::TextureView,
+    pub(crate) picture: &'a wgpu::TextureView,
 }
 
 impl Retarget {
@@ -58,7 +68,7 @@ impl Retarget {
         encoder: &mut Encoder,
         toy: &ToyMesh,
         inputs: &RetargetInputs<'_>,
-        targets: &CompositeTargets<'_>,
+        targets: &RetargetTargets<'_>,
     ) {
         let globals = (0, inputs.globals.as_entire_binding());
         let published = (2, inputs.published.as_entire_binding());
@@ -96,5 +106,29 @@ impl Retarget {
         render.set_bind_group(GROUP_PASS, &toy_own, &[]);
         render.set_vertex_buffer(1, toy.physical.positions.slice(..));
         toy.draw_positions(&mut render, &toy.shown.positions, 1);
+    }
+}
+
+const PICTURE_TARGETS: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu::ColorTargetState {
+    format: PICTURE_FORMAT,
+    blend: None,
+    write_mask: wgpu::ColorWrites::ALL,
+})];
+
+fn picture_shape(depth: DepthStencilState) -> RenderShape<'static> {
+    RenderShape {
+        targets: &PICTURE_TARGETS,
+        n_samples: N_SAMPLES,
+        depth: Some(depth),
+        constants: &[],
+    }
+}
+
+/// For what is drawn before all else and hides nothing.
+fn behind_all() -> DepthStencilState {
+    DepthStencilState {
+        depth_write_enabled: Some(false),
+        depth_compare: Some(CompareFunction::Always),
+        ..nearest_surface()
     }
 }

@@ -1,4 +1,4 @@
-//! `search`: the shadow term of each texel of the new shadow, by the warp or by the concentric ring search.
+//! `search`: the shadow term of each texel of the new shadows, by the warp or by the concentric ring search.
 
 use wgpu::{StoreOp, TextureFormat};
 
@@ -21,6 +21,7 @@ pub(crate) struct SearchInputs<'a> {
     pub(crate) published: &'a wgpu::Buffer,
     pub(crate) warp: &'a wgpu::TextureView,
     pub(crate) eligible: &'a wgpu::TextureView,
+    pub(crate) seen_sets: &'a wgpu::Buffer,
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) plate: &'a wgpu::TextureView,
 }
@@ -65,6 +66,7 @@ impl Search {
                 (1, view(inputs.eligible)),
                 (2, view(inputs.frame)),
                 (3, view(inputs.plate)),
+                (4, inputs.seen_sets.as_entire_binding()),
             ],
         );
         let targets = [Some(cleared(terms)), Some(cleared(taps))];

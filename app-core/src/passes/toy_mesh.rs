@@ -6,6 +6,7 @@ use crate::gpu::Gpu;
 use crate::gpu::layout::Material;
 use crate::gpu::pipeline::{GROUP_DRAW, view};
 use crate::gpu::texture::Texture;
+use crate::light_tiles::Sphere;
 use crate::toy::{PosedMesh, Toy, Wrap};
 
 /// The texture of a material that has none.
@@ -15,6 +16,8 @@ const WHITE: [u8; 4] = [255; 4];
 pub(crate) struct PoseBuffers {
     pub(crate) positions: wgpu::Buffer,
     pub(crate) normals: wgpu::Buffer,
+    /// Holds all positions.
+    pub(crate) around: Sphere,
 }
 
 impl PoseBuffers {
@@ -30,11 +33,13 @@ impl PoseBuffers {
                 bytemuck::cast_slice(&mesh.normals),
                 BufferUsages::VERTEX,
             ),
+            around: Sphere::around(&mesh.positions),
         }
     }
 
     /// Replaces the pose by another of the same toy.
-    pub(crate) fn write(&self, gpu: &Gpu, mesh: &PosedMesh) {
+    pub(crate) fn write(&mut self, gpu: &Gpu, mesh: &PosedMesh) {
+        self.around = Sphere::around(&mesh.positions);
         gpu.queue
             .write_buffer(&self.positions, 0, bytemuck::cast_slice(&mesh.positions));
         gpu.queue
@@ -126,9 +131,19 @@ impl ToyMesh {
         positions: &wgpu::Buffer,
         n_instances: u32,
     ) {
+        self.draw_instances(render, positions, 0..n_instances);
+    }
+
+    /// Draws the whole mesh as the instances of these indices, without materials; positions are in slot 0.
+    pub(crate) fn draw_instances(
+        &self,
+        render: &mut wgpu::RenderPass<'_>,
+        positions: &wgpu::Buffer,
+        instances: std::ops::Range<u32>,
+    ) {
         render.set_vertex_buffer(0, positions.slice(..));
         render.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.n_indices, 0, 0..n_instances);
+        render.draw_indexed(0..self.n_indices, 0, instances);
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.

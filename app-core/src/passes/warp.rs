@@ -4,6 +4,7 @@ use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::{Encoder, cleared};
+use crate::gpu::layout::MAX_RECEIVERS;
 use crate::gpu::pipeline::{GROUP_GLOBALS, RenderShape, Stages, nearest_surface};
 use crate::gpu::shaders::WARP;
 
@@ -11,6 +12,17 @@ use super::toy_mesh::{Stream, ToyMesh};
 
 /// Format of the warp: source position and height need more than a half can hold.
 pub(crate) const WARP_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+
+/// Instances of a light, one a receiver.
+#[allow(clippy::cast_possible_truncation, reason = "a handful")]
+const N_SLOTS: u32 = MAX_RECEIVERS as u32;
+
+/// What is warped: the shadow of one light on the first receivers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shadow {
+    pub(crate) light: u32,
+    pub(crate) n_receivers: u32,
+}
 
 pub(crate) struct Warp {
     pipeline: wgpu::RenderPipeline,
@@ -39,26 +51,24 @@ impl Warp {
         }
     }
 
-    /// Warps to the pose at `shown`; `depth` is of the region's size and not kept.
+    /// Warps the shadow of a light on each receiver to the pose at `shown`; `depth` is of the region's size and not kept.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
-        (globals, published): (&wgpu::Buffer, &wgpu::Buffer),
+        (globals, shadow): (&wgpu::Buffer, Shadow),
         (toy, shown): (&ToyMesh, &wgpu::Buffer),
         (warp, depth): (&wgpu::TextureView, &wgpu::TextureView),
     ) {
         let shared = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, globals.as_entire_binding()),
-                (2, published.as_entire_binding()),
-            ],
+            &[(0, globals.as_entire_binding())],
         );
         let mut render = encoder.render(WARP.name, &[Some(cleared(warp))], Some(depth), StoreOp::Discard);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
         render.set_vertex_buffer(1, toy.physical.positions.slice(..));
-        toy.draw_positions(&mut render, shown, 1);
+        let first = shadow.light * N_SLOTS;
+        toy.draw_instances(&mut render, shown, first..first + shadow.n_receivers);
     }
 }

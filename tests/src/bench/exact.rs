@@ -8,7 +8,7 @@ use app_core::gpu::layout::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::inject::InjectedVisibility;
 use app_core::light_points::light_in_plane;
 use app_core::maps::FloatMap;
-use app_core::preset::{Method, Preset};
+use app_core::preset::Preset;
 use app_core::region::PixelRect;
 use app_core::scene::{Light, PoseTime, Scene};
 use app_core::session::{Capture, GroundTruth, Session};
@@ -37,10 +37,6 @@ pub(super) fn measure(
 ) -> Result<Row, ReplayError> {
     let scene = session.scene();
     core.set_scene(scene.clone(), preset)?;
-    let n_receivers = match preset.method() {
-        Method::Model(_) => MAX_RECEIVERS,
-        _ => 1,
-    };
     let frames = options.frames.clone().unwrap_or(0..session.n_frames());
     let n_frames = frames.len();
     let mut scores = Vec::new();
@@ -49,7 +45,7 @@ pub(super) fn measure(
         let failed = |reason| ReplayError::Frame { index, reason };
         let input = FrameInput::from(&session.frame(index)?);
         if let Some(rect) = core.frame(&input).map_err(failed)?.region {
-            let rays = Rays::new(scene, &input.world_from_camera, &rect, n_receivers);
+            let rays = Rays::new(scene, &input.world_from_camera, &rect);
             let map = |pose: &PoseTime| rays.visibility(scene, pose).map_err(|error| failed(error.into()));
             let known = physical.take().filter(|(camera, map)| {
                 *camera == input.world_from_camera && [map.width, map.height] == rect.size_px.to_array()
@@ -91,8 +87,8 @@ struct Rays {
 }
 
 impl Rays {
-    fn new(scene: &Scene, world_from_camera: &DMat4, rect: &PixelRect, n_receivers: usize) -> Self {
-        let receivers = &scene.receivers[..n_receivers.min(scene.receivers.len())];
+    fn new(scene: &Scene, world_from_camera: &DMat4, rect: &PixelRect) -> Self {
+        let receivers = &scene.receivers[..MAX_RECEIVERS.min(scene.receivers.len())];
         let image_px = UVec2::new(scene.width_px, scene.height_px);
         let view = View::new(image_px, scene.intrinsics, world_from_camera);
         let place = Place {

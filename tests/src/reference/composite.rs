@@ -1,4 +1,4 @@
-//! Twin of `fs_receiver` in `composite.wgsl`: the picture where it shows the receiver.
+//! Twin of `composite.wgsl`: the picture where it shows the receiver.
 
 use glam::{DVec3, DVec4, UVec2};
 
@@ -18,6 +18,10 @@ pub struct CompositeConstants {
     pub residual_half: f64,
     /// Pooled residual up to which nothing unknown is seen.
     pub unknown_none: f64,
+    /// Least over most of a residual's channels, from which it may be a shadow.
+    pub shadow_evenness: f64,
+    /// The same, below which it is a thing of its own colour.
+    pub object_evenness: f64,
     /// Pooled residual from which what the camera saw stays.
     pub unknown_all: f64,
 }
@@ -33,6 +37,8 @@ impl CompositeConstants {
             keep_none: shader_constant("composite", "KEEP_NONE")?,
             residual_half: shader_constant("composite", "RESIDUAL_HALF")?,
             unknown_none: shader_constant("composite", "UNKNOWN_NONE")?,
+            shadow_evenness: shader_constant("composite", "SHADOW_EVENNESS")?,
+            object_evenness: shader_constant("composite", "OBJECT_EVENNESS")?,
             unknown_all: shader_constant("composite", "UNKNOWN_ALL")?,
         })
     }
@@ -53,7 +59,8 @@ pub struct Shown {
     pub grids: Vec<PlaneGrid>,
 }
 
-/// Linear colour of the receiver at `texel` of the region.
+/// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
+/// pixel too near to the toy to be evidence is its own.
 #[must_use]
 pub fn receiver_color(
     region: &Region,
@@ -61,7 +68,7 @@ pub fn receiver_color(
     shown: &Shown,
     constants: &CompositeConstants,
     texel: UVec2,
-) -> DVec3 {
+) -> [DVec3; 2] {
     let at = centre_px(texel);
     let (frame, plate, seen) = (
         pictures.frame.at(texel),
@@ -70,7 +77,7 @@ pub fn receiver_color(
     );
     let lit = shown.solution.gain * plate;
     let Some(point) = region.receiver_point(at) else {
-        return lit.lerp(frame, seen);
+        return [lit.lerp(frame, seen), frame];
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         let ambient = coarse_at(ambient, region, at);
@@ -91,14 +98,16 @@ pub fn receiver_color(
         constants.unknown_all,
         pooled.abs().max_element(),
     );
+    let object = unknown * (1.0 - shadow_likeness(pooled, constants));
     let made = lit * (after + residual).max(DVec3::ZERO);
-    let kept = frame + lit * (after - before);
-    let own = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
-    let keep = seen * own.max(unknown);
+    let kept = frame + (1.0 - object) * lit * (after - before);
+    let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
+    let keep = seen * near.max(unknown);
 
     // What hides the receiver must go even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO)
+    let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.
@@ -112,6 +121,15 @@ pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
         .zip(region.border_px)
         .filter(|(_, fade_px)| *fade_px > 0.0);
     inner_edges.map(|(px, fade_px)| px / fade_px).fold(1.0, f64::min)
+}
+
+/// Whether a residual may be a shadow: darker in all channels, and in none much more than in the others.
+fn shadow_likeness(residual: DVec3, constants: &CompositeConstants) -> f64 {
+    let (least, most) = (-residual.max_element(), -residual.min_element());
+    if least <= 0.0 {
+        return 0.0;
+    }
+    smoothstep(constants.object_evenness, constants.shadow_evenness, least / most)
 }
 
 /// Hermite step from 0 at `low` to 1 at `high`.

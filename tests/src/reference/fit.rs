@@ -249,8 +249,10 @@ pub struct ToySample {
     pub frame: DVec3,
     /// Base colour of the model, linear.
     pub base: DVec3,
-    /// Unit normal, in plane space.
+    /// Unit normal, in stage space.
     pub normal: DVec3,
+    /// Cosine to each light times its visibility.
+    pub received: DVec4,
 }
 
 /// Fits how the toy is lit in `n_steps`, from `start`, which stays where there is no evidence.
@@ -298,13 +300,11 @@ fn toy_equations(
     constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
 ) -> NormalEquations {
-    let reference = region.receivers[0].reference_in_plane;
-    let under_toy = DVec3::new(reference.x, 0.0, reference.y);
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
         let (frame, base) = (sample.frame[channel], sample.base[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(region, sample.normal, under_toy)
+        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, region.lights.len())
             .into_iter()
             .map(|column| base * column)
             .collect();
@@ -322,14 +322,13 @@ fn toy_equations(
     equations
 }
 
-/// Twin of `common/toy.wgsl`: constant, vertical gradient, cosine to each light.
+/// Twin of `common/toy_radiance.wgsl`: constant, vertical gradient, and what is received of each light.
 #[must_use]
-pub fn toy_columns(region: &Region, normal: DVec3, in_plane: DVec3) -> Vec<f64> {
-    let cosines = region.lights.iter().map(|light| {
-        let to_light = light.truncate() - in_plane * light.w;
-        normal.dot(to_light.normalize()).max(0.0)
-    });
-    [1.0, normal.y].into_iter().chain(cosines).collect()
+pub fn toy_columns(normal: DVec3, received: DVec4, n_lights: usize) -> Vec<f64> {
+    [1.0, normal.y]
+        .into_iter()
+        .chain(received.to_array().into_iter().take(n_lights))
+        .collect()
 }
 
 /// 1 for no residual, a half for one of `scale`.

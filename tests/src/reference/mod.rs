@@ -5,7 +5,9 @@
 //! What a scene fixes comes as arguments; what a shader fixes is read from that shader by [`shader_constant`].
 
 pub mod box_filter;
+pub mod census;
 pub mod composite;
+pub mod eligible;
 pub mod fill;
 pub mod fit;
 pub mod least_squares;
@@ -15,6 +17,8 @@ pub mod pcss;
 pub mod raster;
 pub mod residual;
 pub mod search;
+pub mod self_shadow;
+pub mod sets;
 pub mod visibility;
 
 use std::str::FromStr;

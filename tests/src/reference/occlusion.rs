@@ -47,7 +47,12 @@ impl Occluder {
     /// Whether the mesh stands between the receiver point (x, z) and a homogeneous light point.
     #[must_use]
     pub fn hides(&self, in_plane: DVec2, light_point: DVec4) -> bool {
-        let origin = DVec3::new(in_plane.x, 0.0, in_plane.y);
+        self.stands_between(DVec3::new(in_plane.x, 0.0, in_plane.y), light_point)
+    }
+
+    /// Whether the mesh stands between a point and a homogeneous light point.
+    #[must_use]
+    pub fn stands_between(&self, origin: DVec3, light_point: DVec4) -> bool {
         let (direction, end) = if light_point.w == 0.0 {
             (light_point.truncate(), f64::INFINITY)
         } else {

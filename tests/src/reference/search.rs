@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3, IVec2};
 
 use super::raster::Raster;
+use super::sets::LightSet;
 
 /// The open constants of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,35 +27,62 @@ pub struct Found {
     pub n_taps: u32,
 }
 
-/// The eligible texel to sample for a point of the region: its own, or the closest candidate of the first ring that
-/// has one. Of candidates as close as each other the first wins.
+/// Where the shadow of each light of a texel's set came from, and that set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Lights whose new shadows the texel lies in; not empty.
+    pub set: LightSet,
+    /// One point of the region for each of these lights, in their order.
+    pub sources_px: Vec<DVec2>,
+}
+
+/// The texel to sample: a source's own, or the closest candidate of the first ring that has one, where just the lights
+/// of the set are shadowed; if there is none, the same for the sets that are less and less like it, of which `seen` has
+/// those that occur. Of candidates as close as each other the first wins.
 #[must_use]
-pub fn search(eligible: &Raster<bool>, at_px: DVec2, rings: &Rings) -> Found {
+pub fn search(eligible: &Raster<LightSet>, seen: &[LightSet], start: &Start, rings: &Rings) -> Found {
+    let mut n_taps = 0;
+    for accepted in start.set.closest_first(seen) {
+        let found = search_sets(eligible, &accepted, start, rings);
+        n_taps += found.n_taps;
+        if found.texel.is_some() {
+            return Found { n_taps, ..found };
+        }
+    }
+    Found { texel: None, n_taps }
+}
+
+fn search_sets(eligible: &Raster<LightSet>, accepted: &[LightSet], start: &Start, rings: &Rings) -> Found {
     let is_eligible = |texel: &IVec2| {
         let is_inside = texel.cmpge(IVec2::ZERO).all() && texel.cmplt(eligible.size().as_ivec2()).all();
-        is_inside && eligible.at(texel.as_uvec2())
+        is_inside && accepted.contains(&eligible.at(texel.as_uvec2()))
     };
-    let own = at_px.floor().as_ivec2();
-    if is_eligible(&own) {
+    let own = start.sources_px.iter().map(|source| source.floor().as_ivec2());
+    if let Some(texel) = own.into_iter().find(is_eligible) {
         return Found {
-            texel: Some(own),
+            texel: Some(texel),
             n_taps: 0,
         };
     }
+    let n_of_ring = rings.n_directions * start.set.0.count_ones();
     for ring in 1..=rings.n_rings {
-        let closest = candidates(at_px, ring, rings)
-            .filter(is_eligible)
-            .min_by(|a, b| away_px(*a, at_px).total_cmp(&away_px(*b, at_px)));
-        if closest.is_some() {
+        let of_source = |source: &DVec2| {
+            let source = *source;
+            candidates(source, ring, rings).map(move |texel| (texel, away_px(texel, source)))
+        };
+        let closest = (start.sources_px.iter().flat_map(of_source))
+            .filter(|(texel, _)| is_eligible(texel))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((texel, _)) = closest {
             return Found {
-                texel: closest,
-                n_taps: ring * rings.n_directions,
+                texel: Some(texel),
+                n_taps: ring * n_of_ring,
             };
         }
     }
     Found {
         texel: None,
-        n_taps: rings.n_rings * rings.n_directions,
+        n_taps: rings.n_rings * n_of_ring,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::mem::{offset_of, size_of};
 
 use app_core::gpu::layout;
+use app_core::unknown;
 use naga::ScalarKind;
 
 /// A struct of `gpu/layout.rs`.
@@ -76,12 +77,14 @@ macro_rules! mirror {
     }};
 }
 
-/// Every struct of `gpu/layout.rs`, in its order.
+/// Every struct of `gpu/layout.rs`.
 pub(crate) fn mirrors() -> Vec<Mirror> {
-    [of_the_model(), of_pictures()].into_iter().flatten().collect()
+    let mut all = mirrors_of_the_scene();
+    all.extend(mirrors_of_passes());
+    all
 }
 
-fn of_the_model() -> Vec<Mirror> {
+fn mirrors_of_the_scene() -> Vec<Mirror> {
     vec![
         mirror!(ReceiverPlane {
             plane_from_stage,
@@ -138,11 +141,6 @@ fn of_the_model() -> Vec<Mirror> {
             n_points,
             _pad
         }),
-    ]
-}
-
-fn of_pictures() -> Vec<Mirror> {
-    vec![
         mirror!(PlateView {
             plate_px_from_plane,
             camera_in_plane,
@@ -155,12 +153,23 @@ fn of_pictures() -> Vec<Mirror> {
             is_same_view,
             _pad
         }),
+    ]
+}
+
+fn mirrors_of_passes() -> Vec<Mirror> {
+    vec![
+        mirror!(SelfShadow {
+            atlas_from_stage,
+            first_tile,
+            n_tiles,
+            texel_m
+        }),
         mirror!(Material { base_color_linear }),
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
-            light,
-            light_radius,
-            is_textured,
+            light_radii,
+            tallest_m,
+            textured_receivers,
             is_constant,
             constant_ratio,
             eligible_margin_px,
@@ -170,7 +179,8 @@ fn of_pictures() -> Vec<Mirror> {
             box_radius_px,
             seam_px,
             n_blocker_taps,
-            n_filter_taps
+            n_filter_taps,
+            _pad
         }),
     ]
 }
@@ -182,6 +192,7 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_PLATES", layout::MAX_PLATES),
     ("MAX_CELLS", layout::MAX_CELLS),
     ("N_COLUMNS", layout::N_COLUMNS),
+    ("MAX_TILES", layout::MAX_TILES),
     ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
     ("SUBJECT_TOY", layout::Subject::Toy as usize),
     ("SUBJECT_LEVELS", layout::Subject::Levels as usize),
@@ -191,4 +202,6 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
 pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
     ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
     ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
+    ("composite", "UNKNOWN_ALL", unknown::UNKNOWN_ALL),
+    ("composite", "SHADOW_EVENNESS", unknown::SHADOW_EVENNESS),
 ];

@@ -8,3 +8,4 @@ mod preset;
 mod region;
 mod rig;
 mod transforms;
+mod unknown;

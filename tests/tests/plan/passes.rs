@@ -54,13 +54,28 @@ fn what_belongs_to_the_place_is_not_on_the_frame_path() {
     let plan = plan([640, 360], &[10.0]);
     assert_eq!(
         names(&plan, Path::Frame),
-        ["occlusion", "visibility", "composite", "present"]
+        [
+            "occlusion",
+            "visibility",
+            "self_shadow",
+            "motion",
+            "toy",
+            "composite",
+            "present"
+        ]
     );
     let capture = names(&plan, Path::Capture);
     let place = |name: &str| capture.iter().position(|pass| *pass == name).unwrap();
     // Each pass comes after those whose results it reads.
     for order in [
-        &["object", "evidence", "appearance"][..],
+        &[
+            "self_shadow",
+            "object",
+            "evidence",
+            "fit",
+            "fit_solve",
+            "appearance",
+        ][..],
         &["occlusion", "visibility", "fit", "fit_solve", "residual", "fill"],
         &["plate", "lit", "estimate", "fit"],
         &["evidence", "fit"],

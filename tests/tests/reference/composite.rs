@@ -42,7 +42,7 @@ fn scene() -> (Region, Pictures, Shown) {
 fn picture(region: &Region, pictures: &Pictures, shown: &Shown) -> Raster<DVec3> {
     let constants = CompositeConstants::from_shader().unwrap();
     Raster::from_fn(SIZE, |texel| {
-        receiver_color(region, pictures, shown, &constants, texel)
+        receiver_color(region, pictures, shown, &constants, texel)[0]
     })
 }
 

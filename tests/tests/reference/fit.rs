@@ -163,12 +163,15 @@ fn light_on_the_toy_is_recovered() {
         let unit = |dimension| scatter(seed, dimension);
         let normal = DVec3::new(unit(0) - 0.5, unit(1) - 0.2, unit(2) - 0.5).normalize();
         let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
-        let columns = toy_columns(&region, normal, DVec3::ZERO);
+        // Any light that rises and falls otherwise than the normal will do.
+        let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
+        let columns = toy_columns(normal, received, 2);
         let light: DVec3 = columns.iter().zip(lit).map(|(column, lit)| *column * lit).sum();
         ToySample {
             frame: base * light,
             base,
             normal,
+            received,
         }
     };
     let samples: Vec<_> = (0..N_SAMPLES).map(sample).collect();

@@ -4,6 +4,7 @@
 
 mod box_filter;
 mod composite;
+mod eligible;
 mod fit;
 mod flat;
 mod pcss;

@@ -1,6 +1,6 @@
 //! The soft edge of a half plane, level, under a light.
 
-use glam::{DVec4, UVec2};
+use glam::{DVec2, DVec4, UVec2};
 use harness::reference::pcss::{Softness, soft_visibility};
 use harness::reference::raster::Raster;
 
@@ -30,11 +30,12 @@ fn bulb() -> Softness {
 fn across(softness: &Softness) -> impl Iterator<Item = (f64, f64)> {
     let region = flat::region(SIZE, vec![softness.light]);
     let heights_m = Raster::from_fn(SIZE, |at| (at.x < EDGE).then_some(HEIGHT_M));
-    (20..140_u32).map(move |x| {
+    // Slanted kernels stay within the region.
+    (30..140_u32).map(move |x| {
         let beyond_px = f64::from(x) + 0.5 - f64::from(EDGE);
         (
             beyond_px,
-            soft_visibility(&heights_m, &region, softness, UVec2::new(x, 30)),
+            soft_visibility(&heights_m, &region, &[*softness], UVec2::new(x, 30)),
         )
     })
 }
@@ -74,8 +75,49 @@ fn point_light_keeps_the_edge_within_a_pixel() {
 }
 
 #[test]
+fn light_lower_than_the_toys_top_keeps_its_penumbra() {
+    // The edge lies under the light, the toy's top above it.
+    let tall = Softness {
+        tallest_m: 1.2,
+        ..bulb()
+    };
+    let near_edge = across(&tall).filter(|(beyond_px, _)| beyond_px.abs() < 0.5 * PENUMBRA_PX);
+    for (beyond_px, visibility) in near_edge {
+        assert!(
+            visibility > 0.05 && visibility < 0.95,
+            "{beyond_px} px: {visibility}"
+        );
+    }
+}
+
+#[test]
+fn disc_across_a_slanted_ray_is_longer_along_it() {
+    let low = Softness {
+        light: DVec4::new(0.0, 0.5, 0.75_f64.sqrt(), 0.0),
+        ..bulb()
+    };
+    // At one point of the receiver the same elevation.
+    let near = Softness {
+        light: DVec4::new(0.3, 0.5, 0.75_f64.sqrt(), 1.0),
+        ..bulb()
+    };
+    for (softness, in_plane) in [(low, DVec2::new(3.0, 7.0)), (near, DVec2::new(0.3, 0.0))] {
+        for (disc, expected) in [(DVec2::X, DVec2::X), (DVec2::Y, 2.0 * DVec2::Y)] {
+            let actual = softness.slanted(disc, in_plane);
+            assert!((actual - expected).length() < 1e-12, "{disc}: {actual}");
+        }
+    }
+    let under = DVec2::new(0.3, 0.75_f64.sqrt());
+    assert_eq!(near.slanted(DVec2::X, under), DVec2::X);
+}
+
+#[test]
 fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     let bulb = bulb();
+    let point = Softness {
+        light_radius: 0.0,
+        ..bulb
+    };
     let sky = Softness {
         light: DVec4::new(0.6, 0.8, 0.0, 0.0),
         ..bulb
@@ -83,7 +125,11 @@ fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     for (softness, height_m, expected_m) in [
         (&bulb, 0.5, RADIUS_M),
         (&bulb, 0.8, 4.0 * RADIUS_M),
-        (&bulb, LIGHT_M, 0.0),
+        // As high as the light, higher, and so close under it that the disc fills the sky.
+        (&bulb, LIGHT_M, LIGHT_M),
+        (&bulb, 1.5, 1.5),
+        (&bulb, 0.99, 0.99),
+        (&point, LIGHT_M, 0.0),
         (&sky, 0.4, 0.5 * RADIUS_M),
     ] {
         let actual_m = softness.penumbra_radius_m(height_m);

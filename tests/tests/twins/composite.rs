@@ -46,7 +46,14 @@ fn receiver_in_codes() {
                 let expected = receiver_color(&run.region, &run.pictures, &shown, &constants, *texel);
                 let actual = run.picture.at(*texel);
                 assert_eq!(actual[3], 255, "alpha at {texel}");
-                (0..3).map(move |channel| (f64::from(actual[channel]), unrounded_code(expected[channel])))
+                (0..3).map(move |channel| {
+                    let (actual, [a, b]) = (
+                        f64::from(actual[channel]),
+                        expected.map(|c| unrounded_code(c[channel])),
+                    );
+                    // How still the toy is decides between the two.
+                    (actual, actual.clamp(a.min(b), a.max(b)))
+                })
             });
         // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
         // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a

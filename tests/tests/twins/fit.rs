@@ -98,6 +98,7 @@ fn toy_samples(run: &Run) -> Vec<ToySample> {
             frame: run.pictures.frame.at(*texel),
             base: run.object_base.at(*texel),
             normal: stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3(),
+            received: run.object_received.at(*texel),
         })
     };
     taken.texels().iter().filter_map(sample).collect()
@@ -116,8 +117,8 @@ fn toy() {
         };
         let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
         // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
-        let light = |solution: &Solution, normal: DVec3| -> DVec3 {
-            let columns = toy_columns(&run.region, normal, DVec3::ZERO);
+        let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
+            let columns = toy_columns(sample.normal, sample.received, run.region.lights.len());
             columns
                 .iter()
                 .zip(&solution.toy)
@@ -125,10 +126,7 @@ fn toy() {
                 .sum()
         };
         let pairs = samples.iter().flat_map(|sample| {
-            let (actual, expected) = (
-                light(&run.solution, sample.normal),
-                light(&expected, sample.normal),
-            );
+            let (actual, expected) = (light(&run.solution, sample), light(&expected, sample));
             (0..3).map(move |channel| (actual[channel], expected[channel]))
         });
         // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.

@@ -17,7 +17,7 @@ use crate::run::scene;
 #[test]
 fn injected_visibility_takes_the_place_of_the_devices_own() {
     for preset in [Preset::Balanced, Preset::Paper] {
-        // Two lights: the model's maps have two channels, the published method's one.
+        // Two lights: the maps have two channels.
         let stand = Stand::new(Setup {
             image_px: 2 * SETUPS[1].image_px + 1,
             ..SETUPS[1]

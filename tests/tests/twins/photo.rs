@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 use harness::reference::fit::toy_columns;
 use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
 use harness::reference::raster::Raster;
+use harness::reference::self_shadow::received;
 use harness::reference::visibility::visibility_map;
 
 use crate::place::Stand;
@@ -121,11 +122,16 @@ impl Photo {
             .collect();
         let ambient = visibility_map(&stand.ambient_casters(posed, N_POINTS), &region, size);
         let occluder = stand.occluder(posed);
+        let light_points: Vec<_> = (0..region.lights.len())
+            .map(|i| stand.light_points(i, N_POINTS))
+            .collect();
         let frame = Raster::from_fn(size, |texel| {
             let (origin, direction) = stand.camera_ray(centre_px(texel));
             if let Some(hit) = occluder.nearest(origin, direction) {
                 let normal = posed.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-                let columns = toy_columns(&region, normal, origin + hit.distance * direction);
+                let at = origin + hit.distance * direction;
+                let received = received(&region, &occluder, &light_points, at, normal);
+                let columns = toy_columns(normal, received, light_points.len());
                 let terms = columns.iter().zip(&self.solution.toy);
                 let light: DVec3 = terms.map(|(column, light)| *column * *light).sum();
                 return self.solution.gain * toy::base_color(hit.triangle) * light;

@@ -210,11 +210,16 @@ impl Stand {
         Region::new(&self.view(), rect, &place)
     }
 
-    /// A posed toy under points over light `index`, as many as are planned, for each receiver.
-    pub(crate) fn light_casters(&self, posed: &PosedMesh, index: usize, n_points: usize) -> Vec<Caster> {
+    /// Points of a light, in stage space.
+    pub(crate) fn light_points(&self, index: usize, n_points: usize) -> Vec<DVec4> {
         let light = &self.setup.lights[index];
         let points = light_points(light, &self.stage_from_world, self.physical_centre(), n_points);
-        let in_stage: Vec<DVec4> = points.iter().map(|point| point.as_dvec4()).collect();
+        points.iter().map(|point| point.as_dvec4()).collect()
+    }
+
+    /// A posed toy under points over light `index`, as many as are planned, for each receiver.
+    pub(crate) fn light_casters(&self, posed: &PosedMesh, index: usize, n_points: usize) -> Vec<Caster> {
+        let in_stage = self.light_points(index, n_points);
         self.casters(posed, |plane_from_stage| {
             in_stage.iter().map(|point| *plane_from_stage * *point).collect()
         })

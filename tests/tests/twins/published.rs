@@ -1,4 +1,5 @@
-//! The published method's `search`, `box_filter` and `pcss`, on textured and uniform receivers.
+//! The published method's `eligible`, `census`, `search`, `box_filter` and `pcss`, on textured and uniform receivers, under
+//! one light and two.
 
 use std::sync::{Arc, LazyLock};
 
@@ -12,10 +13,12 @@ use app_core::scene::{Light, Surface};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::box_filter::{box_sums, mean};
+use harness::reference::census::seen_sets;
 use harness::reference::model::Region;
 use harness::reference::pcss::{Softness, soft_visibility};
 use harness::reference::raster::Raster;
-use harness::reference::search::{Found, Rings, search, term};
+use harness::reference::search::{Found, Rings, Start, search, term};
+use harness::reference::sets::LightSet;
 
 use crate::device::Device;
 use crate::errors::Errors;
@@ -30,11 +33,13 @@ struct Published {
     region: Region,
     frame: Raster<DVec3>,
     plate: Raster<DVec3>,
-    eligible: Raster<DVec4>,
-    warp: Raster<DVec4>,
+    eligible: Raster<LightSet>,
+    /// One a light.
+    warp: Vec<Raster<DVec4>>,
     terms: Raster<DVec4>,
     taps: Raster<DVec4>,
-    filtered: Raster<DVec4>,
+    /// One a set of lights, from the set 1 on.
+    filtered: Vec<Raster<DVec4>>,
     visibility: Raster<DVec4>,
 }
 
@@ -85,11 +90,11 @@ impl Published {
             region: stand.region(&rect),
             frame: crop(&frame, &rect, decoded),
             plate: crop(&plate, &rect, decoded),
-            eligible: map(Map::Eligible)?,
-            warp: map(Map::Warp)?,
+            eligible: map(Map::Eligible)?.map(|texel| light_set(texel.x)),
+            warp: layers(&map(Map::Warp)?, rect.size_px),
             terms: map(Map::Terms)?,
             taps: map(Map::SearchTaps)?,
-            filtered: map(Map::FilteredTerms)?,
+            filtered: layers(&map(Map::FilteredTerms)?, rect.size_px),
             visibility: map(Map::Visibility)?,
             stand,
             is_textured,
@@ -100,12 +105,35 @@ impl Published {
         errors.check(&format!("{}, {pass}", self.stand.setup.name), allowed, max);
     }
 
-    /// Texels of the shown shadow.
-    fn shaded(&self) -> impl Iterator<Item = UVec2> + '_ {
-        let size = self.warp.size();
+    /// Texels of the shown shadows, with the lights that cast them and where those shadows came from.
+    fn shaded(&self) -> impl Iterator<Item = (UVec2, Start)> + '_ {
+        let size = self.region.size_px;
         let texels = (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)));
-        texels.filter(|texel| self.warp.at(*texel).w > 0.0)
+        texels.filter_map(|texel| {
+            let warps = (0..).zip(&self.warp).map(|(light, warp)| (light, warp.at(texel)));
+            let (lights, sources_px): (Vec<u32>, Vec<_>) = warps
+                .filter(|(_, warped)| warped.w > 0.0)
+                .map(|(light, warped)| (light, warped.truncate().truncate()))
+                .unzip();
+            let set = LightSet::of(&lights);
+            (!lights.is_empty()).then_some((texel, Start { set, sources_px }))
+        })
     }
+}
+
+/// What lies below each other in a map.
+fn layers(map: &Raster<DVec4>, size: UVec2) -> Vec<Raster<DVec4>> {
+    let layer = |index| Raster::from_fn(size, |texel| map.at(texel + UVec2::new(0, index * size.y)));
+    (0..map.size().y / size.y).map(layer).collect()
+}
+
+fn light_set(number: f64) -> LightSet {
+    LightSet(
+        (0..4)
+            .filter(|set| f64::from(*set) <= number)
+            .max()
+            .unwrap_or_default(),
+    )
 }
 
 #[test]
@@ -116,34 +144,30 @@ fn ring_search() {
         n_rings: PUBLISHED.n_rings,
     };
     for run in runs() {
-        let eligible = run.eligible.map(|texel| texel.x > 0.0);
+        let seen = seen_sets(&run.eligible);
         let found: Vec<_> = run
             .shaded()
-            .map(|texel| {
-                (
-                    texel,
-                    search(&eligible, run.warp.at(texel).truncate().truncate(), &rings),
-                )
-            })
+            .map(|(texel, start)| (texel, search(&run.eligible, &seen, &start, &rings), start.set))
             .collect();
         let taps = found
             .iter()
-            .map(|(texel, found)| (run.taps.at(*texel).x, f64::from(found.n_taps)));
+            .map(|(texel, found, _)| (run.taps.at(*texel).x, f64::from(found.n_taps)));
         // A candidate within rounding of a texel's border may fall to either side; halves hold odd numbers up to 2048.
         run.check("taps", &Errors::between(taps), (1.0, 0.005), f64::INFINITY);
-        let terms = found.iter().flat_map(|(texel, found)| {
+        let terms = found.iter().flat_map(|(texel, found, set)| {
             let expected = found.texel.map_or(DVec4::ZERO, |sample| {
                 let sample = sample.as_uvec2();
-                term(run.frame.at(sample), run.plate.at(sample), run.is_textured).extend(1.0)
+                let term = term(run.frame.at(sample), run.plate.at(sample), run.is_textured);
+                term.extend(f64::from(set.0))
             });
             let actual = run.terms.at(*texel);
             (0..4).map(move |channel| (actual[channel], expected[channel]))
         });
         // Halves have 11 bits: values up to 2 are off by half of 2^-10.
         run.check("terms", &Errors::between(terms), (1e-3, 0.005), f64::INFINITY);
-        let n_own = found.iter().filter(|(_, found)| found.n_taps == 0).count();
+        let n_own = found.iter().filter(|(_, found, _)| found.n_taps == 0).count();
         let is_searched = |found: &Found| found.n_taps > 0 && found.texel.is_some();
-        let n_searched = found.iter().filter(|(_, found)| is_searched(found)).count();
+        let n_searched = found.iter().filter(|(_, found, _)| is_searched(found)).count();
         let name = run.stand.setup.name;
         assert!(
             n_own > 0 && n_searched > 0,
@@ -156,24 +180,37 @@ fn ring_search() {
 fn box_filter() {
     let radius_px = u32::try_from(PUBLISHED.box_radius_px).unwrap();
     for run in runs() {
-        let terms = run.terms.map(|texel| (texel.w > 0.0).then(|| texel.truncate()));
-        let expected = box_sums(&terms, radius_px);
-        let sums = || run.filtered.texels().iter().zip(expected.texels());
-        let counts = sums().map(|(actual, expected)| (actual.w, expected.w));
-        run.check("count", &Errors::between(counts), (0.0, 0.0), 0.0);
-        let means = sums()
-            .filter_map(|(actual, expected)| mean(*actual).zip(mean(*expected)))
-            .flat_map(|(actual, expected)| (0..3).map(move |channel| (actual[channel], expected[channel])));
-        // Two sums in halves, each off by half of 2^-10 of values up to 2.
-        run.check("mean", &Errors::between(means), (2e-3, 0.0), 2e-3);
+        for (set, filtered) in (1..).map(LightSet).zip(&run.filtered) {
+            let is_of_set = |term: &DVec4| light_set(term.w) == set;
+            let terms = run.terms.map(|term| is_of_set(&term).then(|| term.truncate()));
+            let expected = box_sums(&terms, radius_px);
+            let sums = || filtered.texels().iter().zip(expected.texels());
+            let counts = sums().map(|(actual, expected)| (actual.w, expected.w));
+            run.check("count", &Errors::between(counts), (0.0, 0.0), 0.0);
+            let means = sums()
+                .filter_map(|(actual, expected)| mean(*actual).zip(mean(*expected)))
+                .flat_map(|(actual, expected)| {
+                    (0..3).map(move |channel| (actual[channel], expected[channel]))
+                });
+            // Two sums in halves, each off by half of 2^-10 of values up to 2.
+            run.check("mean", &Errors::between(means), (2e-3, 0.0), 2e-3);
+        }
     }
 }
 
 #[test]
 fn percentage_closer_soft_shadows() {
     for run in runs() {
-        let stand = &run.stand;
-        let light = &stand.setup.lights[0];
+        for (light, warp) in run.warp.iter().enumerate() {
+            run.check_visibility(light, warp);
+        }
+    }
+}
+
+impl Published {
+    fn check_visibility(&self, index: usize, warp: &Raster<DVec4>) {
+        let stand = &self.stand;
+        let light = &stand.setup.lights[index];
         let softness = Softness {
             light: light_in_plane(light, &stand.stage_from_world),
             light_radius: match *light {
@@ -186,9 +223,9 @@ fn percentage_closer_soft_shadows() {
             n_blocker_taps: PUBLISHED.n_blocker_taps,
             n_filter_taps: PUBLISHED.n_filter_taps,
         };
-        let heights_m = run.warp.map(|texel| (texel.w > 0.0).then_some(texel.z));
-        let expected = Raster::from_fn(run.region.size_px, |texel| {
-            soft_visibility(&heights_m, &run.region, &softness, texel)
+        let heights_m = warp.map(|texel| (texel.w > 0.0).then_some(texel.z));
+        let expected = Raster::from_fn(self.region.size_px, |texel| {
+            soft_visibility(&heights_m, &self.region, &[softness], texel)
         });
         let values = expected.texels();
         assert!(
@@ -196,11 +233,11 @@ fn percentage_closer_soft_shadows() {
             "no shadow"
         );
         assert!(values.contains(&1.0), "no light");
-        let actual = run.visibility.texels().iter().map(|texel| texel.x);
+        let actual = self.visibility.texels().iter().map(|texel| texel[index]);
         let errors = Errors::between(actual.zip(values.iter().copied()));
         // A tap within rounding of a texel's border may fall to either side, and a blocker more or less moves the
         // radius, by which again a few taps change sides.
         let tap = 1.0 / f64::from(PUBLISHED.n_filter_taps);
-        run.check("pcss", &errors, (0.5 * tap, 0.01), 8.0 * tap);
+        self.check("pcss", &errors, (0.5 * tap, 0.01), 8.0 * tap);
     }
 }

@@ -32,6 +32,8 @@ pub(crate) struct Run {
     /// r where the frame shows the receiver, g where it shows the toy.
     pub(crate) evidence: Raster<DVec4>,
     pub(crate) object_base: Raster<DVec3>,
+    /// What the physical toy receives of each light.
+    pub(crate) object_received: Raster<DVec4>,
     pub(crate) shown_visibility: Raster<DVec4>,
     pub(crate) shown_ambient: Raster<f64>,
     pub(crate) solution: Solution,
@@ -91,6 +93,7 @@ impl Run {
             object_base: base.map(|texel| {
                 DVec3::from([texel.x, texel.y, texel.z].map(|linear| seen_by_shader(code(linear))))
             }),
+            object_received: map(Map::ObjectReceived)?,
             shown_visibility: map(Map::Visibility)?,
             shown_ambient: visible(map(Map::Ambient)?),
             solution: solution(&fit, stand.setup.lights.len()),

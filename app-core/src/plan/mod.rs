@@ -3,12 +3,20 @@
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
 //! A plan holds what the scene needs and names what it leaves out, with the reason.
 
-use glam::UVec2;
+mod passes;
+mod published;
+
+use glam::{DMat4, DVec3, UVec2};
 use wgpu::TextureFormat;
 
 use crate::gpu::layout::MAX_LIGHTS;
-use crate::preset::{PublishedSettings, Settings};
+use crate::preset::Settings;
 use crate::region::PixelRect;
+
+pub use passes::{Change, Path, PlannedPass, runs};
+pub use published::PublishedPlan;
+
+use passes::{ESTIMATE_PASSES, PASSES};
 
 /// A penumbra narrower than this is drawn as a hard edge.
 const HARD_PENUMBRA_PX: f64 = 1.0;
@@ -25,26 +33,6 @@ const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
-/// Which of the two paths a pass belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
-    /// When the place or the view of it is new.
-    Capture,
-    /// For every picture.
-    Frame,
-}
-
-impl Path {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Capture => "capture",
-            Self::Frame => "frame",
-        }
-    }
-}
-
 /// Facts of a scene that decide its plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFacts {
@@ -58,24 +46,50 @@ pub struct SceneFacts {
     pub is_plate_complete: bool,
 }
 
-/// How much of a frame is new; each takes in those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Change {
-    /// Only the pose that is shown.
-    Pose,
-    /// The camera's picture.
-    Picture,
-    /// The camera's place, or the part of the picture that is worked on.
-    View,
-    /// Nothing is known yet.
-    Place,
-}
-
 /// How one light's visibility is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightPlan {
     /// Points drawn: 4 for a hard edge, else a multiple of 16.
     pub n_points: usize,
+}
+
+/// How the toy's shadow on itself is made: an atlas of depth maps, one for each point of each light.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SelfShadowPlan {
+    /// One entry a light.
+    pub n_points: Vec<usize>,
+    /// Tiles along each side of the atlas.
+    pub n_columns: u32,
+    /// Texels along each side of a tile.
+    pub tile_px: u32,
+}
+
+impl SelfShadowPlan {
+    fn new(lights: &[LightPlan], settings: &Settings) -> Self {
+        let n_points: Vec<usize> = lights
+            .iter()
+            .map(|light| light.n_points.min(settings.n_self_shadow_points))
+            .collect();
+        let n_tiles: usize = n_points.iter().sum();
+        Self {
+            n_columns: (1..).find(|n| (n * n) as usize >= n_tiles).unwrap_or(1),
+            n_points,
+            tile_px: settings.self_shadow_tile_px,
+        }
+    }
+
+    /// From the clip space of tile `index`, of which the part `used` along each side is drawn to, to that of the atlas.
+    #[must_use]
+    pub fn atlas_from_tile(&self, index: u32, used: f64) -> DMat4 {
+        let side = 1.0 / f64::from(self.n_columns);
+        let middle = |place: u32| side * f64::from(2 * place + 1) - 1.0;
+        let at = DVec3::new(
+            middle(index % self.n_columns),
+            -middle(index / self.n_columns),
+            0.0,
+        );
+        DMat4::from_translation(at) * DMat4::from_scale(DVec3::new(used * side, used * side, 1.0))
+    }
 }
 
 /// What is allocated and run for a scene.
@@ -95,6 +109,12 @@ pub struct Plan {
     pub n_receivers: u32,
     /// Whether what no plate shows is estimated.
     pub is_plate_estimated: bool,
+    /// Draws of the shown toy, each by a part of a pixel beside the others.
+    pub n_toy_draws: u32,
+    /// Whether the noise of the real shadow is removed.
+    pub is_noise_removed: bool,
+    /// The toy's shadow on itself.
+    pub self_shadow: SelfShadowPlan,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -109,15 +129,6 @@ pub struct Plan {
     pub left_out: Vec<LeftOut>,
 }
 
-/// A pass on its path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PlannedPass {
-    /// The pass's name.
-    pub name: &'static str,
-    /// Its path.
-    pub path: Path,
-}
-
 /// Work that a scene does not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftOut {
@@ -126,127 +137,6 @@ pub struct LeftOut {
     /// Why.
     pub why: &'static str,
 }
-
-const PASSES: &[PlannedPass] = &[
-    PlannedPass {
-        name: "object",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "evidence",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "appearance",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "occlusion",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "visibility",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "plate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "lit",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "estimate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fit",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fit_solve",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "residual",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "fill",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "occlusion",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "visibility",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "composite",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "present",
-        path: Path::Frame,
-    },
-];
-
-/// The published method, in order.
-const PUBLISHED_PASSES: &[PlannedPass] = &[
-    PlannedPass {
-        name: "plate",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "masks",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "warp",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "pcss",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "eligible",
-        path: Path::Capture,
-    },
-    PlannedPass {
-        name: "warp",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "pcss",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "search",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "box_filter",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "retarget",
-        path: Path::Frame,
-    },
-    PlannedPass {
-        name: "present",
-        path: Path::Frame,
-    },
-];
-/// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "appearance"];
-/// What a scene does without when one plate shows all of it.
-const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
-/// What a shadow of constant strength does without.
-const SAMPLING_PASSES: &[&str] = &["search", "box_filter"];
 
 impl Plan {
     /// Plans a scene. Lights beyond the fourth are left out.
@@ -269,17 +159,15 @@ impl Plan {
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
-            visibility_format: match lights.len() {
-                0 | 1 => TextureFormat::R16Float,
-                2 => TextureFormat::Rg16Float,
-                _ => TextureFormat::Rgba16Float,
-            },
+            visibility_format: visibility_format(lights.len()),
             left_out: left_out(facts, &lights),
-            lights,
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
+            n_toy_draws: settings.n_toy_draws,
+            is_noise_removed: settings.is_noise_removed,
+            self_shadow: SelfShadowPlan::new(&lights, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             fit_stride_px,
@@ -287,8 +175,10 @@ impl Plan {
             passes: PASSES
                 .iter()
                 .filter(|pass| !(facts.is_plate_complete && ESTIMATE_PASSES.contains(&pass.name)))
+                .filter(|pass| settings.is_noise_removed || pass.name != "detail")
                 .copied()
                 .collect(),
+            lights,
         }
     }
 }
@@ -299,60 +189,18 @@ impl Plan {
     pub fn for_view(&self, facts: &SceneFacts, settings: &Settings) -> Self {
         Self {
             lights: self.lights.clone(),
+            self_shadow: self.self_shadow.clone(),
             ..Self::new(facts, settings)
         }
     }
 }
 
-/// Which of the planned passes run when that much is new, all but `present`, and on which path.
-///
-/// A new picture of a known view needs the toy's colours and the light's levels anew: these count as the frame's.
-pub fn runs(passes: &[PlannedPass], change: Change) -> impl Iterator<Item = (Path, &'static str)> + '_ {
-    passes
-        .iter()
-        .filter(|pass| pass.name != "present")
-        .filter_map(move |pass| {
-            let is_pictures = change == Change::Picture && PICTURE_PASSES.contains(&pass.name);
-            if pass.path == Path::Frame || change >= Change::View {
-                Some((pass.path, pass.name))
-            } else {
-                is_pictures.then_some((Path::Frame, pass.name))
-            }
-        })
-}
-
-/// A plan of the published method.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PublishedPlan {
-    /// The work region.
-    pub region: PixelRect,
-    /// The passes in the order they run.
-    pub passes: Vec<PlannedPass>,
-    /// What the scene does not need.
-    pub left_out: Vec<LeftOut>,
-}
-
-impl PublishedPlan {
-    /// Plans a scene.
-    #[must_use]
-    pub fn new(facts: &SceneFacts, settings: &PublishedSettings) -> Self {
-        let is_constant = settings.constant_ratio.is_some();
-        let mut left_out = Vec::new();
-        if is_constant {
-            left_out.push(LeftOut {
-                what: "samples of the real shadow",
-                why: "the preset's shadow is constant",
-            });
-        }
-        Self {
-            region: facts.region,
-            passes: PUBLISHED_PASSES
-                .iter()
-                .filter(|pass| !(is_constant && SAMPLING_PASSES.contains(&pass.name)))
-                .copied()
-                .collect(),
-            left_out,
-        }
+/// The narrowest format of a visibility map that has a channel a light.
+fn visibility_format(n_lights: usize) -> TextureFormat {
+    match n_lights {
+        0 | 1 => TextureFormat::R16Float,
+        2 => TextureFormat::Rg16Float,
+        _ => TextureFormat::Rgba16Float,
     }
 }
 

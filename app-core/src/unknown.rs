@@ -1,0 +1,59 @@
+//! What the camera sees and the model cannot explain: a thing that the plate does not have, or the shadow of a light that
+//! is not listed.
+
+use std::fmt;
+
+/// Pooled residual, in plates, from which `composite` leaves what the camera saw.
+pub const UNKNOWN_ALL: f32 = 0.3;
+/// Least over most of a residual's channels, from which `composite` takes it for a shadow.
+pub const SHADOW_EVENNESS: f32 = 0.4;
+/// How well a cell must be known to count, of 1 a frame.
+const LEAST_CERTAINTY: f32 = 0.5;
+/// Fewer cells than this are an edge that is a little off.
+const FEWEST_CELLS: usize = 4;
+
+/// What stays as it was photographed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// A thing of its own colour, such as a hand.
+    Object,
+    /// What looks like the shadow of a light that is not listed.
+    Shadow,
+}
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Object => {
+                "something that the plate does not show lies on the receiver: it stays as photographed"
+            }
+            Self::Shadow => "a shadow is there that no listed light casts: it stays as photographed",
+        })
+    }
+}
+
+/// What the sums of a receiver's cells tell: each residual times its certainty, and the certainty.
+#[must_use]
+pub fn unknowns(kept: &[[f32; 4]]) -> Vec<Unknown> {
+    let known = kept.iter().filter(|cell| cell[3] >= LEAST_CERTAINTY);
+    let residuals = known.map(|[r, g, b, certainty]| [r, g, b].map(|sum| sum / certainty));
+    let (mut n_objects, mut n_shadows) = (0, 0);
+    for residual in residuals {
+        let most = residual.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let least = residual.iter().copied().fold(f32::INFINITY, f32::min);
+        if most.max(-least) < UNKNOWN_ALL {
+            continue;
+        }
+        if most < 0.0 && most / least >= SHADOW_EVENNESS {
+            n_shadows += 1;
+        } else {
+            n_objects += 1;
+        }
+    }
+    let found = [(n_objects, Unknown::Object), (n_shadows, Unknown::Shadow)];
+    found
+        .into_iter()
+        .filter(|(n_cells, _)| *n_cells >= FEWEST_CELLS)
+        .map(|(_, unknown)| unknown)
+        .collect()
+}

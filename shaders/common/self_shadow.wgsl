@@ -1,0 +1,53 @@
+// Shadows of the toy on itself: how much of a light reaches a point of its surface.
+//
+// Depth maps from points of each light lie as tiles in one atlas; a point is compared with each and the answers averaged.
+// Bias: the point is moved along its normal by as much as the surface can rise between two texels of a tile.
+// Source: Williams 1978 (shadow maps), Holbert 2011 (normal offset; here in closed form), Heckbert and Herf 1997 (soft
+// shadows as a mean over light points).
+
+const MAX_TILES: u32 = 64u;
+
+struct SelfShadow {
+  // Clip space of the atlas, one tile each; depth is reversed, 0 where there is nothing.
+  atlas_from_stage: array<mat4x4f, MAX_TILES>,
+  // Per light: its first tile, its number of tiles, 0 for one that casts nothing on the toy, and the width of a texel in
+  // metres at w = 1.
+  first_tile: vec4u,
+  n_tiles: vec4u,
+  texel_m: vec4f,
+}
+
+@group(3) @binding(0) var<uniform> self_shadow: SelfShadow;
+@group(3) @binding(1) var self_depth: texture_depth_2d;
+@group(3) @binding(2) var nearer: sampler_comparison;
+
+// A filtered comparison reaches one texel to each side.
+const FILTER_REACH_TEXELS: f32 = 1.41421356;
+
+// In [0, 1]; `cosine` is that of `normal` to the light.
+fn self_visibility(i: u32, in_stage: vec3f, normal: vec3f, cosine: f32) -> f32 {
+  let n_tiles = self_shadow.n_tiles[i];
+  if n_tiles == 0u { return 1.0; }
+  let first = self_shadow.first_tile[i];
+  let w = (self_shadow.atlas_from_stage[first] * vec4f(in_stage, 1.0)).w;
+  // Over the texel's reach a plane rises by reach sin / cos towards the light, and this lifts by offset / cos.
+  let sine = sqrt(saturate(1.0 - cosine * cosine));
+  let lifted = in_stage + FILTER_REACH_TEXELS * self_shadow.texel_m[i] * w * sine * normal;
+  var sum = 0.0;
+  for (var tile = first; tile < first + n_tiles; tile++) {
+    let clip = self_shadow.atlas_from_stage[tile] * vec4f(lifted, 1.0);
+    let at = clip.xyz / clip.w;
+    sum += textureSampleCompareLevel(self_depth, nearer, at.xy * vec2f(0.5, -0.5) + 0.5, at.z);
+  }
+  return sum / f32(n_tiles);
+}
+
+// Each light's cosine times its visibility: what it gives to a surface.
+fn light_received(normal: vec3f, in_stage: vec3f) -> vec4f {
+  var received = vec4f(0.0);
+  for (var i = 0u; i < globals.n_lights; i++) {
+    let cosine = light_cosine(i, normal, in_stage);
+    if cosine > 0.0 { received[i] = cosine * self_visibility(i, in_stage, normal, cosine); }
+  }
+  return received;
+}

@@ -1,0 +1,35 @@
+//! Twin of `self_shadow.wgsl` and `common/self_shadow.wgsl`: what a point of the toy receives of each light, by rays
+//! rather than depth maps.
+
+use glam::{DVec3, DVec4};
+
+use super::model::Region;
+use super::occlusion::Occluder;
+
+/// By how much a ray starts above its surface, in metres: rounding, and nothing that can be seen.
+const LIFT_M: f64 = 1e-6;
+
+/// Cosine to each light times the share of its points in sight.
+#[must_use]
+pub fn received(
+    region: &Region,
+    occluder: &Occluder,
+    light_points: &[Vec<DVec4>],
+    in_plane: DVec3,
+    normal: DVec3,
+) -> DVec4 {
+    let mut received = DVec4::ZERO;
+    for (i, (light, points)) in region.lights.iter().zip(light_points).enumerate() {
+        let cosine = normal
+            .dot((light.truncate() - in_plane * light.w).normalize())
+            .max(0.0);
+        let from = in_plane + LIFT_M * normal;
+        let in_sight = points
+            .iter()
+            .filter(|point| !occluder.stands_between(from, **point));
+        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+        let visibility = in_sight.count() as f64 / points.len() as f64;
+        received[i] = cosine * visibility;
+    }
+    received
+}
