@@ -2,6 +2,7 @@
 
 use app_core::core::Core;
 use app_core::preset::Preset;
+use app_core::scene::Image;
 use glam::{DVec3, UVec2};
 
 use crate::composite::shows_toy;
@@ -12,14 +13,22 @@ use crate::run::{core_on, input, scene, solution, texel_of};
 
 /// Codes of the picture of the shown pose, and those of a photograph of it, where neither pose hides the receivers.
 pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f64, f64)> {
-    let (actual, expected) = (core.read_picture().unwrap(), photo.frame(stand, &stand.shown));
+    pairs_beside(
+        stand,
+        &core.read_picture().unwrap(),
+        &photo.frame(stand, &stand.shown),
+    )
+}
+
+/// Codes of two pictures where neither pose hides the receivers.
+pub(crate) fn pairs_beside(stand: &Stand, actual: &Image, expected: &Image) -> Vec<(f64, f64)> {
     let hidden = [&stand.physical, &stand.shown].map(|posed| shows_toy(stand, posed, &stand.whole_image()));
     let UVec2 { x: width, y: height } = stand.setup.image_px;
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y)));
     let beside = texels.filter(|texel| hidden.iter().all(|hidden| !hidden.at(*texel)));
     beside
         .flat_map(|texel| {
-            let codes = [&actual, &expected].map(|image| texel_of(image, texel));
+            let codes = [actual, expected].map(|image| texel_of(image, texel));
             (0..3).map(move |channel| (f64::from(codes[0][channel]), f64::from(codes[1][channel])))
         })
         .collect()

@@ -6,10 +6,12 @@
 mod composite;
 mod device;
 mod errors;
+mod estimate;
 mod fill;
 mod fit;
 mod inject;
 mod levels;
+mod moving;
 mod occlusion;
 mod overlap;
 mod photo;
@@ -20,3 +22,4 @@ mod residual;
 mod run;
 mod self_shadow;
 mod toy;
+mod unknown;
