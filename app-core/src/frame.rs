@@ -55,7 +55,8 @@ pub enum Warning {
     NoPlate,
     /// There is no plate: the place without the toy is estimated from the frame.
     PlateEstimated,
-    /// The plates show only a part of what is worked on; the rest is estimated from the frame.
+    /// The plates show only a part of what is worked on; the rest is estimated from the frame, or
+    /// stays as it is with a preset that needs a plate.
     PlatePartial {
         /// Share that they show, from 0 to 1.
         share: f64,
@@ -107,7 +108,7 @@ impl fmt::Display for Warning {
             }
             Self::PlatePartial { share } => write!(
                 f,
-                "the plates show {:.0} % of what is worked on: the rest is estimated from the frame",
+                "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
                 100.0 * share
             ),
             Self::ReceiversLeftOut { names } => {
