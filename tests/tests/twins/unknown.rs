@@ -54,7 +54,7 @@ fn difference(a: &Image, b: &Image, is_compared: impl Fn(UVec2) -> bool) -> f64 
     sum / n
 }
 
-/// A hand lies where the shadow of the head is to fall.
+/// A hand lies where the shadow of the head is to fall; it is not shaded, since its height is not known.
 #[test]
 fn a_hand_in_the_new_shadow_stays() {
     let stand = Stand::new(setup());
@@ -83,13 +83,12 @@ fn a_hand_in_the_new_shadow_stays() {
         on_hand && is_changed && toys.iter().all(|toy| !toy.at(texel))
     };
     let picture = core.read_picture().unwrap();
-    let expected = with_hand.frame(&stand, &stand.shown);
     let without = photo.frame(&stand, &stand.shown);
     let (off, hand) = (
-        difference(&picture, &expected, is_compared),
-        difference(&without, &expected, is_compared),
+        difference(&picture, &frame, is_compared),
+        difference(&without, &frame, is_compared),
     );
-    // The hand's rim is pooled with what is beside it. Measured: 3.4 of 39.
+    // The hand's rim is pooled with what is beside it. Measured: 4.8 of 58, and 33 where it is not told from a shadow.
     assert!(off < 0.15 * hand, "{off} codes of the hand's {hand} are gone");
 }
 
@@ -129,9 +128,9 @@ fn the_shadow_of_a_light_that_is_not_listed_stays() {
         difference(&picture, &expected, is_compared),
         difference(&without, &expected, is_compared),
     );
-    // Part of it is taken for that of the light beside. Measured: 3.8 of 32.
+    // Measured: 0.3 of 32.
     assert!(
-        off < 0.2 * shadow,
+        off < 0.05 * shadow,
         "{off} codes of the shadow's {shadow} are gone"
     );
 }
