@@ -28,6 +28,9 @@ use crate::plan::{Change, Plan};
 /// Format of the ambient map.
 pub(crate) const AMBIENT_FORMAT: TextureFormat = TextureFormat::R16Float;
 
+/// Rounds in which plate and light are estimated from one another.
+const N_ESTIMATE_ROUNDS: u32 = 3;
+
 /// Visibility of the lights and of the ambient light, for one pose.
 pub(crate) struct Visibilities {
     pub(crate) lights: Texture,
@@ -215,6 +218,15 @@ impl Capture {
         learner.pool_lit(encoder);
         learner.estimate_plate(encoder, Fineness::Smooth);
         learner.fit_receivers(encoder, is_first);
+        if is_first && self.plan.is_plate_estimated {
+            // The first guess was pooled with shares that nobody had seen.
+            for _ in 1..N_ESTIMATE_ROUNDS {
+                knowledge.forget_sums(&mut encoder.raw);
+                learner.pool_lit(encoder);
+                learner.estimate_plate(encoder, Fineness::Smooth);
+                learner.fit_receivers(encoder, is_first);
+            }
+        }
         learner.estimate_plate(encoder, Fineness::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
         learner.pool_residual(encoder);

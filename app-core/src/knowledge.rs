@@ -48,8 +48,13 @@ impl Knowledge {
     pub(crate) fn forget(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
         gpu.queue
             .write_buffer(&self.solution, 0, bytemuck::bytes_of(&Fit::start(self.n_lights)));
-        for sums in [&self.fit_sums, &self.residual.kept, &self.lit.kept] {
-            encoder.clear_buffer(sums, 0, None);
-        }
+        encoder.clear_buffer(&self.residual.kept, 0, None);
+        self.forget_sums(encoder);
+    }
+
+    /// Forgets what fits and lit colours were summed from, and keeps what they found.
+    pub(crate) fn forget_sums(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.fit_sums, 0, None);
+        encoder.clear_buffer(&self.lit.kept, 0, None);
     }
 }
