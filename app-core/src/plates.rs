@@ -16,6 +16,8 @@ const N_COMPARED: u32 = 48;
 const N_COVERED: u32 = 17;
 /// Half the side of the square that is averaged there: misplaced plates still agree.
 const COMPARED_RADIUS_PX: i64 = 3;
+/// Codes that are neither mostly quantisation nor perhaps clipped.
+const EVIDENT_CODES: std::ops::RangeInclusive<u8> = 10..=250;
 /// Difference between two plates, relative, at which a place counts half.
 const CAUCHY_SCALE: f64 = 0.05;
 /// Fewer places than this tell no exposure.
@@ -141,11 +143,18 @@ pub(crate) fn plate_views(
 
 /// What brings each plate to the exposure of the first, per channel of linear light; 1 where they share no place.
 pub(crate) fn match_exposures(scene: &Scene) -> Vec<DVec3> {
+    let mut linear_of_code = [0.0; 256];
+    for (code, linear) in (0..=u8::MAX).zip(&mut linear_of_code) {
+        *linear = f64::from(linear_from_srgb(f32::from(code) / 255.0));
+    }
     let mut gains: Vec<DVec3> = Vec::new();
     for (index, plate) in scene.plates.iter().enumerate() {
         let mut pairs = Vec::new();
         for (other, gain) in scene.plates.iter().zip(&gains) {
-            pairs.extend(shared_places(scene, plate, other).map(|(here, there)| (here, *gain * there)));
+            pairs.extend(
+                shared_places(scene, plate, other, &linear_of_code)
+                    .map(|(here, there)| (here, *gain * there)),
+            );
         }
         let gain = if index == 0 || pairs.len() < FEWEST_COMPARED {
             DVec3::ONE
@@ -162,6 +171,7 @@ fn shared_places<'a>(
     scene: &'a Scene,
     plate: &'a Plate,
     other: &'a Plate,
+    linear_of_code: &'a [f64; 256],
 ) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
     let (view, other_view) = (view_of(scene, plate), view_of(scene, other));
     let spacing = view.image_px.as_dvec2() / f64::from(N_COMPARED);
@@ -174,7 +184,8 @@ fn shared_places<'a>(
         // A nearer receiver may hide it from the other camera.
         nearest_receiver(&other_view, &scene.receivers, other_px)
             .filter(|(hit, _)| std::ptr::eq(*hit, receiver))?;
-        Some((mean_color(&plate.image, px)?, mean_color(&other.image, other_px)?))
+        let here = mean_color(&plate.image, px, linear_of_code)?;
+        Some((here, mean_color(&other.image, other_px, linear_of_code)?))
     })
 }
 
@@ -196,7 +207,7 @@ fn nearest_receiver<'a>(
 }
 
 /// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright to tell.
-fn mean_color(image: &Image, px: DVec2) -> Option<DVec3> {
+fn mean_color(image: &Image, px: DVec2, linear_of_code: &[f64; 256]) -> Option<DVec3> {
     #[allow(clippy::cast_possible_truncation, reason = "a pixel of an image")]
     let centre = [px.x.floor() as i64, px.y.floor() as i64];
     let side = 2 * COMPARED_RADIUS_PX + 1;
@@ -209,10 +220,10 @@ fn mean_color(image: &Image, px: DVec2) -> Option<DVec3> {
         }
         let first = 4 * (y as usize * image.width_px as usize + x as usize);
         let codes = image.rgba8.get(first..first + 3)?;
-        if codes.iter().any(|code| !(10..=250).contains(code)) {
+        if codes.iter().any(|code| !EVIDENT_CODES.contains(code)) {
             return None;
         }
-        sum += DVec3::from_array([0, 1, 2].map(|c| f64::from(linear_from_srgb(f32::from(codes[c]) / 255.0))));
+        sum += DVec3::from_array([0, 1, 2].map(|channel| linear_of_code[usize::from(codes[channel])]));
     }
     #[allow(clippy::cast_precision_loss, reason = "49")]
     let n_pixels = (side * side) as f64;
