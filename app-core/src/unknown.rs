@@ -3,7 +3,9 @@
 
 use std::fmt;
 
-/// Pooled residual, in plates, from which `composite` leaves what the camera saw.
+/// Pooled residual, in plates, from which `composite` begins to leave what the camera saw: enough to tell of a shadow.
+pub const UNKNOWN_NONE: f32 = 0.15;
+/// Pooled residual from which it leaves that in full.
 pub const UNKNOWN_ALL: f32 = 0.3;
 /// Least over most of a residual's channels, from which `composite` takes it for a shadow.
 pub const SHADOW_EVENNESS: f32 = 0.4;
@@ -41,12 +43,10 @@ pub fn unknowns(kept: &[[f32; 4]]) -> Vec<Unknown> {
     for residual in residuals {
         let most = residual.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let least = residual.iter().copied().fold(f32::INFINITY, f32::min);
-        if most.max(-least) < UNKNOWN_ALL {
-            continue;
-        }
-        if most < 0.0 && most / least >= SHADOW_EVENNESS {
+        let is_even = most < 0.0 && most / least >= SHADOW_EVENNESS;
+        if is_even && -least >= UNKNOWN_NONE {
             n_shadows += 1;
-        } else {
+        } else if !is_even && most.max(-least) >= UNKNOWN_ALL {
             n_objects += 1;
         }
     }

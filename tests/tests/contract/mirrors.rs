@@ -202,6 +202,7 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
 pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
     ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
     ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
+    ("composite", "UNKNOWN_NONE", unknown::UNKNOWN_NONE),
     ("composite", "UNKNOWN_ALL", unknown::UNKNOWN_ALL),
     ("composite", "SHADOW_EVENNESS", unknown::SHADOW_EVENNESS),
 ];

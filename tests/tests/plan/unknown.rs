@@ -18,7 +18,9 @@ fn a_shadow_is_darker_in_all_channels_alike() {
         ([0.5, 0.2, 0.1], vec![Unknown::Object]),
         ([-0.5, -0.4, 0.05], vec![Unknown::Object]),
         ([-0.6, -0.5, -0.05], vec![Unknown::Object]),
-        ([-0.2, -0.2, -0.2], vec![]),
+        ([-0.2, -0.2, -0.2], vec![Unknown::Shadow]),
+        ([-0.1, -0.1, -0.1], vec![]),
+        ([0.2, 0.2, 0.2], vec![]),
     ] {
         assert_eq!(unknowns(&cells(residual, 12)), expected, "{residual:?}");
     }
