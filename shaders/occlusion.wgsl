@@ -18,6 +18,9 @@ struct LightPoints {
   _pad: u32,
 }
 
+// Whether there are several receivers, of which a pixel shows one.
+override IS_SHARED: bool = true;
+
 @group(1) @binding(0) var<uniform> light_points: LightPoints;
 
 struct Flattened {
@@ -52,7 +55,7 @@ struct Hidden {
 fn fs_cover(in: Flattened) -> Hidden {
   // What lies under the receiver casts nothing on it.
   if in.height_m < 0.0 { discard; }
-  if globals.n_receivers > 1u {
+  if IS_SHARED {
     let centre = (floor(in.clip.xy) + 0.5) * light_points.texel_px;
     if receiver_point(centre).receiver != in.receiver { discard; }
   }

@@ -69,7 +69,7 @@ pub(crate) struct Passes {
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let passes = |n_points, channel, format| VisibilityPasses {
-            occlusion: Occlusion::new(gpu, n_points),
+            occlusion: Occlusion::new(gpu, n_points, plan.n_receivers),
             visibility: Visibility::new(gpu, n_points, channel, format),
         };
         Self {

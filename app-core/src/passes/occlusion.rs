@@ -55,7 +55,7 @@ impl OcclusionTargets {
 
 impl Occlusion {
     /// For 4 points, or a multiple of 16 up to 64.
-    pub(crate) fn new(gpu: &Gpu, n_points: usize) -> Self {
+    pub(crate) fn new(gpu: &Gpu, n_points: usize, n_receivers: u32) -> Self {
         let n_points = n_points.min(MAX_LIGHT_POINTS);
         let keep_largest = BlendComponent {
             src_factor: BlendFactor::One,
@@ -81,7 +81,7 @@ impl Occlusion {
             targets: &targets,
             n_samples: N_SAMPLES,
             depth: None,
-            constants: &[],
+            constants: &[("IS_SHARED", f64::from(u8::from(n_receivers > 1)))],
         };
         let pipeline = gpu.render_pipeline(&OCCLUSION, &gpu.module(&OCCLUSION), &stages, &shape);
         Self { pipeline, n_points }
