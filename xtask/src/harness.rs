@@ -19,7 +19,7 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
         "replay",
         &[
             "--preset".into(),
-            "flat,paper,balanced".into(),
+            "flat,paper,balanced,best".into(),
             "--out".into(),
             out.clone().into_os_string(),
         ],
