@@ -188,7 +188,7 @@ impl Capture {
             gpu,
             encoder,
             &self.globals,
-            (&pictures.plate_views, pictures.plates),
+            (pictures.plate_views, pictures.plates),
             &self.photographed.view,
         );
     }
@@ -347,7 +347,7 @@ impl Capture {
 pub(crate) struct Pictures<'a> {
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) plates: &'a wgpu::TextureView,
-    pub(crate) plate_views: PlateViews,
+    pub(crate) plate_views: &'a PlateViews,
 }
 
 fn texture(gpu: &Gpu, label: &str, size_px: UVec2, (format, n_samples): (TextureFormat, u32)) -> Texture {

@@ -11,7 +11,6 @@ use crate::view::{Place, View};
 const N_MOMENTS: u32 = 64;
 
 /// Bounds and outline over a clip.
-#[derive(Clone)]
 pub(crate) struct ClipReach {
     /// The clip; none for the model's pose as authored.
     pub(crate) clip: Option<ClipId>,

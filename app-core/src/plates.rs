@@ -87,15 +87,9 @@ pub(crate) fn covered_share(
         };
         n_seen += 1.0;
         let is_covered = plate_views.iter().any(|plate_view| {
-            let there = plate_view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
-            let plate_px = there.truncate() / there.z;
             let end_px = plate_view.image_px.as_dvec2() - 1.0;
-            let is_inside = there.z > 0.0 && plate_px.cmpge(DVec2::ONE).all() && plate_px.cmple(end_px).all();
-            // A nearer receiver may hide it from that camera.
-            let hit = is_inside
-                .then(|| nearest_receiver(plate_view, place.receivers, plate_px))
-                .flatten();
-            hit.is_some_and(|(nearest, _)| std::ptr::eq(nearest, receiver))
+            seen_at(plate_view, place.receivers, receiver, in_plane)
+                .is_some_and(|px| px.cmpge(DVec2::ONE).all() && px.cmple(end_px).all())
         });
         n_covered += f64::from(u8::from(is_covered));
     }
@@ -179,14 +173,18 @@ fn shared_places<'a>(
     places.filter_map(move |at| {
         let px = (at.as_dvec2() + 0.5) * spacing;
         let (receiver, in_plane) = nearest_receiver(&view, &scene.receivers, px)?;
-        let there = other_view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
-        let other_px = (there.z > 0.0).then(|| there.truncate() / there.z)?;
-        // A nearer receiver may hide it from the other camera.
-        nearest_receiver(&other_view, &scene.receivers, other_px)
-            .filter(|(hit, _)| std::ptr::eq(*hit, receiver))?;
+        let other_px = seen_at(&other_view, &scene.receivers, receiver, in_plane)?;
         let here = mean_color(&plate.image, px, linear_of_code)?;
         Some((here, mean_color(&other.image, other_px, linear_of_code)?))
     })
+}
+
+/// Where a camera sees a point of one of `receivers`, be it beyond its picture; none where another one hides it.
+fn seen_at(view: &View, receivers: &[Receiver], receiver: &Receiver, in_plane: DVec2) -> Option<DVec2> {
+    let at = view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
+    let px = (at.z > 0.0).then(|| at.truncate() / at.z)?;
+    let (nearest, _) = nearest_receiver(view, receivers, px)?;
+    std::ptr::eq(nearest, receiver).then_some(px)
 }
 
 /// The nearest receiver seen at a pixel, and where.

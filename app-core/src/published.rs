@@ -134,7 +134,7 @@ impl Published {
             gpu,
             encoder,
             &self.globals,
-            (&pictures.plate_views, pictures.plates),
+            (pictures.plate_views, pictures.plates),
             &self.plate.view,
         );
         self.passes

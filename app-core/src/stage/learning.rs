@@ -8,7 +8,6 @@ use super::{Learned, Stage, Worked, is_same_image};
 use crate::capture::Capture;
 use crate::frame::{FrameInput, Warning};
 use crate::gpu::Gpu;
-use crate::gpu::layout::PlateViews;
 use crate::grids::{grids_over, holds};
 use crate::knowledge::Knowledge;
 use crate::light_points::light_points;
@@ -111,14 +110,17 @@ impl Stage {
             worked.view.image_px,
         );
         let region = worked.region.within(size_px, worked.view.image_px);
-        match (&mut learned.work, self.preset.method()) {
-            (Work::Model(model), Method::Model(settings)) => {
-                let facts = self.facts(worked, region);
-                let plan = model.capture.plan.for_view(&facts, &settings);
-                model.follow(gpu, plan, &worked.view.globals(&region, &self.place()));
+        match self.preset.method() {
+            Method::Model(settings) => {
+                if let Work::Model(model) = &mut learned.work {
+                    let plan = model
+                        .capture
+                        .plan
+                        .for_view(&self.facts(worked, region), &settings);
+                    model.follow(gpu, plan, &worked.view.globals(&region, &self.place()));
+                }
             }
-            (work, Method::Published(settings)) => *work = self.published(gpu, &settings, region, worked),
-            (Work::Published(_), Method::Model(_)) => {}
+            Method::Published(settings) => learned.work = self.published(gpu, &settings, region, worked),
         }
         self.learned = Some(learned);
     }
@@ -139,31 +141,27 @@ impl Stage {
             region,
             penumbra_px: self.lights.iter().map(widest_px).collect(),
             n_receivers,
-            is_plate_complete: self.covered_share(worked, &region) == 1.0,
+            is_plate_complete: self.is_plate_complete(worked, &region),
         }
     }
 
-    fn covered_share(&self, worked: &Worked, region: &PixelRect) -> f64 {
+    /// One plate or several show all of the region, which may be larger than the frame asks for.
+    fn is_plate_complete(&self, worked: &Worked, region: &PixelRect) -> bool {
         let Worked { view, choice, .. } = worked;
-        plates::covered_share(&self.scene, &self.place(), view, region, choice)
+        let share = if *region == worked.region {
+            worked.plate_share
+        } else {
+            plates::covered_share(&self.scene, &self.place(), view, region, choice)
+        };
+        share == 1.0
     }
 
     pub(super) fn plate_warning(&self, worked: &Worked) -> Option<Warning> {
         if self.scene.plates.is_empty() {
             return Some(Warning::PlateEstimated);
         }
-        let share = self.covered_share(worked, &worked.region);
+        let share = worked.plate_share;
         (share < 1.0).then_some(Warning::PlatePartial { share })
-    }
-
-    pub(super) fn plate_views(&self, worked: &Worked) -> PlateViews {
-        plates::plate_views(
-            &self.scene,
-            &self.place(),
-            &worked.view,
-            &worked.choice,
-            &self.plates.gains,
-        )
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, worked: &Worked) -> Work {

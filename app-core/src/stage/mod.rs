@@ -1,8 +1,8 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
-use std::sync::Arc;
-
 mod learning;
+
+use std::sync::Arc;
 
 use glam::{DMat4, UVec2};
 
@@ -11,6 +11,7 @@ use crate::clip_reach::ClipReach;
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
+use crate::gpu::layout::PlateViews;
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::inject::InjectedVisibility;
 use crate::passes::present::Present;
@@ -42,6 +43,8 @@ pub(crate) struct Stage {
     physical_bounds: Bounds,
     /// What the clip shown last reaches.
     reach: Option<ClipReach>,
+    /// Where the latest frame was worked on.
+    known_worked: Option<Arc<Worked>>,
     toy: ToyMesh,
     posed: PosedMesh,
     frame: Texture,
@@ -65,13 +68,18 @@ struct Learned {
     image: Option<Arc<Image>>,
 }
 
-/// Where a frame is worked on.
+/// Where a frame is worked on: the same for all frames of one clip and camera.
 struct Worked {
+    clip: Option<ClipId>,
+    world_from_camera: DMat4,
     view: View,
     region: PixelRect,
     bounds: Bounds,
     plane_rects: Vec<PlaneRect>,
     choice: PlateChoice,
+    plate_views: PlateViews,
+    /// Share of the region that plates show.
+    plate_share: f64,
 }
 
 impl Stage {
@@ -106,6 +114,7 @@ impl Stage {
             stage_from_object,
             scene,
             reach: None,
+            known_worked: None,
         })
     }
 
@@ -179,7 +188,6 @@ impl Stage {
         )?;
         self.toy.shown.write(gpu, &self.posed);
         let change = self.ensure_learned(gpu, input, worked);
-        let plate_views = self.plate_views(worked);
         let Some(learned) = &mut self.learned else {
             return Ok(());
         };
@@ -188,7 +196,7 @@ impl Stage {
         let pictures = Pictures {
             frame: &self.frame.view,
             plates: &self.plates.pictures.view,
-            plate_views,
+            plate_views: &worked.plate_views,
         };
         work.encode(gpu, encoder, &self.toy, &pictures, change);
         if change < Change::View {
@@ -213,7 +221,7 @@ impl Stage {
         self.frame_image = Some(Arc::clone(image));
     }
 
-    fn worked(&mut self, input: &FrameInput) -> Result<Result<Worked, PassThrough>, ToyError> {
+    fn worked(&mut self, input: &FrameInput) -> Result<Result<Arc<Worked>, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
         if is_same_pose(&input.shown_pose, &self.scene.physical_pose) {
             return Ok(Err(PassThrough::PhysicalPose));
@@ -225,40 +233,55 @@ impl Stage {
         if needs_plate && self.scene.plates.is_empty() {
             return warned(Warning::NoPlate);
         }
-        let view = self.view(&input.world_from_camera);
+        let (clip, world_from_camera) = (input.shown_pose.clip, &input.world_from_camera);
+        let is_known =
+            |known: &&Arc<Worked>| known.clip == clip && known.world_from_camera == *world_from_camera;
+        if let Some(known) = self.known_worked.as_ref().filter(is_known) {
+            return Ok(Ok(Arc::clone(known)));
+        }
+        let view = self.view(world_from_camera);
         if view.camera_in(&self.place().world_from_stage()).y <= 0.0 {
             return warned(Warning::CameraBelowReceiver);
         }
-        let reach = self.clip_reach(input.shown_pose.clip)?;
-        let bounds = reach.bounds;
-        let on_view = reach.on_view(&view, &self.place());
-        let toy_in_world = self.place().world_from_stage().transform_point3(bounds.centre());
-        Ok(match on_view.region() {
-            Some(region) => Ok(Worked {
-                region: region.grown(REGION_MARGIN_PX, view.image_px),
-                bounds,
-                plane_rects: on_view.plane_rects(),
-                choice: plates::choose(&self.scene, &input.world_from_camera, toy_in_world),
-                view,
-            }),
-            None => Err(PassThrough::Warned(Warning::OutOfPicture)),
+        self.ensure_reach(clip)?;
+        let worked = self.worked_in(view, world_from_camera).map(Arc::new);
+        self.known_worked.clone_from(&worked);
+        Ok(worked.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
+    }
+
+    /// Where the clip whose reach is known is worked on in a view; none when it is out of the picture.
+    fn worked_in(&self, view: View, world_from_camera: &DMat4) -> Option<Worked> {
+        let (place, reach) = (self.place(), self.reach.as_ref()?);
+        let on_view = reach.on_view(&view, &place);
+        let region = on_view.region()?.grown(REGION_MARGIN_PX, view.image_px);
+        let plane_rects = on_view.plane_rects();
+        let toy_in_world = place.world_from_stage().transform_point3(reach.bounds.centre());
+        let choice = plates::choose(&self.scene, world_from_camera, toy_in_world);
+        Some(Worked {
+            clip: reach.clip,
+            world_from_camera: *world_from_camera,
+            bounds: reach.bounds,
+            plate_views: plates::plate_views(&self.scene, &place, &view, &choice, &self.plates.gains),
+            plate_share: plates::covered_share(&self.scene, &place, &view, &region, &choice),
+            region,
+            plane_rects,
+            choice,
+            view,
         })
     }
 
-    /// What toy and shadows reach in the physical pose and over all of `clip`.
-    fn clip_reach(&mut self, clip: Option<ClipId>) -> Result<ClipReach, ToyError> {
-        if let Some(known) = self.reach.as_ref().filter(|known| known.clip == clip) {
-            return Ok(known.clone());
+    /// Makes `reach` what toy and shadows reach in the physical pose and over all of `clip`.
+    fn ensure_reach(&mut self, clip: Option<ClipId>) -> Result<(), ToyError> {
+        if self.reach.as_ref().is_none_or(|known| known.clip != clip) {
+            let physical = clip_time(&self.scene.physical_pose);
+            self.reach = Some(ClipReach::new(
+                &self.scene.toy,
+                &self.stage_from_object,
+                (physical, clip),
+                &mut self.posed,
+            )?);
         }
-        let physical = clip_time(&self.scene.physical_pose);
-        let reach = ClipReach::new(
-            &self.scene.toy,
-            &self.stage_from_object,
-            (physical, clip),
-            &mut self.posed,
-        )?;
-        self.reach = Some(reach.clone());
-        Ok(reach)
+        Ok(())
     }
 
     fn place(&self) -> Place<'_> {
