@@ -59,10 +59,6 @@ fn inside_border(region_px: vec2f) -> f32 {
   return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
 }
 
-fn largest(c: vec3f) -> f32 {
-  return max(c.r, max(c.g, c.b));
-}
-
 // Whether the toy's surface beside this pixel is no longer in its place.
 fn has_moved_beside(texel: vec2i) -> bool {
   let last = vec2i(globals.region_size_px) - 1;

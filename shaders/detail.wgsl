@@ -56,7 +56,7 @@ fn fs_separate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if receiver == MAX_RECEIVERS { return vec4f(0.0); }
   let here = own(texel, receiver);
   let exact = ratio(here.product, here.energy);
-  let left = max(here.model.r, max(here.model.g, here.model.b));
+  let left = largest(here.model);
   if left >= LIT { return vec4f(exact, 1.0); }
   var product = vec3f(0.0);
   var energy = vec3f(0.0);
@@ -69,7 +69,7 @@ fn fs_separate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   }
   let smooth_residual = ratio(product, energy);
   let detail = exact - smooth_residual;
-  let size = max(abs(detail.r), max(abs(detail.g), abs(detail.b)));
+  let size = largest(abs(detail));
   let filtered = smooth_residual + detail * smoothstep(NOISE, DETAIL, size);
   return vec4f(mix(filtered, exact, smoothstep(SHADOW, LIT, left)), 1.0);
 }

@@ -32,7 +32,7 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
-  let left = min(model.r, min(model.g, model.b));
+  let left = smallest(model);
   if left <= TELLS_NONE { return vec4f(smooth_color, ESTIMATED); }
   let own = f / (fit.gain.rgb * model);
   return vec4f(mix(smooth_color, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), ESTIMATED);

@@ -35,17 +35,7 @@ fn pull_cell(fine: Level, cell: vec2u) -> vec4f {
 }
 
 fn push_cell(coarse: Level, cell: vec2u) -> vec4f {
-  let at = (vec2f(cell) + 0.5) * 0.5 - 0.5;
-  let low = floor(at);
-  let t = at - low;
-  var sum = vec4f(0.0);
-  for (var k = 0u; k < 4u; k++) {
-    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let neighbour = vec2u(clamp(low + corner, vec2f(0.0), vec2f(coarse.size) - 1.0));
-    let weight = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    sum += weight * cells[coarse.first + neighbour.y * coarse.size.x + neighbour.x];
-  }
-  return sum;
+  return between_cells(coarse.first, coarse.size, (vec2f(cell) + 0.5) * 0.5 - 0.5);
 }
 
 @compute @workgroup_size(WORKGROUP)

@@ -3,19 +3,14 @@
 // B = frame / (gain M) where the receiver is seen and little of its light is missing.
 // Reads: frame, evidence, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 
-@group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
-@group(1) @binding(2) var<storage, read_write> kept: array<vec4f>;
 @group(1) @binding(3) var frame: texture_2d<f32>;
 @group(1) @binding(4) var evidence: texture_2d<f32>;
 @group(1) @binding(5) var visibility: texture_2d<f32>;
 @group(1) @binding(6) var ambient: texture_2d<f32>;
 @group(1) @binding(7) var ambient_sampler: sampler;
 
-const N_POINTS: u32 = 8u;
 // Power of the light that is left: shadow counts little, since its depth may not be known yet.
 const LIT_POWER: f32 = 8.0;
-const FULL_SHARE: f32 = 0.25;
-const MOST_KEPT: f32 = 8.0;
 
 fn lit_color(point: ReceiverPoint) -> vec4f {
   let at = region_px_of(point);
@@ -27,28 +22,15 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let model = receiver_model(here, a, textureLoad(visibility, texel, 0));
-  let left = min(model.r, min(model.g, model.b));
+  let left = smallest(model);
   if left <= 0.0 { return vec4f(0.0); }
   return vec4f(f / (fit.gain.rgb * model), 1.0) * pow(min(left, 1.0), LIT_POWER);
 }
 
 @compute @workgroup_size(8, 8)
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
-  let receiver = cell.z;
-  let grid = grids.grids[receiver];
-  // Nothing reaches a receiver whose cells have no extent.
-  if any(cell.xy >= grid.size) || grid.cell_m == 0.0 { return; }
+  if !is_cell(cell.z, cell.xy) { return; }
   var sum = vec4f(0.0);
-  for (var k = 0u; k < N_POINTS * N_POINTS; k++) {
-    let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);
-    let in_plane = grid.origin_in_plane + (vec2f(cell.xy) + within) * grid.cell_m;
-    sum += lit_color(ReceiverPoint(receiver, in_plane));
-  }
-  let certainty = min(1.0, sum.a / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
-  let color = select(vec3f(0.0), sum.rgb / sum.a, sum.a > 0.0);
-  let index = cell.y * grid.size.x + cell.x;
-  let slot = receiver * MAX_CELLS + index;
-  let known = kept[slot] + vec4f(color, 1.0) * certainty;
-  kept[slot] = known * min(1.0, MOST_KEPT / max(known.a, MOST_KEPT));
-  cells[grid.first_cell + index] = known / max(known.a, 1.0);
+  for (var k = 0u; k < N_POINTS * N_POINTS; k++) { sum += lit_color(point_of_cell(cell.z, cell.xy, k)); }
+  remember(cell.z, cell.xy, select(vec3f(0.0), sum.rgb / sum.a, sum.a > 0.0), sum.a);
 }

@@ -72,7 +72,7 @@ fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
   return false;
 }
 
-// How well plate `k` saw the point that is `step_in_plane` (x, y) away from those seen at the pixels beside.
+// How well plate `k` saw a point; `right` and `below` are those of its plane at the pixels beside.
 fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candidate {
   let at = plate_px(k, point);
   if at.z <= 0.0 { return Candidate(vec2f(0.0), 0.0); }

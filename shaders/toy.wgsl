@@ -11,9 +11,9 @@
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;
 @group(1) @binding(2) var appearance_base: texture_2d<f32>;
-@group(1) @binding(4) var appearance_lit: texture_2d<f32>;
+@group(1) @binding(3) var appearance_lit: texture_2d<f32>;
 // By which the whole picture is moved, in pixels to the right and down.
-@group(1) @binding(5) var<uniform> offset_px: vec2f;
+@group(1) @binding(4) var<uniform> offset_px: vec2f;
 
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
 const MAX_TURN: f32 = 4.0;
@@ -53,10 +53,6 @@ fn vs_toy(in: Vertex) -> Surface {
   var clip = globals.clip_from_stage * vec4f(in.in_stage, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
   return Surface(clip, in.in_stage, in.normal, in.uv, in.color, in.physical_in_stage, in.physical_normal);
-}
-
-fn largest(c: vec3f) -> f32 {
-  return max(c.r, max(c.g, c.b));
 }
 
 // Whether the camera's colour at `texel` is of another material of the model.

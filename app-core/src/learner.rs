@@ -4,13 +4,15 @@ use crate::capture::Capture;
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Subject;
+use crate::grids::CellBuffers;
 use crate::knowledge::Knowledge;
 use crate::passes::detail::DetailInputs;
 use crate::passes::estimate::{EstimateInputs, Fineness};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
 use crate::passes::residual::ResidualInputs;
-use crate::pipeline::Passes;
+use crate::pipeline::{EstimatePasses, Passes};
+use crate::pool::PoolGrids;
 
 pub(crate) struct Learner<'a> {
     pub(crate) gpu: &'a Gpu,
@@ -68,37 +70,26 @@ impl Learner<'_> {
     /// What the receivers look like in the light, where plates do not show them.
     pub(crate) fn pool_lit(&self, encoder: &mut Encoder) {
         let (capture, knowledge) = (self.capture, self.knowledge);
-        let Some(pass) = &self.passes.estimate else {
+        let Some(pass) = self.estimate_passes() else {
             return;
         };
-        if !capture.plan.is_plate_estimated {
-            return;
-        }
         let inputs = LitInputs {
-            globals: &capture.globals,
-            solution: &knowledge.solution,
-            grids: &knowledge.grids,
-            cells: &knowledge.lit,
+            on: self.pool_grids(&knowledge.lit),
             frame: self.frame,
             evidence: &capture.evidence.view,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };
-        let n_receivers = capture.plan.n_receivers;
-        pass.lit.encode(self.gpu, encoder, &inputs, n_receivers);
-        let cells = (&knowledge.grids, &knowledge.lit.cells);
-        self.passes.fill.encode(self.gpu, encoder, cells, n_receivers);
+        pass.lit.encode(self.gpu, encoder, &inputs);
+        self.fill(encoder, &knowledge.lit);
     }
 
     /// Completes the plate, where plates do not show everything.
     pub(crate) fn estimate_plate(&self, encoder: &mut Encoder, fineness: Fineness) {
         let (capture, knowledge) = (self.capture, self.knowledge);
-        let (Some(pass), Some(target)) = (&self.passes.estimate, &capture.estimated) else {
+        let (Some(pass), Some(target)) = (self.estimate_passes(), &capture.estimated) else {
             return;
         };
-        if !capture.plan.is_plate_estimated {
-            return;
-        }
         let inputs = EstimateInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
@@ -136,21 +127,36 @@ impl Learner<'_> {
     pub(crate) fn pool_residual(&self, encoder: &mut Encoder) {
         let (capture, knowledge) = (self.capture, self.knowledge);
         let inputs = ResidualInputs {
-            globals: &capture.globals,
-            solution: &knowledge.solution,
-            grids: &knowledge.grids,
-            cells: &knowledge.residual,
+            on: self.pool_grids(&knowledge.residual),
             frame: self.frame,
             plate: &capture.plate().view,
             evidence: &capture.evidence.view,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };
-        let n_receivers = capture.plan.n_receivers;
-        self.passes
-            .residual
-            .encode(self.gpu, encoder, &inputs, n_receivers);
-        let cells = (&knowledge.grids, &knowledge.residual.cells);
-        self.passes.fill.encode(self.gpu, encoder, cells, n_receivers);
+        self.passes.residual.encode(self.gpu, encoder, &inputs);
+        self.fill(encoder, &knowledge.residual);
+    }
+
+    /// The passes that estimate a plate, where this view needs one.
+    fn estimate_passes(&self) -> Option<&EstimatePasses> {
+        let passes = self.passes.estimate.as_ref();
+        passes.filter(|_| self.capture.plan.is_plate_estimated)
+    }
+
+    fn pool_grids<'a>(&'a self, cells: &'a CellBuffers) -> PoolGrids<'a> {
+        PoolGrids {
+            globals: &self.capture.globals,
+            solution: &self.knowledge.solution,
+            grids: &self.knowledge.grids,
+            cells,
+            n_receivers: self.capture.plan.n_receivers,
+        }
+    }
+
+    fn fill(&self, encoder: &mut Encoder, cells: &CellBuffers) {
+        let filled = (&self.knowledge.grids, &cells.cells);
+        let n_receivers = self.capture.plan.n_receivers;
+        self.passes.fill.encode(self.gpu, encoder, filled, n_receivers);
     }
 }

@@ -34,6 +34,7 @@ mod passes;
 mod pipeline;
 mod plate_store;
 mod plates;
+mod pool;
 mod published;
 mod stage;
 mod standing;

@@ -25,6 +25,8 @@ macro_rules! wgsl {
 }
 
 const GLOBALS: &str = wgsl!("common/globals");
+const BETWEEN_CELLS: &str = wgsl!("common/between_cells");
+const CHANNELS: &str = wgsl!("common/channels");
 const CELLS: &str = wgsl!("common/cells");
 const DEPTH: &str = wgsl!("common/depth");
 const FIT: &str = wgsl!("common/fit");
@@ -36,6 +38,7 @@ const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const MOVED: &str = wgsl!("common/moved");
 const PIXEL: &str = wgsl!("common/pixel");
+const POOL: &str = wgsl!("common/pool");
 const PUBLISHED: &str = wgsl!("common/published");
 const SELF_SHADOW_MAPS: &str = wgsl!("common/self_shadow");
 const TOY_LIGHT: &str = wgsl!("common/toy_light");
@@ -83,7 +86,7 @@ pub(crate) const FIT_SOLVE: Shader = Shader {
 };
 pub(crate) const RESIDUAL: Shader = Shader {
     name: "residual",
-    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, wgsl!("residual")],
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, POOL, wgsl!("residual")],
     entry_points: &["cs_pool"],
 };
 pub(crate) const PLATE: Shader = Shader {
@@ -93,17 +96,27 @@ pub(crate) const PLATE: Shader = Shader {
 };
 pub(crate) const LIT: Shader = Shader {
     name: "lit",
-    parts: &[GLOBALS, FIT, MODEL, GRID, wgsl!("lit")],
+    parts: &[GLOBALS, FIT, MODEL, CHANNELS, GRID, POOL, wgsl!("lit")],
     entry_points: &["cs_pool"],
 };
 pub(crate) const ESTIMATE: Shader = Shader {
     name: "estimate",
-    parts: &[GLOBALS, FIT, MODEL, GRID, CELLS, FULLSCREEN, wgsl!("estimate")],
+    parts: &[
+        GLOBALS,
+        FIT,
+        MODEL,
+        CHANNELS,
+        GRID,
+        BETWEEN_CELLS,
+        CELLS,
+        FULLSCREEN,
+        wgsl!("estimate"),
+    ],
     entry_points: &["vs_fullscreen", "fs_complete"],
 };
 pub(crate) const FILL: Shader = Shader {
     name: "fill",
-    parts: &[GRID, wgsl!("fill")],
+    parts: &[GRID, BETWEEN_CELLS, wgsl!("fill")],
     entry_points: &["cs_pull_push"],
 };
 pub(crate) const MOTION: Shader = Shader {
@@ -113,7 +126,7 @@ pub(crate) const MOTION: Shader = Shader {
 };
 pub(crate) const DETAIL: Shader = Shader {
     name: "detail",
-    parts: &[GLOBALS, FIT, MODEL, PIXEL, FULLSCREEN, wgsl!("detail")],
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, CHANNELS, FULLSCREEN, wgsl!("detail")],
     entry_points: &["vs_fullscreen", "fs_separate"],
 };
 pub(crate) const TOY: Shader = Shader {
@@ -127,6 +140,7 @@ pub(crate) const TOY: Shader = Shader {
         MATERIAL,
         DEPTH,
         MOVED,
+        CHANNELS,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
@@ -139,7 +153,9 @@ pub(crate) const COMPOSITE: Shader = Shader {
         MODEL,
         PIXEL,
         GRID,
+        BETWEEN_CELLS,
         CELLS,
+        CHANNELS,
         FULLSCREEN,
         wgsl!("composite"),
     ],

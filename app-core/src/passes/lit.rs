@@ -2,23 +2,14 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::LIT;
-use crate::grids::CellBuffers;
 
-/// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
-const WORKGROUPS: u32 = 8;
+use crate::pool::{Pool, PoolGrids};
 
-pub(crate) struct Lit {
-    pipeline: wgpu::ComputePipeline,
-    linear: wgpu::Sampler,
-}
+pub(crate) struct Lit(Pool);
 
 pub(crate) struct LitInputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
-    pub(crate) solution: &'a wgpu::Buffer,
-    pub(crate) grids: &'a wgpu::Buffer,
-    pub(crate) cells: &'a CellBuffers,
+    pub(crate) on: PoolGrids<'a>,
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) evidence: &'a wgpu::TextureView,
     pub(crate) visibility: &'a wgpu::TextureView,
@@ -27,45 +18,12 @@ pub(crate) struct LitInputs<'a> {
 
 impl Lit {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self {
-            pipeline: gpu.compute_pipeline(&LIT, "cs_pool"),
-            linear: gpu.linear_sampler(),
-        }
+        Self(Pool::new(gpu, &LIT))
     }
 
-    /// Pools the lit colour on `n_receivers` grids.
-    pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, inputs: &LitInputs<'_>, n_receivers: u32) {
-        let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(
-            &layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
-        );
-        let own = gpu.bind(
-            &layout(GROUP_PASS),
-            &[
-                (0, inputs.grids.as_entire_binding()),
-                (1, inputs.cells.cells.as_entire_binding()),
-                (2, inputs.cells.kept.as_entire_binding()),
-                (3, view(inputs.frame)),
-                (4, view(inputs.evidence)),
-                (5, view(inputs.visibility)),
-                (6, view(inputs.ambient)),
-                (7, wgpu::BindingResource::Sampler(&self.linear)),
-            ],
-        );
-        encoder.compute(
-            LIT.name,
-            &self.pipeline,
-            &[(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)],
-            cell_workgroups(n_receivers),
-        );
+    /// Pools the lit colour.
+    pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, inputs: &LitInputs<'_>) {
+        let pictures = [inputs.frame, inputs.evidence, inputs.visibility, inputs.ambient];
+        self.0.encode(gpu, encoder, &inputs.on, &pictures);
     }
-}
-
-/// Workgroups for every cell of `n_receivers` grids.
-pub(crate) fn cell_workgroups(n_receivers: u32) -> [u32; 3] {
-    [WORKGROUPS, WORKGROUPS, n_receivers]
 }

@@ -155,8 +155,8 @@ impl Toy {
                 (0, view(inputs.appearance)),
                 (1, view(inputs.object_depth)),
                 (2, view(inputs.appearance_base)),
-                (4, view(inputs.appearance_lit)),
-                (5, offset.as_entire_binding()),
+                (3, view(inputs.appearance_lit)),
+                (4, offset.as_entire_binding()),
             ],
         )
     }

@@ -1,0 +1,40 @@
+// What is pooled in the cells of coarse grids, and added to what was known of them.
+//
+// A cell takes a fixed set of points of its receiver, whichever pixels show them, so that it does not swim when the
+// camera moves.
+
+// Cells of values times their certainty, all levels of the pyramids; pooling writes the finest.
+@group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
+// What was known before: sums of values times certainty, and of certainties. Those of the finest levels alone.
+@group(1) @binding(2) var<storage, read_write> kept: array<vec4f>;
+
+// Points of a cell along each side.
+const N_POINTS: u32 = 8u;
+// Share of a cell's points that must be evidence for the cell to count in full.
+const FULL_SHARE: f32 = 0.25;
+// What was known before weighs at most as much as this many frames.
+const MOST_KEPT: f32 = 8.0;
+
+// Nothing reaches a receiver whose cells have no extent.
+fn is_cell(receiver: u32, cell: vec2u) -> bool {
+  let grid = grids.grids[receiver];
+  return all(cell < grid.size) && grid.cell_m > 0.0;
+}
+
+// Point `k` of N_POINTS x N_POINTS in a cell.
+fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
+  let grid = grids.grids[receiver];
+  let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);
+  return ReceiverPoint(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
+}
+
+// Adds a cell's value, of which `n_points` points are evidence, to what was known.
+fn remember(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
+  let grid = grids.grids[receiver];
+  let certainty = min(1.0, n_points / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
+  let index = cell.y * grid.size.x + cell.x;
+  let slot = receiver * MAX_CELLS + index;
+  let known = kept[slot] + vec4f(value, 1.0) * certainty;
+  kept[slot] = known * min(1.0, MOST_KEPT / max(known.a, MOST_KEPT));
+  cells[grid.first_cell + index] = known / max(known.a, 1.0);
+}
