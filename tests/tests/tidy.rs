@@ -12,7 +12,7 @@ use app_core::region::PixelRect;
 use glam::UVec2;
 
 /// Passes whose code is in the module of another: the pass, and that module.
-const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit")];
+const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
 /// Modules among the passes that are none.
 const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
 /// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
