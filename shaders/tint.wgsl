@@ -1,7 +1,7 @@
 // What the toy's visible surface tells of its paint, summed in cells.
 //
-// Each pixel that shows one surface of the toy adds what it shows, and what base colour, gain and fitted light give there,
-// to the cell that its point lies in. Sums are of integers: their order does not matter.
+// Each pixel that shows one surface of the toy, and is not clipped, adds what it shows, and what base colour, gain and
+// fitted light give there, to the cell that its point lies in. Sums are of integers: their order does not matter.
 //
 // Reads: frame, evidence, the physical toy, the light on it. Writes: sums of the finest cells. Twin: reference/tint.rs.
 
@@ -35,14 +35,13 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(object_received, texel, 0));
   let expected = fit.gain.rgb * textureLoad(object_base, texel, 0).rgb * lit;
   let shown = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
-  let usable = is_evidence(shown, expected);
+  if largest(shown) > BRIGHTEST_EVIDENCE { return; }
   let place = tint_place(seen_in_stage(vec2f(texel) + 0.5, textureLoad(object_depth, texel, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
   let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
   for (var channel = 0u; channel < 3u; channel++) {
-    if usable[channel] == 0.0 { continue; }
     atomicAdd(&sums[first + channel], u32(shown[channel] * TINT_UNIT));
-    atomicAdd(&sums[first + 3u + channel], u32(expected[channel] * TINT_UNIT));
-    atomicAdd(&sums[first + 6u], 1u);
+    atomicAdd(&sums[first + 3u + channel], u32(min(expected[channel], 1.0) * TINT_UNIT));
   }
+  atomicAdd(&sums[first + 6u], 1u);
 }

@@ -1,6 +1,7 @@
 // The tint of the toy's paint in every cell, from cells around where its surface is hidden: pull-push in three dimensions.
 //
-// tint = sum shown / sum expected, never a division by one dark pixel. What was seen in views before counts, too.
+// tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest that carries evidence: paint that is nearly
+// black, as shown and as expected, is as its model says. What was seen in views before counts, too.
 // A material that was never seen keeps its model's colour. One workgroup does a material's grid.
 //
 // Reads: sums of the finest cells, what was known of them. Writes: tints, level after level, finest first; afterwards
@@ -13,8 +14,8 @@
 
 const WORKGROUP: u32 = 256u;
 const N_LEVELS: u32 = 5u;
-// Values in a cell, three a pixel, from which on it counts in full.
-const FULL_VALUES: f32 = 48.0;
+// Pixels in a cell from which on it counts in full.
+const FULL_PIXELS: f32 = 16.0;
 // What was known before weighs at most as much as this many frames.
 const MOST_KEPT: f32 = 8.0;
 
@@ -22,16 +23,22 @@ fn summed(first: u32) -> vec3f {
   return vec3f(f32(sums[first]), f32(sums[first + 1u]), f32(sums[first + 2u]));
 }
 
+// The tint times its certainty.
+fn recall(known: vec4f) -> vec4f {
+  return known / max(known.a, 1.0);
+}
+
 // Adds what a cell was seen to be to what was known of it.
 fn remember(slot: u32) -> vec4f {
   let first = N_TINT_SUMS * slot;
-  let shown = summed(first);
-  let expected = summed(first + 3u);
-  let tint = select(vec3f(1.0), shown / expected, expected > vec3f(0.0));
-  let certainty = min(1.0, f32(sums[first + 6u]) / FULL_VALUES);
+  let n_pixels = f32(sums[first + 6u]);
+  if n_pixels == 0.0 { return recall(kept[slot]); }
+  let dark = TINT_UNIT * DARKEST_EVIDENCE * n_pixels;
+  let tint = (summed(first) + dark) / (summed(first + 3u) + dark);
+  let certainty = min(1.0, n_pixels / FULL_PIXELS);
   let known = kept[slot] + vec4f(tint, 1.0) * certainty;
   kept[slot] = known * min(1.0, MOST_KEPT / max(known.a, MOST_KEPT));
-  return known / max(known.a, 1.0);
+  return recall(known);
 }
 
 fn level_first(grid: u32, level: u32) -> u32 {

@@ -26,7 +26,12 @@ pub(crate) struct Knowledge {
 
 impl Knowledge {
     /// Nothing known, on `grids`, of a toy of so many materials within a ball.
-    pub(crate) fn new(gpu: &Gpu, grids: Grids, n_lights: usize, (toy, n_materials): (&Sphere, usize)) -> Self {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        grids: Grids,
+        n_lights: usize,
+        (toy, n_materials): (&Sphere, usize),
+    ) -> Self {
         Self {
             solution: gpu.buffer(
                 "fit",

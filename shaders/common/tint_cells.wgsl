@@ -3,7 +3,7 @@
 // Cells along each side of a grid, and all of them.
 const TINT_SIDE: u32 = 16u;
 const TINT_CELLS: u32 = 4096u; // TINT_SIDE^3
-// Sums of a cell: what is shown and what is expected, three channels each, and how many values they are of.
+// Sums of a cell: what is shown and what is expected, three channels each, and how many pixels they are of.
 const N_TINT_SUMS: u32 = 7u;
 // Linear 1 in the sums.
 const TINT_UNIT: f32 = 32768.0;

@@ -124,12 +124,21 @@ pub(crate) const FILL: Shader = Shader {
 };
 pub(crate) const TINT: Shader = Shader {
     name: "tint",
-    parts: &[GLOBALS, FIT, TOY_RADIANCE, PIXEL, TINT_GRID, TINT_CELLS, wgsl!("tint")],
+    parts: &[
+        GLOBALS,
+        FIT,
+        TOY_RADIANCE,
+        PIXEL,
+        CHANNELS,
+        TINT_GRID,
+        TINT_CELLS,
+        wgsl!("tint"),
+    ],
     entry_points: &["cs_add"],
 };
 pub(crate) const TINT_FILL: Shader = Shader {
     name: "tint_fill",
-    parts: &[TINT_CELLS, BETWEEN_TINTS, wgsl!("tint_fill")],
+    parts: &[PIXEL, TINT_CELLS, BETWEEN_TINTS, wgsl!("tint_fill")],
     entry_points: &["cs_fill"],
 };
 pub(crate) const MOTION: Shader = Shader {

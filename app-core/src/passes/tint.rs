@@ -2,11 +2,11 @@
 
 use wgpu::BufferUsages;
 
-use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{N_TINT_SUMS, TINT_CELLS, TINT_PYRAMID, TINT_SIDE, TintGrid};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{TINT, TINT_FILL};
+use crate::gpu::{Gpu, GpuError};
 use crate::light_tiles::Sphere;
 use crate::plan::Plan;
 
@@ -29,7 +29,8 @@ pub(crate) struct Tints {
     sums: wgpu::Buffer,
     /// Sums of the finest cells over the frames so far.
     pub(crate) kept: wgpu::Buffer,
-    n_grids: u32,
+    /// What `grid` holds.
+    layout: TintGrid,
 }
 
 pub(crate) struct TintInputs<'a> {
@@ -48,7 +49,7 @@ impl Tints {
     /// Nothing known of a toy within `around`.
     pub(crate) fn new(gpu: &Gpu, around: &Sphere, n_materials: usize) -> Self {
         let n_grids = n_materials.clamp(1, MAX_GRIDS);
-        let grid = tint_grid(around, n_grids);
+        let layout = tint_grid(around, n_grids);
         let buffer = |label, n_bytes: usize, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -66,14 +67,25 @@ impl Tints {
                 BufferUsages::COPY_DST,
             ),
             kept: buffer("tints so far", TINT_CELLS * cell_bytes, BufferUsages::COPY_DST),
-            grid: gpu.uniform("tint grid", &grid),
-            n_grids: grid.n_materials,
+            grid: gpu.uniform("tint grid", &layout),
+            layout,
         }
+    }
+
+    /// Waits for the device and returns the grid, and the finest cells of each material.
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<(TintGrid, Vec<Vec<[f32; 4]>>), GpuError> {
+        let cells: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);
+        let pyramids = cells.chunks_exact(TINT_PYRAMID);
+        let finest = pyramids.map(|levels| levels[..TINT_CELLS].to_vec());
+        Ok((self.layout, finest.collect()))
     }
 }
 
 /// Cubes around all of the physical toy.
-#[allow(clippy::cast_possible_truncation, reason = "metres in f32 as shaders have them, and few grids")]
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "metres in f32 as shaders have them, and few grids"
+)]
 fn tint_grid(around: &Sphere, n_grids: usize) -> TintGrid {
     TintGrid {
         corner_in_stage: (around.centre - around.radius_m).as_vec3().to_array(),
@@ -119,7 +131,11 @@ impl Tint {
                 (8, stride.as_entire_binding()),
             ],
         );
-        let taken = inputs.plan.region.size_px.map(|side_px| side_px.div_ceil(stride_px));
+        let taken = inputs
+            .plan
+            .region
+            .size_px
+            .map(|side_px| side_px.div_ceil(stride_px));
         let workgroups = taken.map(|side| side.div_ceil(WORKGROUP_PX));
         let groups = [(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)];
         encoder.compute(TINT.name, &self.add, &groups, [workgroups.x, workgroups.y, 1]);
@@ -139,7 +155,7 @@ impl Tint {
             TINT_FILL.name,
             &self.fill,
             &[(GROUP_PASS, &own)],
-            [tints.n_grids, 1, 1],
+            [tints.layout.n_materials, 1, 1],
         );
     }
 }

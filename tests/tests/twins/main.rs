@@ -21,5 +21,6 @@ mod published;
 mod residual;
 mod run;
 mod self_shadow;
+mod tint;
 mod toy;
 mod unknown;
