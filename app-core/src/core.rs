@@ -64,10 +64,6 @@ pub enum CoreError {
     NoReceiver,
 }
 
-/// Energy of the lights' columns over that of the plate, below which too little real shadow was seen to tell the shares:
-/// at 0.006 a share was off by 0.1, at 0.024 and above by less than 0.01.
-const FAINT_CONTRAST: f32 = 0.01;
-
 /// The pipeline on a device: scene in, frames in, pictures out.
 pub struct Core {
     gpu: Gpu,

@@ -41,7 +41,7 @@ impl Knowledge {
             fit_sums: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("fit sums"),
                 size: kept_bytes(),
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
             grids: gpu.uniform("grids", &grids),

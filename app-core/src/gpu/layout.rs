@@ -12,6 +12,10 @@ pub const MAX_PLATES: usize = 4;
 pub const MAX_CELLS: usize = 64 * 64;
 /// Most unknowns of a fit: two, and one a light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
+/// Sums of a fit in one channel: the upper triangle of the normal equations row by row, and their right-hand side.
+pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
+/// Weight of the fit's priors against the energy of its first column.
+pub const PRIOR_WEIGHT: f32 = 1e-4;
 /// Most light points of one occlusion pass: 16 a colour target, four targets.
 pub const MAX_LIGHT_POINTS: usize = 64;
 

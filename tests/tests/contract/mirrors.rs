@@ -216,6 +216,7 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
 
 /// Fractional constants that go by one name on both sides, and the shader they are in.
 pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
+    ("fit_solve", "PRIOR_WEIGHT", layout::PRIOR_WEIGHT),
     ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
     ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
     ("composite", "UNKNOWN_NONE", unknown::UNKNOWN_NONE),

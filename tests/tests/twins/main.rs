@@ -22,5 +22,6 @@ mod residual;
 mod run;
 mod self_shadow;
 mod tint;
+mod told;
 mod toy;
 mod unknown;
