@@ -52,7 +52,10 @@ pub(crate) struct Capture {
     pub(crate) object_normal: Texture,
     pub(crate) object_received: Texture,
     pub(crate) object_depth: Texture,
-    pub(crate) evidence: Texture,
+    /// What the frame shows.
+    pub(crate) evident: Texture,
+    /// The same without the real shadow, where that is withheld.
+    pub(crate) withheld: Option<Texture>,
     /// What was photographed without the toy.
     pub(crate) photographed: Texture,
     /// The same, with an estimate where nothing was.
@@ -90,7 +93,10 @@ impl Capture {
             object_normal: target("object normal", NORMAL_FORMAT),
             object_received: target("object received", RECEIVED_FORMAT),
             object_depth: target("object depth", TextureFormat::Depth32Float),
-            evidence: target("evidence", EVIDENCE_FORMAT),
+            evident: target("evidence", EVIDENCE_FORMAT),
+            withheld: plan
+                .is_shadow_withheld
+                .then(|| target("withheld evidence", EVIDENCE_FORMAT)),
             photographed: target("plate", PLATE_FORMAT),
             estimated: plan
                 .is_plate_estimated
@@ -144,6 +150,11 @@ impl Capture {
             .write_buffer(&self.globals, 0, bytemuck::bytes_of(globals));
     }
 
+    /// What the frame may tell, but for the first fits.
+    pub(crate) fn evidence(&self) -> &Texture {
+        self.withheld.as_ref().unwrap_or(&self.evident)
+    }
+
     /// The plate that all passes read.
     pub(crate) fn plate(&self) -> &Texture {
         self.estimated
@@ -177,7 +188,7 @@ impl Capture {
         passes.object.encode(gpu, encoder, &inputs, &outputs);
         passes
             .evidence
-            .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
+            .encode(gpu, encoder, &self.object_depth.view, &self.evident.view);
         self.encode_visibilities(
             gpu,
             encoder,
@@ -211,8 +222,14 @@ impl Capture {
             passes,
             knowledge,
             frame: pictures.frame,
+            fit_evidence: if is_first {
+                &self.evident.view
+            } else {
+                &self.evidence().view
+            },
         };
         if !is_first {
+            learner.withhold(encoder);
             learner.estimate_plate(encoder, Fineness::Smooth);
             learner.fit_levels(encoder);
         }
@@ -227,6 +244,9 @@ impl Capture {
                 learner.estimate_plate(encoder, Fineness::Smooth);
                 learner.fit_receivers(encoder, is_first);
             }
+        }
+        if is_first {
+            learner.withhold(encoder);
         }
         learner.estimate_plate(encoder, Fineness::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
@@ -250,6 +270,7 @@ impl Capture {
             passes,
             knowledge,
             frame,
+            fit_evidence: &self.evidence().view,
         };
         learner.fit_levels(encoder);
         learner.pool_residual(encoder);
@@ -268,7 +289,7 @@ impl Capture {
             globals: &self.globals,
             solution: &knowledge.solution,
             frame,
-            evidence: &self.evidence.view,
+            evidence: &self.evident.view,
             object_depth: &self.object_depth.view,
             object_normal: &self.object_normal.view,
             object_received: &self.object_received.view,
@@ -285,7 +306,7 @@ impl Capture {
             globals: &self.globals,
             solution: &knowledge.solution,
             frame,
-            evidence: &self.evidence.view,
+            evidence: &self.evident.view,
             object_depth: &self.object_depth.view,
             object_normal: &self.object_normal.view,
             object_received: &self.object_received.view,

@@ -236,6 +236,19 @@ impl Core {
         Ok(())
     }
 
+    /// Keeps the real shadow from what follows, so that how well it is rebuilt can be measured on photographs that have no
+    /// truth: of the first frame it tells the fits, and nothing else; of later ones nothing. The physical pose is then made
+    /// like any other, and its photograph is its truth.
+    ///
+    /// Until another scene is set. A measuring aid for the presets of the model; `paper` and `flat` stay as they are.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    pub fn withhold_shadow(&mut self) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
+        Ok(())
+    }
+
     /// The model's plan of the latest retargeted frame, once there was one.
     #[must_use]
     pub fn plan(&self) -> Option<&Plan> {

@@ -24,6 +24,7 @@ use crate::passes::tint::Tint;
 use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
+use crate::passes::withhold::Withhold;
 use crate::plan::Plan;
 use crate::work::Work;
 
@@ -60,6 +61,7 @@ pub(crate) struct Passes {
     pub(crate) plate: Plate,
     pub(crate) estimate: Option<EstimatePasses>,
     pub(crate) fit: Fit,
+    pub(crate) withhold: Option<Withhold>,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
     pub(crate) detail: Option<Detail>,
@@ -90,6 +92,7 @@ impl Passes {
             plate: Plate::new(gpu),
             estimate: plan.is_plate_estimated.then(|| EstimatePasses::new(gpu)),
             fit: Fit::new(gpu),
+            withhold: plan.is_shadow_withheld.then(|| Withhold::new(gpu)),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
             detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
@@ -138,7 +141,7 @@ impl Passes {
             cells: &knowledge.residual.cells,
             frame,
             plate: &capture.plate().view,
-            evidence: &capture.evidence.view,
+            evidence: &capture.evidence().view,
             physical_visibility: &capture.physical.lights.view,
             physical_ambient: &capture.physical.ambient.view,
             visibility: &capture.shown.lights.view,

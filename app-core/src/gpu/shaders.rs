@@ -146,6 +146,11 @@ pub(crate) const MOTION: Shader = Shader {
     parts: &[GLOBALS, MOVED, wgsl!("motion")],
     entry_points: &["vs_physical", "fs_motion"],
 };
+pub(crate) const WITHHOLD: Shader = Shader {
+    name: "withhold",
+    parts: &[GLOBALS, FIT, MODEL, CHANNELS, FULLSCREEN, wgsl!("withhold")],
+    entry_points: &["vs_fullscreen", "fs_withhold"],
+};
 pub(crate) const DETAIL: Shader = Shader {
     name: "detail",
     parts: &[GLOBALS, FIT, MODEL, PIXEL, CHANNELS, FULLSCREEN, wgsl!("detail")],
@@ -250,6 +255,7 @@ pub const ALL: &[Shader] = &[
     FIT_SOLVE,
     RESIDUAL,
     FILL,
+    WITHHOLD,
     DETAIL,
     MOTION,
     TOY,

@@ -29,3 +29,4 @@ pub(crate) mod toy;
 pub(crate) mod toy_mesh;
 pub(crate) mod visibility;
 pub(crate) mod warp;
+pub(crate) mod withhold;

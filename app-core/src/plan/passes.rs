@@ -68,6 +68,7 @@ pub(super) const PASSES: &[PlannedPass] = &[
     capture("estimate"),
     capture("fit"),
     capture("fit_solve"),
+    capture("withhold"),
     capture("residual"),
     capture("fill"),
     capture("detail"),

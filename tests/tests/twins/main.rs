@@ -25,3 +25,4 @@ mod tint;
 mod told;
 mod toy;
 mod unknown;
+mod withheld;
