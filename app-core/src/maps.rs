@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use wgpu::TextureFormat;
 
-use crate::gpu::layout::{Fit, Globals};
+use crate::gpu::layout::{Fit, Globals, TintGrid};
 use crate::gpu::{Gpu, GpuError};
 use crate::published::Published;
 use crate::work::Model;
@@ -85,6 +85,15 @@ pub struct FloatMap {
     pub height: u32,
     /// `width * height` texels; channels that the map does not have are 0, alpha 1.
     pub texels: Vec<[f32; 4]>,
+}
+
+/// How the real toy's paint differs from its model's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TintMap {
+    /// Where the cells lie.
+    pub grid: TintGrid,
+    /// For each material that has a grid, the tint of its cells, x fastest, then y; alpha is 1.
+    pub materials: Vec<Vec<[f32; 4]>>,
 }
 
 impl Model {

@@ -57,9 +57,11 @@ fn inverse_diagonal(matrix: Matrix, n: usize) -> [f64; N_COLUMNS] {
         for pivot in (0..n).filter(|pivot| *pivot != last) {
             for row in (0..n).filter(|row| *row > pivot || *row == last) {
                 let factor = left[row][pivot] / left[pivot][pivot];
-                for column in 0..n {
-                    left[row][column] -= factor * left[pivot][column];
-                }
+                let above = left[pivot];
+                left[row]
+                    .iter_mut()
+                    .zip(above)
+                    .for_each(|(value, above)| *value -= factor * above);
             }
         }
         *inverse = 1.0 / left[last][last];

@@ -4,8 +4,8 @@ use bytemuck::Zeroable;
 
 use super::{Core, CoreError};
 use crate::frame::Warning;
-use crate::gpu::layout::{Fit, Grid, MAX_CELLS, TintGrid};
-use crate::maps::{FloatMap, Map};
+use crate::gpu::layout::{Fit, Grid, MAX_CELLS};
+use crate::maps::{FloatMap, Map, TintMap};
 use crate::resolution::light_resolution;
 use crate::stage::Stage;
 use crate::unknown::{Unknown, unknowns};
@@ -105,12 +105,11 @@ impl Core {
         residuals.collect()
     }
 
-    /// Waits for the device and returns the grid of the tints and, for each material that has one, the tint of each of its
-    /// cells, x fastest, then y; once there was a retargeted frame of the model.
+    /// Waits for the device and returns the tints of the toy's paint, once there was a retargeted frame of the model.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read_tints(&self) -> Result<Option<(TintGrid, Vec<Vec<[f32; 4]>>)>, CoreError> {
+    pub fn read_tints(&self) -> Result<Option<TintMap>, CoreError> {
         let Some(model) = self.model() else {
             return Ok(None);
         };

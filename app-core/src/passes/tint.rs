@@ -8,6 +8,7 @@ use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{TINT, TINT_FILL};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_tiles::Sphere;
+use crate::maps::TintMap;
 use crate::plan::Plan;
 
 /// Materials that have a grid of their own.
@@ -73,11 +74,14 @@ impl Tints {
     }
 
     /// Waits for the device and returns the grid, and the finest cells of each material.
-    pub(crate) fn read(&self, gpu: &Gpu) -> Result<(TintGrid, Vec<Vec<[f32; 4]>>), GpuError> {
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<TintMap, GpuError> {
         let cells: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);
         let pyramids = cells.chunks_exact(TINT_PYRAMID);
         let finest = pyramids.map(|levels| levels[..TINT_CELLS].to_vec());
-        Ok((self.layout, finest.collect()))
+        Ok(TintMap {
+            grid: self.layout,
+            materials: finest.collect(),
+        })
     }
 }
 

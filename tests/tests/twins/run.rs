@@ -5,8 +5,8 @@ use std::sync::{Arc, LazyLock};
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
-use app_core::gpu::layout::{Fit, ReceiverFit, TintGrid};
-use app_core::maps::{FloatMap, Map};
+use app_core::gpu::layout::{Fit, ReceiverFit};
+use app_core::maps::{FloatMap, Map, TintMap};
 use app_core::plan::Plan;
 use app_core::preset::Preset;
 use app_core::region::PixelRect;
@@ -41,7 +41,7 @@ pub(crate) struct Run {
     pub(crate) residuals: Vec<Raster<DVec4>>,
     pub(crate) grids: Vec<PlaneGrid>,
     /// Tints of the toy's paint, a grid a material.
-    pub(crate) tints: (TintGrid, Vec<Vec<[f32; 4]>>),
+    pub(crate) tints: TintMap,
     /// The lights' share of the plate's radiance.
     pub(crate) share: Raster<DVec3>,
     /// Codes of the finished picture, within the region.

@@ -54,12 +54,16 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
 fn tint_of_all_cells() {
     let constants = TintConstants::from_shader().unwrap();
     for run in runs() {
-        let (grid, cells) = &run.tints;
-        let expected = tints(grid, &seen(run), &constants);
-        let pairs = cells.iter().zip(&expected).flat_map(|(actual, expected)| {
-            let cells = actual.iter().zip(expected.cells());
-            cells.flat_map(|(actual, expected)| (0..4).map(|k| (f64::from(actual[k]), expected[k])))
-        });
+        let expected = tints(&run.tints.grid, &seen(run), &constants);
+        let pairs = run
+            .tints
+            .materials
+            .iter()
+            .zip(&expected)
+            .flat_map(|(actual, expected)| {
+                let cells = actual.iter().zip(expected.cells());
+                cells.flat_map(|(actual, expected)| (0..4).map(|k| (f64::from(actual[k]), expected[k])))
+            });
         // 16 bits of normal and light. Measured: 2.1e-4; a point at a wall between cells may fall on either side.
         Errors::between(pairs).check(&format!("{}, tints", run.stand.setup.name), (1e-3, 0.01), 0.05);
     }
