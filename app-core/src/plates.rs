@@ -179,7 +179,8 @@ fn shared_places<'a>(
     })
 }
 
-/// Where a camera sees a point of one of `receivers`, be it beyond its picture; none where another one hides it.
+/// Where a camera sees a point of one of `receivers`, be it beyond its picture; none where another one hides it, or the
+/// receiver itself, seen from behind.
 fn seen_at(view: &View, receivers: &[Receiver], receiver: &Receiver, in_plane: DVec2) -> Option<DVec2> {
     let at = view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
     let px = (at.z > 0.0).then(|| at.truncate() / at.z)?;
@@ -187,7 +188,7 @@ fn seen_at(view: &View, receivers: &[Receiver], receiver: &Receiver, in_plane: D
     std::ptr::eq(nearest, receiver).then_some(px)
 }
 
-/// The nearest receiver seen at a pixel, and where.
+/// The nearest receiver seen at a pixel, and where; none where that is its back.
 fn nearest_receiver<'a>(
     view: &View,
     receivers: &'a [Receiver],
@@ -202,6 +203,7 @@ fn nearest_receiver<'a>(
     });
     hits.max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, receiver, in_plane)| (receiver, in_plane))
+        .filter(|(receiver, _)| view.sees_front_of(receiver))
 }
 
 /// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright to tell.

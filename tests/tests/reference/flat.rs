@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::model::{ReceiverPlane, ReceiverPoint, ReceiverSolution, Region, Solution};
-use harness::reference::residual::PlaneGrid;
+use harness::reference::grid::PlaneGrid;
 
 /// Metres a pixel.
 pub(crate) const PIXEL_M: f64 = 0.01;

@@ -6,7 +6,7 @@ use app_core::core::Core;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
-use harness::reference::residual::PlaneGrid;
+use harness::reference::grid::PlaneGrid;
 
 use crate::photo::Photo;
 use crate::place::{SETUPS, Setup, Stand};

@@ -229,3 +229,27 @@ fn exposures_of_plates_are_matched_to_the_first() {
         );
     }
 }
+
+/// Low on either side of the toy, so that they look against each other, near and far.
+#[test]
+fn what_only_a_plate_from_the_other_side_shows_is_there() {
+    let setup = Setup {
+        has_wall: false,
+        lights: &WALL.lights[..1],
+        ..setup()
+    };
+    let here = Stand::seen_from(setup, DVec3::new(0.1, 0.12, 0.5));
+    for far in [1.0, 6.0] {
+        let across = Stand::seen_from(setup, far * DVec3::new(-0.1, 0.08, -0.5));
+        let plates = vec![plate_of(&across, &photo(&across).plate(&across))];
+        let (plate, rect, _) = plate_from(plates, Preset::Paper, &here);
+        let region = here.region(&rect);
+        let seen: Vec<UVec2> = points(&region)
+            .filter(|(_, point)| inside_px(&across, *point) > 0.1)
+            .map(|(texel, _)| texel)
+            .collect();
+        assert!(seen.len() > 1000, "{far}: {} are seen", seen.len());
+        let missing = seen.iter().filter(|texel| plate.at(**texel).w < 1.0).count();
+        assert_eq!(missing, 0, "{far}: of {}", seen.len());
+    }
+}

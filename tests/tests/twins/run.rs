@@ -13,9 +13,9 @@ use app_core::region::PixelRect;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2, Vec4};
+use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
 use harness::reference::raster::Raster;
-use harness::reference::residual::PlaneGrid;
 
 use crate::device::Device;
 use crate::errors::Errors;
