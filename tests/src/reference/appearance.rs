@@ -63,7 +63,9 @@ pub fn clean(seen: &Raster<Seen>, constants: &AppearanceConstants, texel: UVec2)
     }
     let last = seen.size().as_ivec2() - 1;
     let reach = -constants.reach_px..=constants.reach_px;
-    let offsets = reach.clone().flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
+    let offsets = reach
+        .clone()
+        .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
     let (mut sum, mut total) = (ToyPixel::default(), 0.0);
     for offset in offsets {
         // Beyond the border the last pixel stands for those that are not there.

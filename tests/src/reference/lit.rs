@@ -48,7 +48,10 @@ pub fn pool(
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for texel in grid.texels_of(region, receiver, cell, n_side) {
             let at = centre_px(texel);
-            let Some(point) = region.receiver_point(at).filter(|_| pictures.seen.at(texel) > 0.0) else {
+            let Some(point) = region
+                .receiver_point(at)
+                .filter(|_| pictures.seen.at(texel) > 0.0)
+            else {
                 continue;
             };
             let ambient = coarse_at(&pictures.ambient, region, at);

@@ -74,15 +74,19 @@ impl Viewpoint {
     fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let beyond = || {
             let in_plane = self.region.receivers[0].plane_point(region_px)?;
-            Some(ReceiverPoint { receiver: 0, in_plane })
+            Some(ReceiverPoint {
+                receiver: 0,
+                in_plane,
+            })
         };
         self.region.surface_point(region_px).or_else(beyond)
     }
 
     /// Where the camera sees a point; none where it does not face it, or another receiver is nearer there.
     fn sees(&self, point: ReceiverPoint) -> Option<DVec2> {
-        let inverse_depth =
-            |receiver: usize, px: DVec2| (self.region.receivers[receiver].plane_from_region_px * px.extend(1.0)).z;
+        let inverse_depth = |receiver: usize, px: DVec2| {
+            (self.region.receivers[receiver].plane_from_region_px * px.extend(1.0)).z
+        };
         let px = self.region.plane_of(point).region_px(point.in_plane)?;
         let own = inverse_depth(point.receiver, px);
         let is_free = self.region.surface_point(px).is_none_or(|nearest| {
@@ -118,7 +122,11 @@ pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], constants: &PlateConstant
             sum += weight * color.extend(1.0);
         }
     }
-    if shown.is_empty() { DVec4::ZERO } else { sum / sum.w }
+    if shown.is_empty() {
+        DVec4::ZERO
+    } else {
+        sum / sum.w
+    }
 }
 
 /// A plate that shows a point, and where.
@@ -152,8 +160,7 @@ fn candidate<'a>(
     let magnification = across.perp_dot(along).abs() / (2.0 * STEP_PX).powi(2);
     let there = DVec3::new(point.in_plane.x, 0.0, point.in_plane.y);
     let cosine = (own - there).normalize().dot((other - there).normalize());
-    let quality =
-        magnification.min(1.0) * cosine.max(constants.least_cosine).powf(constants.angle_power);
+    let quality = magnification.min(1.0) * cosine.max(constants.least_cosine).powf(constants.angle_power);
     (inside > 0.0).then_some(Candidate {
         plate,
         px,
@@ -180,5 +187,8 @@ fn sharp(picture: &Raster<DVec3>, px: DVec2) -> DVec3 {
 fn hermite([before, from, to, after]: [DVec3; 4], t: f64) -> DVec3 {
     let (leaving, arriving) = (0.5 * (to - before), 0.5 * (after - from));
     let (s, c) = (t * t, t * t * t);
-    (2.0 * c - 3.0 * s + 1.0) * from + (c - 2.0 * s + t) * leaving + (3.0 * s - 2.0 * c) * to + (c - s) * arriving
+    (2.0 * c - 3.0 * s + 1.0) * from
+        + (c - 2.0 * s + t) * leaving
+        + (3.0 * s - 2.0 * c) * to
+        + (c - s) * arriving
 }

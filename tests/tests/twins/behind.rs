@@ -8,8 +8,9 @@ use harness::reference::model::{Region, centre_px};
 
 use crate::composite::shows_toy;
 use crate::photo::Photo;
-use crate::place::{Setup, Stand, WALL};
+use crate::place::Stand;
 use crate::run::{core_on, input, plate_of, scene, texel_of};
+use crate::setups::{Setup, WALL};
 
 /// Over the toy, and over the wall from behind it.
 const BEFORE: DVec3 = DVec3::new(0.1, 0.3, 0.4);
@@ -68,7 +69,10 @@ fn nothing_moves_on_the_back_of_a_wall() {
             .iter()
             .filter(|texel| texel_of(&picture, **texel) != texel_of(&shots[1], **texel));
         let n_changed = changed.count();
-        eprintln!("{preset}: {n_changed} of {} pixels of the back changed", back.len());
+        eprintln!(
+            "{preset}: {n_changed} of {} pixels of the back changed",
+            back.len()
+        );
         assert_eq!(n_changed, 0, "{preset}");
     }
 }

@@ -8,8 +8,9 @@ use glam::{DVec3, UVec2};
 use crate::composite::shows_toy;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::place::{SETUPS, Setup, Stand, WALL};
+use crate::place::Stand;
 use crate::run::{core_on, input, scene, solution, texel_of};
+use crate::setups::{SETUPS, Setup, WALL};
 
 /// Codes of the picture of the shown pose, and those of a photograph of it, where neither pose hides the receivers.
 pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f64, f64)> {

@@ -3,7 +3,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod alone;
+mod appearance;
 mod behind;
+mod casters;
 mod composite;
 mod device;
 mod errors;
@@ -12,15 +15,21 @@ mod fill;
 mod fit;
 mod inject;
 mod levels;
+mod lit;
 mod moving;
+mod numbers;
 mod occlusion;
 mod overlap;
 mod photo;
 mod place;
 mod plate;
+mod plates;
 mod published;
 mod residual;
+mod resources;
 mod run;
+mod scrambled;
 mod self_shadow;
+mod setups;
 mod toy;
 mod unknown;

@@ -18,8 +18,9 @@ use harness::reference::sets::LightSet;
 
 use crate::device::Device;
 use crate::photo::photograph;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{crop, raster, scene};
+use crate::setups::{SETUPS, Setup};
 
 /// A core that has made one frame, what it was made from, and its work region.
 struct Shot {

@@ -23,8 +23,9 @@ use harness::reference::sets::LightSet;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{crop, raster, scene};
+use crate::setups::{SETUPS, Setup};
 
 /// What the device made of a setup by the published method.
 struct Published {

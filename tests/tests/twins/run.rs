@@ -20,7 +20,8 @@ use harness::reference::raster::Raster;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{code, photograph, unrounded_code};
-use crate::place::{SETUPS, Stand};
+use crate::place::Stand;
+use crate::setups::SETUPS;
 
 /// What the device made of a setup.
 pub(crate) struct Run {
