@@ -8,6 +8,7 @@ use glam::{DMat4, UVec2};
 
 use crate::capture::Pictures;
 use crate::clip_reach::ClipReach;
+use crate::exposure::match_frame;
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
@@ -22,7 +23,7 @@ use crate::plate_store::PlateStore;
 use crate::plates::{self, PlateChoice};
 use crate::preset::{Method, Preset};
 use crate::region::{BORDER_PX, Bounds, PixelRect, PlaneRect};
-use crate::scene::{Image, Light, PoseTime, Receiver, Scene};
+use crate::scene::{Image, Light, Plate, PoseTime, Receiver, Scene};
 use crate::standing::usable;
 use crate::toy::{ClipId, PosedMesh, ToyError};
 use crate::view::{Place, View};
@@ -188,15 +189,19 @@ impl Stage {
         )?;
         self.toy.shown.write(gpu, &self.posed);
         let change = self.ensure_learned(gpu, input, worked);
-        let Some(learned) = &mut self.learned else {
+        if let Some(learned) = &mut self.learned {
+            learned.image = Some(Arc::clone(&input.image));
+        }
+        let Some(learned) = &self.learned else {
             return Ok(());
         };
-        learned.image = Some(Arc::clone(&input.image));
         let work = &learned.work;
+        let exposed = (change >= Change::Picture && work.model().is_none())
+            .then(|| self.plate_views_at_exposure_of(input, worked));
         let pictures = Pictures {
             frame: &self.frame.view,
             plates: &self.plates.pictures.view,
-            plate_views: &worked.plate_views,
+            plate_views: exposed.as_ref().unwrap_or(&worked.plate_views),
         };
         work.encode(gpu, encoder, &self.toy, &pictures, change);
         if change < Change::View {
@@ -210,6 +215,17 @@ impl Stage {
         report.region = Some(work.region());
         report.warnings.extend(self.plate_warning(worked));
         Ok(())
+    }
+
+    /// The plates as the published method takes them; the model fits the exposure with the light.
+    fn plate_views_at_exposure_of(&self, input: &FrameInput, worked: &Worked) -> PlateViews {
+        let frame = Plate {
+            world_from_camera: input.world_from_camera,
+            image: Arc::clone(&input.image),
+        };
+        let plates = (&worked.choice.indices[..], &self.plates.gains[..]);
+        let gain = match_frame(&self.scene, &frame, plates, &worked.region);
+        plates::exposed(&worked.plate_views, gain)
     }
 
     /// Uploads the camera's picture unless it is the one that is there already.

@@ -90,7 +90,7 @@ impl Published {
         Ok(Self {
             region: stand.region(&rect),
             frame: crop(&frame, &rect, decoded),
-            plate: crop(&plate, &rect, decoded),
+            plate: map(Map::Plate)?.map(DVec4::truncate),
             eligible: map(Map::Eligible)?.map(|texel| light_set(texel.x)),
             warp: layers(&map(Map::Warp)?, rect.size_px),
             terms: map(Map::Terms)?,
