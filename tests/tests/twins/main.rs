@@ -11,6 +11,7 @@ mod composite;
 mod device;
 mod errors;
 mod estimate;
+mod exposure;
 mod fill;
 mod fit;
 mod inject;
