@@ -153,7 +153,8 @@ pub struct Solution {
     pub levels: Vec<DVec3>,
     /// What is learned of each receiver.
     pub receivers: Vec<ReceiverSolution>,
-    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor per light's cosine.
+    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor for what is received of
+    /// each light at the power it had for the plate.
     pub toy: Vec<DVec3>,
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::appearance::{AppearanceConstants, Seen, ToyPixel, clean};
-use harness::reference::fit::toy_columns;
+use harness::reference::fit::toy_radiance;
 use harness::reference::raster::Raster;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
@@ -57,19 +57,14 @@ fn errors(source: &str) -> Errors {
     let size = scene.rect.size_px;
     let toy = toy(size);
     let constants = AppearanceConstants::from_shader().unwrap();
-    let seen = Raster::from_fn(size, |at| {
-        let columns = toy_columns(toy.normal.at(at).truncate(), toy.received.at(at), 2);
-        let terms = columns.iter().zip(&scene.solution.toy);
-        let lit: DVec3 = terms.map(|(column, light)| *column * *light).sum();
-        Seen {
-            pixel: ToyPixel {
-                color: scene.image.at(scene.rect.origin_px + at).truncate(),
-                lit: lit.max(DVec3::ZERO),
-                base: toy.base.at(at).truncate(),
-            },
-            depth: toy.depth.at(at),
-            is_one_surface: toy.evidence.at(at).y == 1.0,
-        }
+    let seen = Raster::from_fn(size, |at| Seen {
+        pixel: ToyPixel {
+            color: scene.image.at(scene.rect.origin_px + at).truncate(),
+            lit: toy_radiance(&scene.solution, toy.normal.at(at).truncate(), toy.received.at(at)),
+            base: toy.base.at(at).truncate(),
+        },
+        depth: toy.depth.at(at),
+        is_one_surface: toy.evidence.at(at).y == 1.0,
     });
     let found = Raster::from_fn(size, |texel| clean(&seen, &constants, texel));
     let n_none = found.texels().iter().filter(|pixel| pixel.is_none()).count();
@@ -126,6 +121,7 @@ fn a_fault_in_the_appearance_is_found() {
         ("if here > 0.0 { return own; }", ""),
         ("max(sum, vec3f(0.0))", "sum"),
         ("* received[i]", "* received[0]"),
+        ("fit.level[i].rgb * received", "received"),
     ];
     check_faults("appearance", &faults, ALLOWED, errors);
 }

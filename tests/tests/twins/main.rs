@@ -30,6 +30,7 @@ mod residual;
 mod resources;
 mod run;
 mod scrambled;
+mod search;
 mod self_shadow;
 mod setups;
 mod toy;

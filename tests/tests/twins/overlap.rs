@@ -1,7 +1,5 @@
 //! Shadows of two lights that the real ones tell about, fully or not: the published method on injected visibilities.
 
-use std::sync::Arc;
-
 use app_core::core::Core;
 use app_core::frame::{FrameInput, UnseenShadow, Warning};
 use app_core::gpu::AdapterChoice;
@@ -9,7 +7,6 @@ use app_core::inject::InjectedVisibility;
 use app_core::maps::{FloatMap, Map};
 use app_core::preset::{Method, PUBLISHED, Preset};
 use app_core::region::PixelRect;
-use app_core::scene::Image;
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::eligible::masks;
@@ -26,7 +23,6 @@ use crate::setups::{SETUPS, Setup};
 struct Shot {
     core: Core,
     input: FrameInput,
-    plate: Arc<Image>,
     region: PixelRect,
 }
 
@@ -47,12 +43,7 @@ impl Shot {
         let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
         core.set_scene(scene(&stand, &plate), preset).unwrap();
         let region = core.frame(&input).unwrap().region.unwrap();
-        Self {
-            core,
-            input,
-            plate,
-            region,
-        }
+        Self { core, input, region }
     }
 
     fn map(&self, map: Map) -> FloatMap {

@@ -59,6 +59,12 @@ impl Device {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
+    /// Whole numbers in one channel.
+    pub(crate) fn labels(&self, labels: &Raster<u8>) -> wgpu::TextureView {
+        let texture = self.texture(labels.size(), 1, wgpu::TextureFormat::R8Uint, labels.texels());
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
     fn texture(
         &self,
         size: UVec2,
