@@ -8,6 +8,7 @@ pub mod appearance;
 pub mod box_filter;
 pub mod census;
 pub mod composite;
+pub mod detail;
 pub mod eligible;
 pub mod estimate;
 pub mod fill;

@@ -8,6 +8,7 @@ mod appearance;
 mod behind;
 mod casters;
 mod composite;
+mod detail;
 mod device;
 mod errors;
 mod estimate;
