@@ -2,6 +2,7 @@
 
 use app_core::core::Core;
 use app_core::maps::Map;
+use app_core::plan::Path;
 use app_core::preset::Preset;
 use app_core::region::PixelRect;
 use app_core::scene::Scene;
@@ -64,8 +65,11 @@ fn plates_of_the_published_method_follow_each_picture() {
             };
             for preset in [Preset::Paper, Preset::Flat] {
                 let mut core = core_on(with_plates.clone(), preset).unwrap();
-                for (frame, gain) in frames.iter().zip(GAINS) {
-                    let rect = core.frame(&input(&here, frame)).unwrap().region.unwrap();
+                for (index, (frame, gain)) in frames.iter().zip(GAINS).enumerate() {
+                    let report = core.frame(&input(&here, frame)).unwrap();
+                    let path = if index == 0 { Path::Capture } else { Path::Frame };
+                    assert!(report.ran.contains(&(path, "plate")), "{:?}", report.ran);
+                    let rect = report.region.unwrap();
                     let exposure = exposure(&core, &here, &photo, &rect);
                     let off = (exposure / gain - 1.0).abs().max_element();
                     let name = format!("{half_extent_m:?}, {what}, {preset}");

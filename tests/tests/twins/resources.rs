@@ -59,9 +59,10 @@ impl Device {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Whole numbers in one channel.
-    pub(crate) fn labels(&self, labels: &Raster<u8>) -> wgpu::TextureView {
-        let texture = self.texture(labels.size(), 1, wgpu::TextureFormat::R8Uint, labels.texels());
+    /// Whole numbers in two channels.
+    pub(crate) fn labels(&self, labels: &Raster<[u8; 2]>) -> wgpu::TextureView {
+        let bytes = labels.texels().as_flattened();
+        let texture = self.texture(labels.size(), 1, wgpu::TextureFormat::Rg8Uint, bytes);
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 

@@ -106,7 +106,7 @@ fn pairs(source: &str) -> [Vec<(f64, f64)>; 2] {
     };
     let maps = [
         layers.create_view(&array),
-        device.labels(&eligible),
+        device.labels(&eligible.map(|label| [label, 0])),
         device.map(&image),
         device.map(&plate),
     ];
