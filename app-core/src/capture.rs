@@ -20,6 +20,7 @@ use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutp
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::plate::PLATE_FORMAT;
 use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
+use crate::passes::tint::TintInputs;
 use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
@@ -279,6 +280,18 @@ impl Capture {
             base: &self.appearance_base.view,
         };
         passes.appearance.encode(gpu, encoder, &inputs, &outputs);
+        let inputs = TintInputs {
+            plan: &self.plan,
+            globals: &self.globals,
+            solution: &knowledge.solution,
+            frame,
+            evidence: &self.evidence.view,
+            object_depth: &self.object_depth.view,
+            object_normal: &self.object_normal.view,
+            object_received: &self.object_received.view,
+            object_base: &self.object_base.view,
+        };
+        passes.tint.encode(gpu, encoder, &inputs, &knowledge.tints);
     }
 
     /// Encodes the shadow that the toy casts on itself in a pose.

@@ -20,6 +20,7 @@ use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
 use crate::passes::self_shadow::SelfShadow;
+use crate::passes::tint::Tint;
 use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
@@ -53,6 +54,7 @@ pub(crate) struct Passes {
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
+    pub(crate) tint: Tint,
     pub(crate) lights: Vec<VisibilityPasses>,
     pub(crate) ambient: VisibilityPasses,
     pub(crate) plate: Plate,
@@ -77,6 +79,7 @@ impl Passes {
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
+            tint: Tint::new(gpu),
             lights: plan
                 .lights
                 .iter()
@@ -125,6 +128,7 @@ impl Passes {
             object_depth: &capture.object_depth.view,
             appearance_base: &capture.appearance_base.view,
             self_shadow: &capture.shown_self_shadow,
+            tints: &knowledge.tints,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {

@@ -12,7 +12,7 @@ use app_core::region::PixelRect;
 use glam::UVec2;
 
 /// Passes whose code is in the module of another: the pass, and that module.
-const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit")];
+const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
 /// Passes that draw meshes or copy rather than compute: they have no twin.
 const DRAWING_PASSES: &[&str] = &["masks", "motion", "object", "present", "toy", "warp"];
 /// Modules among the passes that are none.

@@ -24,6 +24,7 @@ pub(crate) mod residual;
 pub(crate) mod retarget;
 pub(crate) mod search;
 pub(crate) mod self_shadow;
+pub(crate) mod tint;
 pub(crate) mod toy;
 pub(crate) mod toy_mesh;
 pub(crate) mod visibility;

@@ -83,6 +83,8 @@ pub(super) const PASSES: &[PlannedPass] = &[
     picture("fill"),
     picture("detail"),
     picture("appearance"),
+    picture("tint"),
+    picture("tint_fill"),
     frame("occlusion"),
     frame("visibility"),
     frame("self_shadow"),

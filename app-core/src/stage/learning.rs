@@ -166,7 +166,8 @@ impl Stage {
 
     fn model(&self, gpu: &Gpu, plan: Plan, worked: &Worked) -> Work {
         let globals = worked.view.globals(&plan.region, &self.place());
-        let knowledge = Knowledge::new(gpu, grids_over(&self.known_rects), self.lights.len());
+        let toy = (&self.toy.physical.around, self.toy.n_materials());
+        let knowledge = Knowledge::new(gpu, grids_over(&self.known_rects), self.lights.len(), toy);
         let points = self.lights.iter().zip(&plan.lights);
         let points = points
             .map(|(light, planned)| self.points_of(light, planned.n_points))

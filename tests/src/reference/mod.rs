@@ -27,6 +27,7 @@ pub mod retarget;
 pub mod search;
 pub mod self_shadow;
 pub mod sets;
+pub mod tint;
 pub mod visibility;
 
 use std::str::FromStr;

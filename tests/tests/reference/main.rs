@@ -13,4 +13,5 @@ mod pcss;
 mod plate;
 mod residual;
 mod search;
+mod tint;
 mod visibility;

@@ -36,5 +36,7 @@ mod scrambled;
 mod search;
 mod self_shadow;
 mod setups;
+mod tint;
+mod told;
 mod toy;
 mod unknown;
