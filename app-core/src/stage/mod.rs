@@ -8,7 +8,6 @@ use glam::{DMat4, UVec2};
 
 use crate::capture::Pictures;
 use crate::clip_reach::ClipReach;
-use crate::exposure::match_frame;
 use crate::frame::{FrameInput, FrameReport, Warning};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
@@ -23,7 +22,7 @@ use crate::plate_store::PlateStore;
 use crate::plates::{self, PlateChoice};
 use crate::preset::{Method, Preset};
 use crate::region::{BORDER_PX, Bounds, PixelRect, PlaneRect};
-use crate::scene::{Image, Light, Plate, PoseTime, Receiver, Scene};
+use crate::scene::{Image, Light, PoseTime, Receiver, Scene};
 use crate::standing::usable;
 use crate::toy::{ClipId, PosedMesh, ToyError};
 use crate::view::{Place, View};
@@ -215,17 +214,6 @@ impl Stage {
         report.region = Some(work.region());
         report.warnings.extend(self.plate_warning(worked));
         Ok(())
-    }
-
-    /// The plates as the published method takes them; the model fits the exposure with the light.
-    fn plate_views_at_exposure_of(&self, input: &FrameInput, worked: &Worked) -> PlateViews {
-        let frame = Plate {
-            world_from_camera: input.world_from_camera,
-            image: Arc::clone(&input.image),
-        };
-        let plates = (&worked.choice.indices[..], &self.plates.gains[..]);
-        let gain = match_frame(&self.scene, &frame, plates, &worked.region);
-        plates::exposed(&worked.plate_views, gain)
     }
 
     /// Uploads the camera's picture unless it is the one that is there already.
