@@ -7,6 +7,7 @@
 //
 // Reads: frame, evidence, the physical toy, the light on it. Writes: linear colour, alpha 1 where a colour was found;
 // radiance over base colour that the fit gives to the pixels it is from; their base colour.
+// Twin: reference/appearance.rs.
 
 @group(1) @binding(0) var frame: texture_2d<f32>;
 @group(1) @binding(1) var evidence: texture_2d<f32>;

@@ -4,7 +4,7 @@
 // a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not in
 // shadow keeps its pixels as they are.
 //
-// Reads: frame, plate, evidence, visibility, ambient. Writes: r, in plates.
+// Reads: frame, plate, evidence, visibility, ambient. Writes: r, in plates. Twin: reference/detail.rs.
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 

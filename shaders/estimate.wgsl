@@ -3,7 +3,7 @@
 // At first the estimate is smooth, so that the fit can find the shadow in it. Then a pixel that shows the receiver tells
 // its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into, stays smooth.
 // Reads: plate, frame, evidence, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
-// photographed, less where it is an estimate.
+// photographed, less where it is an estimate. Twin: reference/estimate.rs.
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var plate: texture_2d<f32>;

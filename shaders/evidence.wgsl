@@ -2,7 +2,7 @@
 // where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are evidence of neither.
-// Reads: depth of the physical toy. Writes: 0 or 1 each.
+// Reads: depth of the physical toy. Writes: 0 or 1 each. Twin: reference/evidence.rs.
 
 @group(1) @binding(0) var object_depth: texture_depth_2d;
 

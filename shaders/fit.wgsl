@@ -2,7 +2,7 @@
 //
 // Receiver: frame / gain = plate c (A + bounce (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
 // is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
-// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i max(n.l_i, 0) V_i), V_i with the toy's shadow on itself.
+// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i level_i max(n.l_i, 0) V_i), V_i with its shadow on itself.
 // Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
 // before. Sums run over pixels here and over workgroups in `fit_solve`.
@@ -130,7 +130,7 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   let received = textureLoad(object_received, texel, 0);
   eq.columns[0] = base[channel];
   eq.columns[1] = base[channel] * normal.y;
-  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * received[i]; }
+  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * fit.level[i][channel] * received[i]; }
   let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
   eq.weight = is_evidence(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }

@@ -2,6 +2,7 @@
 //
 // B = frame / (gain M) where the receiver is seen and little of its light is missing.
 // Reads: frame, evidence, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
+// Twin: reference/lit.rs.
 
 @group(1) @binding(3) var frame: texture_2d<f32>;
 @group(1) @binding(4) var evidence: texture_2d<f32>;

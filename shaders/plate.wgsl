@@ -3,7 +3,7 @@
 // Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
 // best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
 //
-// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point.
+// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. Twin: reference/plate.rs.
 // Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
 
 const MAX_PLATES: u32 = 4u;
@@ -35,17 +35,20 @@ const FEATHER_PX: f32 = 32.0;
 // Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is blurred.
 const ANGLE_POWER: f32 = 4.0;
 const CHOICE_POWER: f32 = 6.0;
+// Cosine of the angle from which a plate is no worse for being seen from farther round: it may be the only one.
+const LEAST_COSINE: f32 = 0.1;
 // Weight against that of the best below which a plate is not looked at.
 const LEAST_WEIGHT: f32 = 0.02;
 
 struct Candidate {
   plate_px: vec2f,
-  weight: f32,
+  // How well the plate saw the point: positive wherever it did.
+  quality: f32,
+  // 1 well inside the plate, 0 at its border.
+  inside: f32,
 }
 
-fn plate_px(k: u32, point: ReceiverPoint) -> vec3f {
-  return views.plates[k].plate_px_from_plane[point.receiver] * vec3f(point.in_plane, 1.0);
-}
+const UNSEEN: Candidate = Candidate(vec2f(0.0), 0.0, 0.0);
 
 fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
   return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
@@ -72,26 +75,30 @@ fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
   return false;
 }
 
-// How well plate `k` saw a point; `right` and `below` are those of its plane at the pixels beside.
-fn candidate(k: u32, point: ReceiverPoint, right: vec2f, below: vec2f) -> Candidate {
-  let at = plate_px(k, point);
-  if at.z <= 0.0 { return Candidate(vec2f(0.0), 0.0); }
+// Plate pixels per pixel here, by area, of which fewer than one lose detail: a homography of determinant D scales areas
+// by D / w^3, and two in a row by the product.
+fn detail(k: u32, point: ReceiverPoint, region_px: vec2f, plate_w: f32) -> f32 {
+  let here = globals.receivers[point.receiver].plane_from_region_px;
+  let here_w = (here * vec3f(region_px, 1.0)).z;
+  let there = views.plates[k].plate_px_from_plane[point.receiver];
+  let scale = determinant(here) / (here_w * here_w * here_w) * determinant(there) / (plate_w * plate_w * plate_w);
+  return min(abs(scale), 1.0);
+}
+
+// What plate `k` has of the point seen at `region_px`.
+fn candidate(k: u32, point: ReceiverPoint, region_px: vec2f) -> Candidate {
+  let at = views.plates[k].plate_px_from_plane[point.receiver] * vec3f(point.in_plane, 1.0);
+  if at.z <= 0.0 { return UNSEEN; }
   let px = at.xy / at.z;
   let size = vec2f(textureDimensions(plates));
   let to_border = min(px, size - px);
   let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
-  if inside == 0.0 || is_hidden(k, point) { return Candidate(px, 0.0); }
-  let at_right = plate_px(k, ReceiverPoint(point.receiver, right));
-  let at_below = plate_px(k, ReceiverPoint(point.receiver, below));
-  // The plane ends at the horizon.
-  if at_right.z <= 0.0 || at_below.z <= 0.0 { return Candidate(px, 0.0); }
-  let x = at_right.xy / at_right.z - px;
-  let y = at_below.xy / at_below.z - px;
-  // Plate pixels per pixel here: fewer than one lose detail.
-  let detail = min(abs(x.x * y.y - x.y * y.x), 1.0);
-  let cosine = dot(direction_to(views.plates[k].camera_in_plane[point.receiver], point.in_plane),
-    direction_to(views.camera_in_plane[point.receiver], point.in_plane));
-  return Candidate(px, inside * pow(detail * pow(max(cosine, 0.0), ANGLE_POWER), CHOICE_POWER));
+  let own = views.camera_in_plane[point.receiver];
+  let camera = views.plates[k].camera_in_plane[point.receiver];
+  let is_same_side = camera.y * own.y > 0.0;
+  if inside == 0.0 || !is_same_side || is_hidden(k, point) { return UNSEEN; }
+  let cosine = dot(direction_to(camera, point.in_plane), direction_to(own, point.in_plane));
+  return Candidate(px, detail(k, point, region_px, at.z) * pow(max(cosine, LEAST_COSINE), ANGLE_POWER), inside);
 }
 
 // Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
@@ -117,18 +124,13 @@ fn sharp_color(k: u32, px: vec2f) -> vec3f {
   return max(sum, vec3f(0.0)) * views.plates[k].gain.rgb;
 }
 
-// The receiver's point at a pixel; beyond all receivers the first one's plane goes on.
+// The point of a receiver's front or back at a pixel; beyond all receivers the first one's plane goes on.
 fn point_beyond(region_px: vec2f) -> ReceiverPoint {
-  let point = receiver_point(region_px);
+  let point = surface_point(region_px);
   if is_hit(point) { return point; }
   let p = globals.receivers[0].plane_from_region_px * vec3f(region_px, 1.0);
   if p.z <= 0.0 { return point; }
   return ReceiverPoint(0u, p.xy / p.z);
-}
-
-fn same_plane_point(receiver: u32, region_px: vec2f) -> vec2f {
-  let p = globals.receivers[receiver].plane_from_region_px * vec3f(region_px, 1.0);
-  return p.xy / p.z;
 }
 
 @fragment
@@ -139,20 +141,24 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   }
   let point = point_beyond(at.xy);
   if !is_hit(point) { return vec4f(0.0); }
-  let right = same_plane_point(point.receiver, at.xy + vec2f(1.0, 0.0));
-  let below = same_plane_point(point.receiver, at.xy + vec2f(0.0, 1.0));
   var candidates: array<Candidate, MAX_PLATES>;
+  var best_quality = 0.0;
+  for (var k = 0u; k < views.n_plates; k++) {
+    candidates[k] = candidate(k, point, at.xy);
+    best_quality = max(best_quality, candidates[k].quality);
+  }
+  if best_quality == 0.0 { return vec4f(0.0); }
+  // Against the best one, so that powers of what is poor do not underflow where there is nothing better.
+  var weights: array<f32, MAX_PLATES>;
   var best = 0.0;
   for (var k = 0u; k < views.n_plates; k++) {
-    candidates[k] = candidate(k, point, right, below);
-    best = max(best, candidates[k].weight);
+    weights[k] = candidates[k].inside * pow(candidates[k].quality / best_quality, CHOICE_POWER);
+    best = max(best, weights[k]);
   }
   var sum = vec4f(0.0);
   for (var k = 0u; k < views.n_plates; k++) {
-    let weight = candidates[k].weight;
-    if weight == 0.0 || weight < LEAST_WEIGHT * best { continue; }
-    sum += weight * vec4f(sharp_color(k, candidates[k].plate_px), 1.0);
+    if weights[k] == 0.0 || weights[k] < LEAST_WEIGHT * best { continue; }
+    sum += weights[k] * vec4f(sharp_color(k, candidates[k].plate_px), 1.0);
   }
-  if sum.a == 0.0 { return vec4f(0.0); }
   return vec4f(sum.rgb / sum.a, 1.0);
 }

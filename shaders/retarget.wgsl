@@ -6,7 +6,7 @@
 // seen of the others, and its colour that of the real shadow of just these lights (section 4.6).
 //
 // Reads: frame, plate, masks 3a and 3b, visibility of each light, shadow terms of each set. Writes: linear colour, opaque.
-// Source: Casas et al. 2018, Algorithm 1 and sections 3.4, 4.3, 4.4 and 4.6.
+// Twin: reference/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4, 4.3, 4.4 and 4.6.
 
 @group(1) @binding(0) var frame: texture_2d<f32>;
 @group(1) @binding(1) var plate: texture_2d<f32>;

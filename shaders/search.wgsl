@@ -68,15 +68,24 @@ fn closest_sets(wanted: u32, remaining: u32) -> u32 {
   return accepted;
 }
 
+// Rings around a point that have a part in the region; of those beyond, its farthest corner is on none.
+fn n_rings_around(at: vec2f) -> u32 {
+  let farthest_px = length(max(abs(at), abs(globals.region_size_px - at)));
+  return min(published.n_rings, u32(farthest_px / published.ring_step_px));
+}
+
 // Where the shadow of each light of the set came from, and rings around.
 fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
+  var n_rings = 0u;
   for (var light = 0u; light < globals.n_lights; light++) {
     if ((lights >> light) & 1u) == 0u { continue; }
-    let start = vec2i(floor(textureLoad(warp, texel, light, 0).xy));
+    let warped = textureLoad(warp, texel, light, 0).xy;
+    let start = vec2i(floor(warped));
     if is_eligible(start, wanted) { return Found(start, true, 0u); }
+    n_rings = max(n_rings, n_rings_around(warped));
   }
   var taps = 0u;
-  for (var ring = 1u; ring <= published.n_rings; ring++) {
+  for (var ring = 1u; ring <= n_rings; ring++) {
     var best = 1e9;
     var found = vec2i(0);
     for (var light = 0u; light < globals.n_lights; light++) {

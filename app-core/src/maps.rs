@@ -182,7 +182,7 @@ fn share_at(known: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     direct / total
 }
 
-/// The nearest receiver seen at a pixel, and the point of it.
+/// The nearest receiver seen at a pixel, and the point of it; none where that is its back.
 fn receiver_point(known: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
     let receivers = known.receivers.iter().take(known.n_receivers as usize);
     let hits = receivers.enumerate().filter_map(|(index, receiver)| {
@@ -198,6 +198,7 @@ fn receiver_point(known: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
     });
     hits.max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, index, in_plane)| (index, in_plane))
+        .filter(|(index, _)| known.seen_from_behind >> index & 1 == 0)
 }
 
 impl Published {

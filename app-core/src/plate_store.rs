@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use crate::exposure::match_plates;
 use crate::gpu::Gpu;
 use crate::gpu::layout::MAX_PLATES;
 use crate::gpu::texture::Texture;
-use crate::plates::match_exposures;
 use crate::scene::Scene;
 
 /// An array of plates.
@@ -25,7 +25,7 @@ impl PlateStore {
         Self {
             pictures,
             loaded: vec![None; n_layers],
-            gains: match_exposures(scene),
+            gains: match_plates(scene),
         }
     }
 

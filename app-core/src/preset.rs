@@ -141,7 +141,7 @@ pub struct PublishedSettings {
     pub ring_step_px: f32,
     /// Candidates of a ring.
     pub n_ring_directions: u32,
-    /// Rings until the search gives up.
+    /// Rings until the search gives up, if it has not left the region before.
     pub n_rings: u32,
     /// Half the side of the box filter, without its middle.
     pub box_radius_px: i32,

@@ -122,21 +122,15 @@ impl Published {
         }
     }
 
-    /// Encodes the plate of this view, and the masks of the physical pose.
-    pub(crate) fn encode_view(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
-        toy: &ToyMesh,
-        pictures: &Pictures<'_>,
-    ) {
-        self.passes.plate.encode(
-            gpu,
-            encoder,
-            &self.globals,
-            (pictures.plate_views, pictures.plates),
-            &self.plate.view,
-        );
+    /// Encodes the plate of this view, at the exposure of its picture.
+    pub(crate) fn encode_plate(&self, gpu: &Gpu, encoder: &mut Encoder, pictures: &Pictures<'_>) {
+        let plates = (pictures.plate_views, pictures.plates);
+        let plate = &self.passes.plate;
+        plate.encode(gpu, encoder, &self.globals, plates, &self.plate.view);
+    }
+
+    /// Encodes the masks of the physical pose.
+    pub(crate) fn encode_view(&self, gpu: &Gpu, encoder: &mut Encoder, toy: &ToyMesh) {
         self.passes
             .masks
             .encode(gpu, encoder, &self.globals, toy, &self.masks.view);

@@ -77,6 +77,19 @@ impl View {
             .truncate()
     }
 
+    /// Whether the camera's centre is before a receiver, which then shows its front.
+    #[must_use]
+    pub fn sees_front_of(&self, receiver: &Receiver) -> bool {
+        self.camera_in(&receiver.world_from_plane).y > 0.0
+    }
+
+    /// Bit k is 1 where receiver k is seen from behind.
+    fn seen_from_behind(&self, receivers: &[Receiver]) -> u32 {
+        let receivers = receivers.iter().take(MAX_RECEIVERS).enumerate();
+        let behind = receivers.filter(|(_, receiver)| !self.sees_front_of(receiver));
+        behind.fold(0, |seen, (index, _)| seen | 1 << index)
+    }
+
     /// Image position of a homogeneous point, as (u w, v w, w) with w its depth in metres.
     pub(crate) fn image_px_from(&self, world_from_space: &DMat4, point: DVec4) -> DVec3 {
         let at = self.camera_from_world * (*world_from_space * point);
@@ -165,7 +178,7 @@ impl View {
             region_size_px: rect.size_px.as_vec2().to_array(),
             region_origin_px: rect.origin_px.as_vec2().to_array(),
             n_receivers: count(place.receivers.len(), MAX_RECEIVERS),
-            _pad_0: 0,
+            seen_from_behind: self.seen_from_behind(place.receivers),
             _pad_1: [0; 2],
         }
     }

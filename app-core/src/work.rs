@@ -80,11 +80,15 @@ impl Work {
         match self {
             Self::Model(model) => model.encode(gpu, encoder, toy, pictures, change),
             Self::Published(published) => {
-                encoder.path = Path::Capture;
                 if change >= Change::View {
-                    published.encode_view(gpu, encoder, toy, pictures);
+                    encoder.path = Path::Capture;
+                    published.encode_plate(gpu, encoder, pictures);
+                    published.encode_view(gpu, encoder, toy);
                 }
                 encoder.path = Path::Frame;
+                if change == Change::Picture {
+                    published.encode_plate(gpu, encoder, pictures);
+                }
                 published.encode_frame(gpu, encoder, toy, pictures);
             }
         }

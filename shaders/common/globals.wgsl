@@ -34,7 +34,8 @@ struct Globals {
   // Top left corner of the region in the camera image.
   region_origin_px: vec2f,
   n_receivers: u32,
-  _pad_0: u32,
+  // Bit k is 1 where receiver k is seen from behind.
+  seen_from_behind: u32,
   _pad_1: vec2u,
 }
 
@@ -46,9 +47,11 @@ struct ReceiverPoint {
   in_plane: vec2f,
 }
 
-// The nearest receiver seen at a pixel.
-fn receiver_point(region_px: vec2f) -> ReceiverPoint {
-  var nearest = ReceiverPoint(MAX_RECEIVERS, vec2f(0.0));
+const NO_RECEIVER: ReceiverPoint = ReceiverPoint(MAX_RECEIVERS, vec2f(0.0));
+
+// The nearest receiver seen at a pixel, from whichever side.
+fn surface_point(region_px: vec2f) -> ReceiverPoint {
+  var nearest = NO_RECEIVER;
   var inverse_depth = 0.0;
   for (var k = 0u; k < globals.n_receivers; k++) {
     let p = globals.receivers[k].plane_from_region_px * vec3f(region_px, 1.0);
@@ -59,6 +62,13 @@ fn receiver_point(region_px: vec2f) -> ReceiverPoint {
       inverse_depth = p.z;
     }
   }
+  return nearest;
+}
+
+// The same, but none where that is the back of it: of the front alone it is known what light falls there.
+fn receiver_point(region_px: vec2f) -> ReceiverPoint {
+  let nearest = surface_point(region_px);
+  if ((globals.seen_from_behind >> nearest.receiver) & 1u) != 0u { return NO_RECEIVER; }
   return nearest;
 }
 

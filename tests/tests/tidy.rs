@@ -13,6 +13,8 @@ use glam::UVec2;
 
 /// Passes whose code is in the module of another: the pass, and that module.
 const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
+/// Passes that draw meshes or copy rather than compute: they have no twin.
+const DRAWING_PASSES: &[&str] = &["masks", "motion", "object", "present", "toy", "warp"];
 /// Modules among the passes that are none.
 const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
 /// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
@@ -202,12 +204,11 @@ fn shaders_say_what_they_are_and_what_they_read_and_write() {
 #[test]
 fn every_twin_that_a_shader_names_exists() {
     let twins = |file: &Source| -> Vec<String> {
-        let lines = file
-            .text
-            .lines()
-            .filter_map(|line| line.strip_prefix("// Twin: "));
-        lines
-            .map(|line| line.split(". ").next().unwrap().trim_end_matches('.').to_owned())
+        let heads = file.text.lines().filter(|line| line.starts_with("//"));
+        let named = heads.filter_map(|line| Some(line.split_once("Twin: ")?.1.to_owned()));
+        // "reference/….rs", whatever follows.
+        named
+            .map(|twin| twin.split_inclusive(".rs").next().unwrap_or_default().to_owned())
             .collect()
     };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -216,6 +217,9 @@ fn every_twin_that_a_shader_names_exists() {
         "names a twin that is not there",
         |file| twins(file).iter().any(|twin| !folder.join(twin).is_file()),
     ));
+    assert_none(wrong_files(pass_files(), "computes and has no twin", |file| {
+        twins(file).is_empty() != DRAWING_PASSES.contains(&file.stem())
+    }));
 }
 
 #[test]

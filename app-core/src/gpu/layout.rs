@@ -66,7 +66,7 @@ pub struct Globals {
     pub region_size_px: [f32; 2],
     pub region_origin_px: [f32; 2],
     pub n_receivers: u32,
-    pub _pad_0: u32,
+    pub seen_from_behind: u32,
     pub _pad_1: [u32; 2],
 }
 

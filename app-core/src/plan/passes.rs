@@ -40,12 +40,22 @@ pub struct PlannedPass {
     pub name: &'static str,
     /// Its path.
     pub path: Path,
+    /// Whether it also follows each new picture of a known view, as part of the frame path.
+    pub follows_picture: bool,
 }
 
 const fn capture(name: &'static str) -> PlannedPass {
     PlannedPass {
         name,
         path: Path::Capture,
+        follows_picture: false,
+    }
+}
+
+const fn picture(name: &'static str) -> PlannedPass {
+    PlannedPass {
+        follows_picture: true,
+        ..capture(name)
     }
 }
 
@@ -53,6 +63,7 @@ const fn frame(name: &'static str) -> PlannedPass {
     PlannedPass {
         name,
         path: Path::Frame,
+        follows_picture: true,
     }
 }
 
@@ -66,15 +77,15 @@ pub(super) const PASSES: &[PlannedPass] = &[
     capture("plate"),
     capture("lit"),
     capture("estimate"),
-    capture("fit"),
-    capture("fit_solve"),
+    picture("fit"),
+    picture("fit_solve"),
     capture("withhold"),
-    capture("residual"),
-    capture("fill"),
-    capture("detail"),
-    capture("appearance"),
-    capture("tint"),
-    capture("tint_fill"),
+    picture("residual"),
+    picture("fill"),
+    picture("detail"),
+    picture("appearance"),
+    picture("tint"),
+    picture("tint_fill"),
     frame("occlusion"),
     frame("visibility"),
     frame("self_shadow"),
@@ -86,7 +97,7 @@ pub(super) const PASSES: &[PlannedPass] = &[
 
 /// The published method, in order.
 pub(super) const PUBLISHED_PASSES: &[PlannedPass] = &[
-    capture("plate"),
+    picture("plate"),
     capture("masks"),
     capture("warp"),
     capture("pcss"),
@@ -99,17 +110,6 @@ pub(super) const PUBLISHED_PASSES: &[PlannedPass] = &[
     frame("retarget"),
     frame("present"),
 ];
-/// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &[
-    "fit",
-    "fit_solve",
-    "residual",
-    "fill",
-    "detail",
-    "appearance",
-    "tint",
-    "tint_fill",
-];
 /// What a scene does without when one plate shows all of it.
 pub(super) const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.
@@ -117,13 +117,13 @@ pub(super) const SAMPLING_PASSES: &[&str] = &["census", "search", "box_filter"];
 
 /// Which of the planned passes run when that much is new, all but `present`, and on which path.
 ///
-/// A new picture of a known view needs the toy's colours and the light's levels anew: these count as the frame's.
+/// What a new picture of a known view needs anew, such as the toy's colours and the light's levels, counts as the frame's.
 pub fn runs(passes: &[PlannedPass], change: Change) -> impl Iterator<Item = (Path, &'static str)> + '_ {
     passes
         .iter()
         .filter(|pass| pass.name != "present")
         .filter_map(move |pass| {
-            let is_pictures = change == Change::Picture && PICTURE_PASSES.contains(&pass.name);
+            let is_pictures = change == Change::Picture && pass.follows_picture;
             if pass.path == Path::Frame || change >= Change::View {
                 Some((pass.path, pass.name))
             } else {

@@ -1,13 +1,16 @@
 //! Makes what was learned fit the frame: starts from nothing, follows the camera, or leaves it as it is.
 
 use std::mem;
+use std::sync::Arc;
 
 use glam::UVec2;
 
 use super::{Learned, Stage, Worked, is_same_image};
 use crate::capture::Capture;
+use crate::exposure::match_frame;
 use crate::frame::{FrameInput, Warning};
 use crate::gpu::Gpu;
+use crate::gpu::layout::PlateViews;
 use crate::grids::{grids_over, holds};
 use crate::knowledge::Knowledge;
 use crate::light_points::light_points;
@@ -17,7 +20,7 @@ use crate::plates::{self, SAME_CAMERA};
 use crate::preset::{Method, PublishedSettings, Settings};
 use crate::published::{self, Published};
 use crate::region::{PixelRect, PlaneRect};
-use crate::scene::Light;
+use crate::scene::{Light, Plate};
 use crate::work::{Model, Work};
 
 /// Sizes of the region under a moving camera, so that it keeps one for a while.
@@ -169,6 +172,17 @@ impl Stage {
         }
         let share = worked.plate_share;
         (share < 1.0).then_some(Warning::PlatePartial { share })
+    }
+
+    /// The plates as the published method takes them; the model fits the exposure with the light.
+    pub(super) fn plate_views_at_exposure_of(&self, input: &FrameInput, worked: &Worked) -> PlateViews {
+        let frame = Plate {
+            world_from_camera: input.world_from_camera,
+            image: Arc::clone(&input.image),
+        };
+        let plates = (&worked.choice.indices[..], &self.plates.gains[..]);
+        let gain = match_frame(&self.scene, &frame, plates, &worked.region);
+        plates::exposed(&worked.plate_views, gain)
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, worked: &Worked) -> Work {

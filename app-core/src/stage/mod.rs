@@ -196,15 +196,19 @@ impl Stage {
         )?;
         self.toy.shown.write(gpu, &self.posed);
         let change = self.ensure_learned(gpu, input, worked);
-        let Some(learned) = &mut self.learned else {
+        if let Some(learned) = &mut self.learned {
+            learned.image = Some(Arc::clone(&input.image));
+        }
+        let Some(learned) = &self.learned else {
             return Ok(());
         };
-        learned.image = Some(Arc::clone(&input.image));
         let work = &learned.work;
+        let exposed = (change >= Change::Picture && work.model().is_none())
+            .then(|| self.plate_views_at_exposure_of(input, worked));
         let pictures = Pictures {
             frame: &self.frame.view,
             plates: &self.plates.pictures.view,
-            plate_views: &worked.plate_views,
+            plate_views: exposed.as_ref().unwrap_or(&worked.plate_views),
         };
         work.encode(gpu, encoder, &self.toy, &pictures, change);
         if change < Change::View {

@@ -2,10 +2,10 @@
 
 use glam::{DVec3, DVec4, UVec2};
 
+use super::grid::PlaneGrid;
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::residual::PlaneGrid;
-use super::{ConstantError, shader_constant};
+use super::{ConstantError, shader_constant, smoothstep};
 
 /// What the shader fixes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,8 +90,7 @@ pub fn receiver_color(
     let change = (after - before).abs().max_element();
 
     let grid = &shown.grids[point.receiver];
-    let pooled =
-        shown.residuals[point.receiver].bilinear((point.in_plane - grid.origin_in_plane) / grid.cell_m);
+    let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
     let unknown = smoothstep(
         constants.unknown_none,
@@ -130,10 +129,4 @@ fn shadow_likeness(residual: DVec3, constants: &CompositeConstants) -> f64 {
         return 0.0;
     }
     smoothstep(constants.object_evenness, constants.shadow_evenness, least / most)
-}
-
-/// Hermite step from 0 at `low` to 1 at `high`.
-fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

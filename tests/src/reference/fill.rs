@@ -4,8 +4,8 @@
 
 use glam::{DVec3, DVec4, UVec2};
 
+use super::grid::Cell;
 use super::raster::Raster;
-use super::residual::Cell;
 use super::{ConstantError, shader_constant};
 
 /// Number of levels that the shader always runs, of which the last may all be of one cell.
@@ -21,7 +21,7 @@ pub fn n_levels_of_shader() -> Result<u32, ConstantError> {
 pub fn fill(cells: &Raster<Cell>, n_levels: u32) -> Raster<DVec3> {
     let finest = Raster::from_fn(cells.size(), |at| {
         let cell = cells.at(at);
-        (cell.residual * cell.certainty).extend(cell.certainty)
+        (cell.value * cell.certainty).extend(cell.certainty)
     });
     push(finest, n_levels - 1).map(DVec4::truncate)
 }

@@ -307,9 +307,9 @@ fn toy_equations(
     for sample in samples {
         let (frame, base) = (sample.frame[channel], sample.base[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, region.lights.len())
+        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.levels)
             .into_iter()
-            .map(|column| base * column)
+            .map(|column| base * column[channel])
             .collect();
         let mut weight = constants.evidence.holds(frame, frame);
         if is_reweighted {
@@ -325,13 +325,25 @@ fn toy_equations(
     equations
 }
 
-/// Twin of `common/toy_radiance.wgsl`: constant, vertical gradient, and what is received of each light.
+/// What the light on the toy is made of: constant, vertical gradient, and what is received of each light at its level.
 #[must_use]
-pub fn toy_columns(normal: DVec3, received: DVec4, n_lights: usize) -> Vec<f64> {
-    [1.0, normal.y]
+pub fn toy_columns(normal: DVec3, received: DVec4, levels: &[DVec3]) -> Vec<DVec3> {
+    let lights = levels.iter().zip(received.to_array());
+    [DVec3::ONE, DVec3::splat(normal.y)]
         .into_iter()
-        .chain(received.to_array().into_iter().take(n_lights))
+        .chain(lights.map(|(level, received)| *level * received))
         .collect()
+}
+
+/// Twin of `common/toy_radiance.wgsl`: radiance of a surface of the toy over its base colour and the gain.
+#[must_use]
+pub fn toy_radiance(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
+    let columns = toy_columns(normal, received, &solution.levels);
+    let terms = columns.iter().zip(&solution.toy);
+    terms
+        .map(|(column, light)| *column * *light)
+        .sum::<DVec3>()
+        .max(DVec3::ZERO)
 }
 
 /// 1 for no residual, a half for one of `scale`.

@@ -4,18 +4,26 @@
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
 //! What a scene fixes comes as arguments; what a shader fixes is read from that shader by [`shader_constant`].
 
+pub mod appearance;
 pub mod box_filter;
 pub mod census;
 pub mod composite;
+pub mod detail;
 pub mod eligible;
+pub mod estimate;
+pub mod evidence;
 pub mod fill;
 pub mod fit;
+pub mod grid;
 pub mod least_squares;
+pub mod lit;
 pub mod model;
 pub mod occlusion;
 pub mod pcss;
+pub mod plate;
 pub mod raster;
 pub mod residual;
+pub mod retarget;
 pub mod search;
 pub mod self_shadow;
 pub mod sets;
@@ -57,4 +65,11 @@ pub fn shader_constant<T: FromStr>(shader: &str, name: &str) -> Result<T, Consta
             shader: shader.to_owned(),
             name: name.to_owned(),
         })
+}
+
+/// Hermite step from 0 at `low` to 1 at `high`.
+#[must_use]
+pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }

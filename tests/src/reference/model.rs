@@ -61,6 +61,12 @@ impl ReceiverPlane {
         (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
+    /// Whether the camera is before the receiver: then x and z turn in the picture as right and down do.
+    #[must_use]
+    pub fn shows_front(&self) -> bool {
+        self.plane_from_region_px.determinant() > 0.0
+    }
+
     /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; none from behind the receiver.
     #[must_use]
     pub fn falloff(&self, i: usize, in_plane: DVec2) -> f64 {
@@ -112,9 +118,16 @@ impl Region {
         }
     }
 
-    /// The nearest receiver seen at `region_px`, and the point of it.
+    /// The nearest receiver seen at `region_px`, and the point of it; none where that is the receiver's back.
     #[must_use]
     pub fn receiver_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        self.surface_point(region_px)
+            .filter(|point| self.plane_of(*point).shows_front())
+    }
+
+    /// The nearest receiver seen at `region_px`, from whichever side, and the point of it.
+    #[must_use]
+    pub fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
             let in_plane = plane.plane_point(region_px)?;
             let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
@@ -140,7 +153,8 @@ pub struct Solution {
     pub levels: Vec<DVec3>,
     /// What is learned of each receiver.
     pub receivers: Vec<ReceiverSolution>,
-    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor per light's cosine.
+    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor for what is received of
+    /// each light at the power it had for the plate.
     pub toy: Vec<DVec3>,
 }
 

@@ -1,8 +1,8 @@
 //! Twin of `residual.wgsl`: what the model leaves unexplained, pooled on coarse grids.
 
-use app_core::gpu::layout::Grid;
-use glam::{DVec2, DVec3, UVec2, Vec2};
+use glam::{DVec3, UVec2};
 
+use super::grid::{Cell, PlaneGrid};
 use super::model::{EvidenceRange, Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
 use super::{ConstantError, shader_constant};
@@ -35,36 +35,6 @@ impl ResidualConstants {
     }
 }
 
-/// A cell of the grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cell {
-    /// Residual per channel, in plates.
-    pub residual: DVec3,
-    /// How far the residual is known, from 0 to 1.
-    pub certainty: f64,
-}
-
-/// Square cells over a receiver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlaneGrid {
-    /// Corner of the first cell, (x, z) in plane space.
-    pub origin_in_plane: DVec2,
-    /// Side of a cell.
-    pub cell_m: f64,
-    /// Cells along each side.
-    pub size: UVec2,
-}
-
-impl From<&Grid> for PlaneGrid {
-    fn from(grid: &Grid) -> Self {
-        Self {
-            origin_in_plane: Vec2::from(grid.origin_in_plane).as_dvec2(),
-            cell_m: f64::from(grid.cell_m),
-            size: grid.size.into(),
-        }
-    }
-}
-
 /// Pools the residual of one receiver over the cells of its grid, from nothing known before.
 #[must_use]
 pub fn pool(
@@ -77,18 +47,8 @@ pub fn pool(
     let n_side = constants.n_points;
     Raster::from_fn(grid.size, |cell| {
         let mut sums = Sums::default();
-        for k in 0..n_side * n_side {
-            let within = (UVec2::new(k % n_side, k / n_side).as_dvec2() + 0.5) / f64::from(n_side);
-            let in_plane = grid.origin_in_plane + (cell.as_dvec2() + within) * grid.cell_m;
-            let texel = region.receivers[receiver]
-                .region_px(in_plane)
-                .filter(|px| px.cmpge(DVec2::ZERO).all() && px.cmplt(region.size_px.as_dvec2()).all())
-                .map(DVec2::as_uvec2);
-            let seen = texel.filter(|texel| {
-                let hit = region.receiver_point(centre_px(*texel));
-                pictures.seen.at(*texel) > 0.0 && hit.is_some_and(|hit| hit.receiver == receiver)
-            });
-            if let Some(texel) = seen {
+        for texel in grid.texels_of(region, receiver, cell, n_side) {
+            if pictures.seen.at(texel) > 0.0 {
                 sums.add(region, pictures, solution, constants, texel);
             }
         }
@@ -146,7 +106,7 @@ impl Sums {
             }
         };
         Cell {
-            residual: DVec3::new(ratio(0), ratio(1), ratio(2)),
+            value: DVec3::new(ratio(0), ratio(1), ratio(2)),
             certainty: (self.n_points / n_full).min(1.0),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3, IVec2, UVec2};
 
 use super::raster::Raster;
 use super::sets::LightSet;
@@ -14,8 +14,21 @@ pub struct Rings {
     pub step_px: f64,
     /// Candidates of a ring, even around it; those of odd rings are turned by half of their distance.
     pub n_directions: u32,
-    /// Rings until the search gives up.
+    /// Rings until the search gives up, if it has not left the region before.
     pub n_rings: u32,
+}
+
+impl Rings {
+    /// The last ring around `at_px` that touches a region of that size.
+    fn within(&self, size: UVec2, at_px: DVec2) -> u32 {
+        let corners = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE].map(|corner| (corner * size).as_dvec2());
+        let farthest_px = corners
+            .map(|corner| corner.distance(at_px))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let touches = |ring: &u32| f64::from(*ring) * self.step_px <= farthest_px;
+        (1..=self.n_rings).take_while(touches).last().unwrap_or_default()
+    }
 }
 
 /// What a search came to.
@@ -65,7 +78,12 @@ fn search_sets(eligible: &Raster<LightSet>, accepted: &[LightSet], start: &Start
         };
     }
     let n_of_ring = rings.n_directions * start.set.0.count_ones();
-    for ring in 1..=rings.n_rings {
+    let around = start
+        .sources_px
+        .iter()
+        .map(|source| rings.within(eligible.size(), *source));
+    let n_rings = around.max().unwrap_or_default();
+    for ring in 1..=n_rings {
         let of_source = |source: &DVec2| {
             let source = *source;
             candidates(source, ring, rings).map(move |texel| (texel, away_px(texel, source)))
@@ -82,7 +100,7 @@ fn search_sets(eligible: &Raster<LightSet>, accepted: &[LightSet], start: &Start
     }
     Found {
         texel: None,
-        n_taps: rings.n_rings * n_of_ring,
+        n_taps: n_rings * n_of_ring,
     }
 }
 

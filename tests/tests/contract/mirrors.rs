@@ -104,7 +104,7 @@ fn mirrors_of_the_scene() -> Vec<Mirror> {
             region_size_px,
             region_origin_px,
             n_receivers,
-            _pad_0,
+            seen_from_behind,
             _pad_1
         }),
         mirror!(ReceiverFit {

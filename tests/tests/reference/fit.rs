@@ -159,13 +159,18 @@ fn light_on_the_toy_is_recovered() {
         DVec3::splat(0.5),
         DVec3::splat(0.2),
     ];
+    // One of the lights is dimmed, the other turned up.
+    let known = Solution {
+        levels: vec![DVec3::new(0.5, 0.6, 0.7), DVec3::splat(1.3)],
+        ..start(2)
+    };
     let sample = |seed: u32| {
         let unit = |dimension| scatter(seed, dimension);
         let normal = DVec3::new(unit(0) - 0.5, unit(1) - 0.2, unit(2) - 0.5).normalize();
         let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
         // Any light that rises and falls otherwise than the normal will do.
         let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
-        let columns = toy_columns(normal, received, 2);
+        let columns = toy_columns(normal, received, &known.levels);
         let light: DVec3 = columns.iter().zip(lit).map(|(column, lit)| *column * lit).sum();
         ToySample {
             frame: base * light,
@@ -175,7 +180,7 @@ fn light_on_the_toy_is_recovered() {
         }
     };
     let samples: Vec<_> = (0..N_SAMPLES).map(sample).collect();
-    let fitted = fit_toy(&region, &samples, &start(2), &without_priors(), 10);
+    let fitted = fit_toy(&region, &samples, &known, &without_priors(), 10);
     for (fitted, lit) in fitted.toy.iter().zip(lit) {
         assert!((fitted - lit).abs().max_element() < 1e-6, "{fitted}, not {lit}");
     }

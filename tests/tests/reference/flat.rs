@@ -1,8 +1,8 @@
 //! A region that looks straight down: one pixel is one centimetre of the receiver.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
+use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{ReceiverPlane, ReceiverPoint, ReceiverSolution, Region, Solution};
-use harness::reference::residual::PlaneGrid;
 
 /// Metres a pixel.
 pub(crate) const PIXEL_M: f64 = 0.01;

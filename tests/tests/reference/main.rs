@@ -2,12 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod appearance;
 mod box_filter;
 mod composite;
 mod eligible;
+mod estimated;
 mod fit;
 mod flat;
 mod pcss;
+mod plate;
 mod residual;
 mod search;
 mod tint;

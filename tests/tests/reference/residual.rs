@@ -2,9 +2,10 @@
 
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::grid::Cell;
 use harness::reference::model::Pictures;
 use harness::reference::raster::Raster;
-use harness::reference::residual::{Cell, ResidualConstants, pool};
+use harness::reference::residual::{ResidualConstants, pool};
 
 use crate::flat::{grid, region, scatter, truth, two_bulbs};
 
@@ -13,7 +14,7 @@ const SIZE: UVec2 = UVec2::new(61, 37);
 
 fn known(residual: DVec3) -> Cell {
     Cell {
-        residual,
+        value: residual,
         certainty: 1.0,
     }
 }
@@ -105,7 +106,7 @@ fn nothing_known_is_zero_and_little_known_is_finite() {
             "{size}"
         );
         let little = Raster::from_fn(size, |at| Cell {
-            residual: DVec3::splat(0.1),
+            value: DVec3::splat(0.1),
             certainty: if at == UVec2::ZERO { 1e-6 } else { 0.0 },
         });
         let within = |value: &DVec3| value.is_finite() && (0.0..=0.1).contains(&value.x);

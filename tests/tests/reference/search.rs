@@ -82,6 +82,25 @@ fn eligible_texel_costs_no_tap_and_nothing_in_reach_costs_all() {
     assert_eq!((nothing.texel, nothing.n_taps), (None, 96));
 }
 
+/// From the corner the farthest texel is on the ring that the opposite corner is just beyond; from the middle half as far.
+#[test]
+fn no_ring_is_searched_beyond_the_region() {
+    let rings = Rings {
+        n_rings: 1000,
+        ..RINGS
+    };
+    // The diagonal is 71.3 px; 10 px beyond the middle of the left side, the far corners are 73.4 px away.
+    for (at_px, n_rings) in [
+        (DVec2::ZERO, 35),
+        (SIZE.as_dvec2(), 35),
+        (0.5 * SIZE.as_dvec2(), 17),
+        (DVec2::new(-10.0, 18.5), 36),
+    ] {
+        let nothing = search_first(&only(&[]), at_px, &rings);
+        assert_eq!((nothing.texel, nothing.n_taps), (None, 16 * n_rings), "{at_px}");
+    }
+}
+
 #[test]
 fn term_is_the_shadow_over_the_light_or_its_colour() {
     let shade = DVec3::new(0.4, 0.5, 0.6);

@@ -7,6 +7,8 @@ use app_core::wgpu;
 use glam::UVec2;
 use wgpu::util::DeviceExt;
 
+use crate::alone::Bindings;
+
 const DECODE: &str = "
 @group(1) @binding(0) var codes: texture_2d<f32>;
 @group(1) @binding(1) var<storage, read_write> linear: array<vec4f>;
@@ -15,8 +17,8 @@ fn cs_decode(@builtin(local_invocation_index) code: u32) { linear[code] = textur
 ";
 
 pub(crate) struct Device {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
 }
 
 impl Device {
@@ -111,7 +113,7 @@ impl Device {
         self.read(&pyramid)[FIRST_CELL..][..cells.len()].to_vec()
     }
 
-    fn storage(&self, contents: &[u8]) -> wgpu::Buffer {
+    pub(crate) fn storage(&self, contents: &[u8]) -> wgpu::Buffer {
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
             contents,
@@ -121,44 +123,11 @@ impl Device {
 
     /// One workgroup of a compute shader whose resources are in group 1.
     fn run(&self, source: &str, entry_point: &str, resources: &[wgpu::BindingResource<'_>]) {
-        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let pipeline = self
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: None,
-                layout: None,
-                module: &module,
-                entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry {
-                binding,
-                resource: resource.clone(),
-            })
-            .collect();
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &entries,
-        });
-        let mut encoder = self
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(1, &group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-        drop(pass);
-        self.queue.submit([encoder.finish()]);
+        let own: Bindings<'_> = (0..).zip(resources.iter().cloned()).collect();
+        self.compute(source, entry_point, [&[], &own], [1, 1, 1]);
     }
 
-    fn read(&self, buffer: &wgpu::Buffer) -> Vec<[f32; 4]> {
+    pub(crate) fn read(&self, buffer: &wgpu::Buffer) -> Vec<[f32; 4]> {
         let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: buffer.size(),

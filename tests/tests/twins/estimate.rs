@@ -1,15 +1,23 @@
-//! No plate: the place without the toy is made up from the frame.
+//! `estimate` on scrambled inputs; and, without a plate, the place made up from the frame.
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
-use glam::DVec3;
+use app_core::wgpu;
+use glam::{DVec3, DVec4};
+use harness::reference::estimate::{EstimateConstants, Known, complete};
+use harness::reference::raster::Raster;
 
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
 use crate::errors::Errors;
 use crate::levels::{codes_beside, pairs_beside};
+use crate::numbers::number;
 use crate::photo::Photo;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{core_on, input, scene, solution};
+use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
+use crate::setups::{SETUPS, Setup};
 
 #[test]
 fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
@@ -55,4 +63,99 @@ fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
             20.0,
         );
     }
+}
+
+/// Relative to colours up to 10, since a tenth of the light is enough. Measured: 1e-5.
+const ALLOWED: f64 = 1e-4;
+
+/// How far colours and alpha are off that `source` makes, smooth and in full.
+fn errors(source: &str) -> Errors {
+    let (device, scene) = (Device::open(), Scrambled::new());
+    let lit = scene.plane_grids().map(|grid| {
+        let colors = Raster::from_fn(grid.size, |at| {
+            DVec3::from([80, 81, 82].map(|seed| number(at, seed)))
+        });
+        (grid, colors)
+    });
+    let mut cells = vec![[f32::NAN; 4]; N_CELLS];
+    for ((_, colors), grid) in lit.iter().zip(scene.grids().grids) {
+        let slots = cells[grid.first_cell as usize..].iter_mut().zip(colors.texels());
+        slots.for_each(|(slot, color)| *slot = color.extend(1.0).as_vec4().to_array());
+    }
+    let place = [
+        device.uniform(&scene.grids()),
+        device.storage(bytemuck::cast_slice(&cells)),
+    ];
+    let maps = [
+        device.map(&scene.plate),
+        device.map(&scene.image),
+        device.map(&scene.evidence),
+        device.map(&scene.visibility),
+        device.filterable(&scene.ambient),
+    ];
+    let linear = device.linear_sampler();
+    let mut own = buffers(0, &place);
+    own.extend(views(2, &maps));
+    own.push((7, wgpu::BindingResource::Sampler(&linear)));
+    let (constants, pictures) = (EstimateConstants::from_shader().unwrap(), scene.pictures(2));
+    let known = Known {
+        pictures: &pictures,
+        photographed: &scene.plate.map(|texel| texel.w),
+        solution: &scene.solution,
+        lit: &lit,
+    };
+    let mut pairs = Vec::new();
+    for is_final in [false, true] {
+        let draw = Draw {
+            source,
+            fragment: "fs_complete",
+            constants: &[("IS_FINAL", f64::from(u8::from(is_final)))],
+            output: 0,
+            size: scene.rect.size_px,
+        };
+        let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+        let texels = Raster::from_fn(scene.rect.size_px, |texel| texel);
+        let expected = texels.map(|texel| complete(&scene.region, &known, &constants, is_final, texel));
+        let both = actual.texels().iter().zip(expected.texels());
+        pairs.extend(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))));
+        let n_own = expected
+            .texels()
+            .iter()
+            .zip(texels.texels())
+            .filter(|(color, texel)| {
+                color.w == constants.estimated && is_own(&scene, &known, **color, **texel)
+            })
+            .count();
+        assert_eq!(n_own > 500, is_final, "{n_own} pixels tell their own plate");
+    }
+    Errors::between(pairs)
+}
+
+#[test]
+fn plates_are_completed() {
+    errors(&source("estimate")).check_all("completed plates", ALLOWED);
+}
+
+#[test]
+fn a_fault_in_the_completion_is_found() {
+    let faults = [
+        ("ESTIMATED: f32 = 0.25", "ESTIMATED: f32 = 0.3"),
+        ("TELLS_ALL: f32 = 0.3", "TELLS_ALL: f32 = 0.31"),
+        ("TELLS_NONE: f32 = 0.1", "TELLS_NONE: f32 = 0.09"),
+        ("evidence, texel, 0).b == 0.0", "evidence, texel, 0).r == 0.0"),
+        ("photographed.a == 1.0 ||", "photographed.a > 0.0 ||"),
+        ("!IS_FINAL ||", ""),
+        ("/ grid.cell_m - 0.5", "/ grid.cell_m"),
+        ("+ vec2u(globals.region_origin_px)", ""),
+    ];
+    check_faults("estimate", &faults, ALLOWED, errors);
+}
+
+/// Whether an estimated pixel is not as smooth as what is around.
+fn is_own(scene: &Scrambled, known: &Known<'_>, color: DVec4, texel: glam::UVec2) -> bool {
+    let Some(point) = scene.region.receiver_point(texel.as_dvec2() + 0.5) else {
+        return false;
+    };
+    let (grid, colors) = &known.lit[point.receiver];
+    color.truncate() != grid.value_at(colors, point.in_plane)
 }

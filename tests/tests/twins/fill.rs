@@ -2,8 +2,8 @@
 
 use glam::{DVec3, UVec2};
 use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::grid::Cell;
 use harness::reference::raster::Raster;
-use harness::reference::residual::Cell;
 
 use crate::device::Device;
 use crate::errors::Errors;
@@ -13,7 +13,7 @@ fn patchwork(at: UVec2) -> Cell {
     let wave = |k: u32| (0.37 * f64::from(at.x * k) + 0.61 * f64::from(at.y + k)).sin();
     let certainty = (1.5 * wave(1) * wave(2)).clamp(0.0, 1.0);
     Cell {
-        residual: 0.1 * DVec3::new(wave(3), wave(4), wave(5)),
+        value: 0.1 * DVec3::new(wave(3), wave(4), wave(5)),
         certainty,
     }
 }
@@ -35,7 +35,7 @@ fn pull_push() {
                 .texels()
                 .iter()
                 .map(|cell| {
-                    (cell.residual * cell.certainty)
+                    (cell.value * cell.certainty)
                         .extend(cell.certainty)
                         .as_vec4()
                         .to_array()

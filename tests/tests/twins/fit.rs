@@ -3,7 +3,7 @@
 use app_core::gpu::layout::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
 use harness::reference::fit::{
-    FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_columns,
+    FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_radiance,
 };
 use harness::reference::model::{ReceiverSolution, Solution, centre_px};
 use harness::reference::raster::Raster;
@@ -118,12 +118,7 @@ fn toy() {
         let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
         // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
         let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
-            let columns = toy_columns(sample.normal, sample.received, run.region.lights.len());
-            columns
-                .iter()
-                .zip(&solution.toy)
-                .map(|(column, toy)| *column * *toy)
-                .sum()
+            toy_radiance(solution, sample.normal, sample.received)
         };
         let pairs = samples.iter().flat_map(|sample| {
             let (actual, expected) = (light(&run.solution, sample), light(&expected, sample));

@@ -11,8 +11,9 @@ use app_core::preset::Preset;
 use app_core::wgpu;
 
 use crate::photo::photograph;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::scene;
+use crate::setups::{SETUPS, Setup};
 
 #[test]
 fn injected_visibility_takes_the_place_of_the_devices_own() {

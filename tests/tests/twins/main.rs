@@ -3,24 +3,39 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod alone;
+mod appearance;
+mod behind;
+mod casters;
 mod composite;
+mod detail;
 mod device;
 mod errors;
 mod estimate;
+mod evidence;
+mod exposure;
 mod fill;
 mod fit;
 mod inject;
 mod levels;
+mod lit;
 mod moving;
+mod numbers;
 mod occlusion;
 mod overlap;
 mod photo;
 mod place;
 mod plate;
+mod plates;
 mod published;
 mod residual;
+mod resources;
+mod retarget;
 mod run;
+mod scrambled;
+mod search;
 mod self_shadow;
+mod setups;
 mod tint;
 mod told;
 mod toy;

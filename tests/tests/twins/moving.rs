@@ -6,11 +6,12 @@ use app_core::core::Core;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
-use harness::reference::residual::PlaneGrid;
+use harness::reference::grid::PlaneGrid;
 
 use crate::photo::Photo;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{core_on, input, plate_of, raster, scene};
+use crate::setups::{SETUPS, Setup};
 
 /// Cameras, as offsets from what they look at: two that see what lies behind the toy for the third.
 const VIEWS: [DVec3; 3] = [

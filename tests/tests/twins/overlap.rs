@@ -1,7 +1,5 @@
 //! Shadows of two lights that the real ones tell about, fully or not: the published method on injected visibilities.
 
-use std::sync::Arc;
-
 use app_core::core::Core;
 use app_core::frame::{FrameInput, UnseenShadow, Warning};
 use app_core::gpu::AdapterChoice;
@@ -9,23 +7,22 @@ use app_core::inject::InjectedVisibility;
 use app_core::maps::{FloatMap, Map};
 use app_core::preset::{Method, PUBLISHED, Preset};
 use app_core::region::PixelRect;
-use app_core::scene::Image;
 use app_core::wgpu;
-use glam::{DVec3, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 use harness::reference::eligible::masks;
 use harness::reference::raster::Raster;
 use harness::reference::sets::LightSet;
 
 use crate::device::Device;
 use crate::photo::photograph;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{crop, raster, scene};
+use crate::setups::{SETUPS, Setup};
 
 /// A core that has made one frame, what it was made from, and its work region.
 struct Shot {
     core: Core,
     input: FrameInput,
-    plate: Arc<Image>,
     region: PixelRect,
 }
 
@@ -46,12 +43,7 @@ impl Shot {
         let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
         core.set_scene(scene(&stand, &plate), preset).unwrap();
         let region = core.frame(&input).unwrap().region.unwrap();
-        Self {
-            core,
-            input,
-            plate,
-            region,
-        }
+        Self { core, input, region }
     }
 
     fn map(&self, map: Map) -> FloatMap {
@@ -136,7 +128,8 @@ fn constant_shadows_multiply() {
     // Rounding to codes goes both ways, and a block of pixels evens it out.
     let block = Raster::from_fn(UVec2::splat(12), |at| at);
     let mean = |picture: &Raster<DVec3>| -> DVec3 { block.texels().iter().map(|at| picture.at(*at)).sum() };
-    let plate = mean(&crop(&shot.plate, &shot.region, &decoded));
+    // At the exposure of the frame.
+    let plate = mean(&raster(&shot.map(Map::Plate)).map(DVec4::truncate));
     for (visibility, expected) in [
         ([0.0, 0.0], of_all),
         ([0.0, 1.0], of_one),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use app_core::scene::Image;
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, DVec4, UVec2};
-use harness::reference::fit::toy_columns;
+use harness::reference::fit::toy_radiance;
 use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
 use harness::reference::raster::Raster;
 use harness::reference::self_shadow::received;
@@ -135,9 +135,7 @@ impl Photo {
                 let normal = posed.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
                 let at = origin + hit.distance * direction;
                 let received = received(&region, &occluder, &light_points, at, normal);
-                let columns = toy_columns(normal, received, light_points.len());
-                let terms = columns.iter().zip(&self.solution.toy);
-                let light: DVec3 = terms.map(|(column, light)| *column * *light).sum();
+                let light = toy_radiance(&self.solution, normal, received);
                 return self.solution.gain
                     * (self.paint)(hit.triangle)
                     * toy::base_color(hit.triangle)

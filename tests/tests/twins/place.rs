@@ -1,112 +1,23 @@
-//! Where the toy stands: camera, receivers, lights, and the poses in stage space.
+//! Where the toy stands: camera, receivers, and the poses in stage space.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use app_core::light_points::{ambient_directions, light_points};
+use app_core::gpu::layout::Globals;
 use app_core::region::{Bounds, PixelRect};
-use app_core::scene::{Intrinsics, Light, PoseTime, Receiver, Surface};
+use app_core::scene::{Intrinsics, PoseTime, Receiver, Surface};
 use app_core::toy::{PosedMesh, Toy};
 use app_core::view::{Place, View};
-use glam::{DMat4, DQuat, DVec2, DVec3, DVec4, UVec2};
+use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 use harness::reference::model::Region;
-use harness::reference::occlusion::{Caster, Occluder};
 
+use crate::setups::Setup;
 use crate::toy;
 
 /// Moment of the clip that is shown.
 const SHOWN_SECS: f64 = 0.8;
 /// What the camera looks at.
 const TARGET: DVec3 = DVec3::new(0.0, 0.05, 0.0);
-
-/// What a twin is run on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Setup {
-    pub(crate) name: &'static str,
-    pub(crate) image_px: UVec2,
-    pub(crate) lights: &'static [Light],
-    /// Distance of the camera from the toy; what is far off leaves room around the work region.
-    pub(crate) distance_m: f64,
-    /// Height of the toy's feet over the receiver: tracking is never quite right.
-    pub(crate) feet_m: f64,
-    /// Whether a wall stands behind the toy, so that its shadow is broken by the crease.
-    pub(crate) has_wall: bool,
-}
-
-const BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(0.32, 0.62, 0.02),
-    radius_m: 0.05,
-};
-const OTHER_BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(-0.3, 0.7, 0.25),
-    radius_m: 0.03,
-};
-/// Unit vector: -3, 6, -2 over 7, away from the camera, which then sees the shadow.
-const SKY: Light = Light::Directional {
-    direction_to_light_in_world: DVec3::new(-3.0 / 7.0, 6.0 / 7.0, -2.0 / 7.0),
-    angular_radius_rad: 0.06,
-};
-
-const POINT: Light = Light::Sphere {
-    position_in_world: DVec3::new(0.3, 0.5, -0.2),
-    radius_m: 0.0,
-};
-/// Low and before the toy: its shadow goes up the wall.
-const LOW_BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(-0.22, 0.27, 0.36),
-    radius_m: 0.02,
-};
-/// Beyond the wall, which it does not shine on.
-const BACK_BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(0.05, 0.75, -0.4),
-    radius_m: 0.04,
-};
-
-const NEAR: Setup = Setup {
-    name: "bulb",
-    image_px: UVec2::new(97, 61),
-    lights: &[BULB],
-    distance_m: 0.42,
-    feet_m: 0.0,
-    has_wall: false,
-};
-/// The shadow of one light goes up a wall that ends within the picture; another light is beyond it.
-pub(crate) const WALL: Setup = Setup {
-    name: "wall",
-    image_px: UVec2::new(163, 119),
-    lights: &[LOW_BULB, BACK_BULB],
-    distance_m: 0.55,
-    has_wall: true,
-    ..NEAR
-};
-/// One light close by, two lights, a directional light on a sunken toy, the hard edge of a lifted one from afar, and a
-/// second receiver.
-pub(crate) const SETUPS: [Setup; 5] = [
-    NEAR,
-    Setup {
-        name: "two bulbs",
-        image_px: UVec2::new(131, 75),
-        lights: &[BULB, OTHER_BULB],
-        distance_m: 0.72,
-        ..NEAR
-    },
-    Setup {
-        name: "directional",
-        lights: &[SKY],
-        distance_m: 0.5,
-        feet_m: -0.004,
-        ..NEAR
-    },
-    Setup {
-        name: "point",
-        image_px: UVec2::new(163, 119),
-        lights: &[POINT],
-        distance_m: 0.9,
-        feet_m: 0.006,
-        ..NEAR
-    },
-    WALL,
-];
 
 /// A toy on its receivers under a camera.
 pub(crate) struct Stand {
@@ -200,64 +111,22 @@ impl Stand {
         View::new(self.setup.image_px, self.intrinsics, &self.world_from_camera)
     }
 
-    /// What the references know of `rect` of the camera's picture.
-    pub(crate) fn region(&self, rect: &PixelRect) -> Region {
-        let place = Place {
+    fn place(&self) -> Place<'_> {
+        Place {
             receivers: &self.receivers,
             lights: self.setup.lights,
             toy_in_stage: self.physical_centre(),
-        };
-        Region::new(&self.view(), rect, &place)
+        }
     }
 
-    /// Points of a light, in stage space.
-    pub(crate) fn light_points(&self, index: usize, n_points: usize) -> Vec<DVec4> {
-        let light = &self.setup.lights[index];
-        let points = light_points(light, &self.stage_from_world, self.physical_centre(), n_points);
-        points.iter().map(|point| point.as_dvec4()).collect()
+    /// What the references know of `rect` of the camera's picture.
+    pub(crate) fn region(&self, rect: &PixelRect) -> Region {
+        Region::new(&self.view(), rect, &self.place())
     }
 
-    /// A posed toy under points over light `index`, as many as are planned, for each receiver.
-    pub(crate) fn light_casters(&self, posed: &PosedMesh, index: usize, n_points: usize) -> Vec<Caster> {
-        let in_stage = self.light_points(index, n_points);
-        self.casters(posed, |plane_from_stage| {
-            in_stage.iter().map(|point| *plane_from_stage * *point).collect()
-        })
-    }
-
-    /// A posed toy under directions of the ambient light, as many as are planned, for each receiver.
-    pub(crate) fn ambient_casters(&self, posed: &PosedMesh, n_directions: usize) -> Vec<Caster> {
-        let directions = ambient_directions(n_directions);
-        // Each receiver has its own hemisphere.
-        self.casters(posed, |_| {
-            directions.iter().map(|point| point.as_dvec4()).collect()
-        })
-    }
-
-    fn casters(&self, posed: &PosedMesh, light_points: impl Fn(&DMat4) -> Vec<DVec4>) -> Vec<Caster> {
-        let planes = self
-            .receivers
-            .iter()
-            .map(|receiver| receiver.world_from_plane.inverse() * self.stage_from_world.inverse());
-        planes
-            .map(|plane_from_stage| Caster {
-                occluder: self.occluder_in(posed, &plane_from_stage),
-                light_points: light_points(&plane_from_stage),
-            })
-            .collect()
-    }
-
-    /// A posed toy in stage space.
-    pub(crate) fn occluder(&self, posed: &PosedMesh) -> Occluder {
-        self.occluder_in(posed, &DMat4::IDENTITY)
-    }
-
-    fn occluder_in(&self, posed: &PosedMesh, plane_from_stage: &DMat4) -> Occluder {
-        let positions = posed.positions.iter();
-        let positions: Vec<DVec3> = positions
-            .map(|position| plane_from_stage.transform_point3(position.as_dvec3()))
-            .collect();
-        Occluder::new(&positions, self.toy.indices())
+    /// What the shaders know of it.
+    pub(crate) fn globals(&self, rect: &PixelRect) -> Globals {
+        self.view().globals(rect, &self.place())
     }
 
     /// The camera's centre and the direction of the ray through `image_px`, in stage space.
@@ -276,7 +145,7 @@ impl Stand {
     }
 
     /// The middle of the physical toy's bounding box.
-    fn physical_centre(&self) -> DVec3 {
+    pub(crate) fn physical_centre(&self) -> DVec3 {
         let positions = self.physical.positions.iter().map(|position| position.as_dvec3());
         let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
         0.5 * (low + positions.fold(DVec3::NEG_INFINITY, DVec3::max))

@@ -23,8 +23,9 @@ use harness::reference::sets::LightSet;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{crop, raster, scene};
+use crate::setups::{SETUPS, Setup};
 
 /// What the device made of a setup by the published method.
 struct Published {
@@ -89,7 +90,7 @@ impl Published {
         Ok(Self {
             region: stand.region(&rect),
             frame: crop(&frame, &rect, decoded),
-            plate: crop(&plate, &rect, decoded),
+            plate: map(Map::Plate)?.map(DVec4::truncate),
             eligible: map(Map::Eligible)?.map(|texel| light_set(texel.x)),
             warp: layers(&map(Map::Warp)?, rect.size_px),
             terms: map(Map::Terms)?,

@@ -13,14 +13,15 @@ use app_core::region::PixelRect;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2, Vec4};
+use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
 use harness::reference::raster::Raster;
-use harness::reference::residual::PlaneGrid;
 
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{code, photograph, unrounded_code};
-use crate::place::{SETUPS, Stand};
+use crate::place::Stand;
+use crate::setups::SETUPS;
 
 /// What the device made of a setup.
 pub(crate) struct Run {

@@ -2,7 +2,7 @@
 
 use app_core::preset::Preset;
 use glam::{DVec2, DVec3, UVec2};
-use harness::reference::fit::toy_columns;
+use harness::reference::fit::toy_radiance;
 use harness::reference::model::centre_px;
 use harness::reference::occlusion::Occluder;
 use harness::reference::raster::Raster;
@@ -10,8 +10,9 @@ use harness::reference::tint::{SeenPaint, TintConstants, tints};
 
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::place::{SETUPS, Stand};
+use crate::place::Stand;
 use crate::run::{Run, core_on, input, runs, scene, texel_of};
+use crate::setups::SETUPS;
 
 /// Triangles of a box of the toy, each of which has a material of its own.
 const N_TRIANGLES: usize = 12;
@@ -34,17 +35,12 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
         let hit = occluder.nearest(origin, direction)?;
         let normal =
             run.stand.physical.normals[run.stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-        let columns = toy_columns(normal, run.object_received.at(*texel), run.region.lights.len());
-        let light: DVec3 = columns
-            .iter()
-            .zip(&run.solution.toy)
-            .map(|(column, light)| *column * *light)
-            .sum();
+        let light = toy_radiance(&run.solution, normal, run.object_received.at(*texel));
         Some(SeenPaint {
             in_stage: origin + hit.distance * direction,
             material: hit.triangle / N_TRIANGLES,
             shown: run.pictures.frame.at(*texel),
-            expected: run.solution.gain * run.object_base.at(*texel) * light.max(DVec3::ZERO),
+            expected: run.solution.gain * run.object_base.at(*texel) * light,
         })
     });
     of_texel.collect()

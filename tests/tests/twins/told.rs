@@ -6,8 +6,9 @@ use app_core::scene::Light;
 use glam::DVec3;
 
 use crate::photo::Photo;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{core_on, input, scene};
+use crate::setups::{SETUPS, Setup};
 
 const BULB: Light = bulb(0.32);
 const TOGETHER: [Light; 2] = [BULB; 2];

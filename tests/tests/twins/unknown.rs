@@ -9,8 +9,9 @@ use harness::reference::visibility::visibility_map;
 
 use crate::composite::shows_toy;
 use crate::photo::Photo;
-use crate::place::{SETUPS, Setup, Stand};
+use crate::place::Stand;
 use crate::run::{core_on, input, scene, texel_of};
+use crate::setups::{SETUPS, Setup};
 
 /// Where the head's shadow is to fall, and half the width of what lies there.
 const HAND: DVec2 = DVec2::new(-0.15, 0.0);

@@ -11,8 +11,9 @@ use glam::UVec2;
 
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::place::{SETUPS, Stand};
+use crate::place::Stand;
 use crate::run::{core_on, input, raster, scene, texel_of};
+use crate::setups::SETUPS;
 
 const MAGENTA: [u8; 4] = [255, 0, 255, 255];
 

@@ -1,0 +1,120 @@
+//! Twin of `detail.wgsl`: what each pixel knows of its own residual, with the noise of the shadow taken out.
+
+use glam::{DVec3, IVec2, UVec2};
+
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::raster::Raster;
+use super::{ConstantError, shader_constant, smoothstep};
+
+/// What the shader fixes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DetailConstants {
+    /// Half the side of the square that is smoothed over, without its middle.
+    pub radius_px: i32,
+    /// Detail, in plates, up to which it is noise.
+    pub noise: f64,
+    /// Detail from which none of it is.
+    pub detail: f64,
+    /// Light left below which a pixel is in shadow.
+    pub shadow: f64,
+    /// Light left from which it is not.
+    pub lit: f64,
+    /// Of the plate; darker tells nothing.
+    pub darkest: f64,
+}
+
+impl DetailConstants {
+    /// Reads them from the shader.
+    ///
+    /// # Errors
+    /// When it has no such constant.
+    pub fn from_shader() -> Result<Self, ConstantError> {
+        Ok(Self {
+            radius_px: shader_constant("detail", "RADIUS_PX")?,
+            noise: shader_constant("detail", "NOISE")?,
+            detail: shader_constant("detail", "DETAIL")?,
+            shadow: shader_constant("detail", "SHADOW")?,
+            lit: shader_constant("detail", "LIT")?,
+            darkest: shader_constant("detail", "DARKEST_EVIDENCE")?,
+        })
+    }
+}
+
+/// What a pixel that shows a receiver clear of the toy tells, where its plate was photographed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// Which receiver.
+    pub receiver: usize,
+    /// What the model says that is left of the plate.
+    pub model: DVec3,
+    /// Light that the model does not explain, over the gain.
+    pub unexplained: DVec3,
+    /// The plate, 0 in channels that tell nothing.
+    pub plate: DVec3,
+}
+
+/// What each pixel tells; `photographed` is 1 where the plate was.
+#[must_use]
+pub fn told(
+    region: &Region,
+    pictures: &Pictures,
+    photographed: &Raster<f64>,
+    solution: &Solution,
+    constants: &DetailConstants,
+) -> Raster<Option<Told>> {
+    Raster::from_fn(region.size_px, |texel| {
+        let at = centre_px(texel);
+        let is_told = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
+        let point = region.receiver_point(at).filter(|_| is_told)?;
+        let ambient = coarse_at(&pictures.ambient, region, at);
+        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        let plate = pictures.plate.at(texel);
+        let is_dark = plate.cmplt(DVec3::splat(constants.darkest));
+        Some(Told {
+            receiver: point.receiver,
+            model,
+            unexplained: pictures.frame.at(texel) / solution.gain - plate * model,
+            plate: DVec3::select(is_dark, DVec3::ZERO, plate),
+        })
+    })
+}
+
+/// The residual of a pixel of `receiver`, in plates.
+///
+/// In the light it is the pixel's own. In shadow it is that of the pixels around which show the same receiver, by least
+/// squares against the plate, and as much of what its own differs by as is more than noise.
+#[must_use]
+pub fn separate(
+    told: &Raster<Option<Told>>,
+    constants: &DetailConstants,
+    (texel, receiver): (UVec2, usize),
+) -> DVec3 {
+    let own = told.at(texel);
+    let exact = least_squares(own.as_slice());
+    // One that tells nothing is as in the light.
+    let left = own.map_or(1.0, |own| own.model.max_element());
+    let in_light = smoothstep(constants.shadow, constants.lit, left);
+    let reach = -constants.radius_px..=constants.radius_px;
+    let offsets = reach
+        .clone()
+        .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
+    let around: Vec<Told> = offsets
+        .filter_map(|offset| {
+            let other = texel.as_ivec2() + offset;
+            let is_within = other.cmpge(IVec2::ZERO).all() && other.cmplt(told.size().as_ivec2()).all();
+            is_within.then(|| told.at(other.as_uvec2())).flatten()
+        })
+        .filter(|other| other.receiver == receiver)
+        .collect();
+    let smooth = least_squares(&around);
+    let detail = exact - smooth;
+    let kept = smoothstep(constants.noise, constants.detail, detail.abs().max_element());
+    (smooth + kept * detail).lerp(exact, in_light)
+}
+
+/// The residual r that makes plate times r the unexplained light, of all pixels together; 0 where none tells.
+fn least_squares(pixels: &[Told]) -> DVec3 {
+    let product: DVec3 = pixels.iter().map(|told| told.plate * told.unexplained).sum();
+    let energy: DVec3 = pixels.iter().map(|told| told.plate * told.plate).sum();
+    DVec3::select(energy.cmpgt(DVec3::ZERO), product / energy, DVec3::ZERO)
+}

@@ -1,0 +1,75 @@
+//! Twin of `estimate.wgsl`: the plate, with an estimate where none was photographed.
+
+use glam::{DVec3, DVec4, UVec2};
+
+use super::grid::PlaneGrid;
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::raster::Raster;
+use super::{ConstantError, shader_constant, smoothstep};
+
+/// What the shader fixes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimateConstants {
+    /// Alpha of an estimated pixel.
+    pub estimated: f64,
+    /// Light left from which a pixel tells its own plate in full.
+    pub tells_all: f64,
+    /// Light left below which it does not at all.
+    pub tells_none: f64,
+}
+
+impl EstimateConstants {
+    /// Reads them from the shader.
+    ///
+    /// # Errors
+    /// When it has no such constant.
+    pub fn from_shader() -> Result<Self, ConstantError> {
+        Ok(Self {
+            estimated: shader_constant("estimate", "ESTIMATED")?,
+            tells_all: shader_constant("estimate", "TELLS_ALL")?,
+            tells_none: shader_constant("estimate", "TELLS_NONE")?,
+        })
+    }
+}
+
+/// What the estimate is made of.
+#[derive(Clone, Debug)]
+pub struct Known<'a> {
+    /// What is seen; `seen` is 1 well clear of the toy.
+    pub pictures: &'a Pictures,
+    /// 1 where the plate was photographed.
+    pub photographed: &'a Raster<f64>,
+    /// What the fit found.
+    pub solution: &'a Solution,
+    /// For each receiver, filled colours in the light, and where their cells lie.
+    pub lit: &'a [(PlaneGrid, Raster<DVec3>)],
+}
+
+/// Linear colour and alpha of the plate at `texel`: smooth at first, at last each seen pixel's own.
+#[must_use]
+pub fn complete(
+    region: &Region,
+    known: &Known<'_>,
+    constants: &EstimateConstants,
+    is_final: bool,
+    texel: UVec2,
+) -> DVec4 {
+    let (at, pictures) = (centre_px(texel), known.pictures);
+    let photographed = pictures.plate.at(texel).extend(known.photographed.at(texel));
+    let point = region.receiver_point(at).filter(|_| photographed.w < 1.0);
+    let Some(point) = point else {
+        return photographed;
+    };
+    let (grid, lit) = &known.lit[point.receiver];
+    let smooth = grid.value_at(lit, point.in_plane);
+    let ambient = coarse_at(&pictures.ambient, region, at);
+    let model = known
+        .solution
+        .receiver_model(region, point, ambient, pictures.visibility.at(texel));
+    let told = smoothstep(constants.tells_none, constants.tells_all, model.min_element());
+    if !is_final || pictures.seen.at(texel) == 0.0 || told == 0.0 {
+        return smooth.extend(constants.estimated);
+    }
+    let own = pictures.frame.at(texel) / (known.solution.gain * model);
+    smooth.lerp(own, told).extend(constants.estimated)
+}

@@ -1,0 +1,82 @@
+//! Twin of `common/grid.wgsl` and `common/pool.wgsl`: square cells over a receiver, and what is known of each.
+
+use app_core::gpu::layout::Grid;
+use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
+
+use super::model::{Region, centre_px};
+use super::raster::Raster;
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cell {
+    /// Per channel.
+    pub value: DVec3,
+    /// How far it is known, from 0 to 1.
+    pub certainty: f64,
+}
+
+/// Square cells over a receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneGrid {
+    /// Corner of the first cell, (x, z) in plane space.
+    pub origin_in_plane: DVec2,
+    /// Side of a cell.
+    pub cell_m: f64,
+    /// Cells along each side.
+    pub size: UVec2,
+}
+
+impl From<&Grid> for PlaneGrid {
+    fn from(grid: &Grid) -> Self {
+        Self {
+            origin_in_plane: Vec2::from(grid.origin_in_plane).as_dvec2(),
+            cell_m: f64::from(grid.cell_m),
+            size: grid.size.into(),
+        }
+    }
+}
+
+impl PlaneGrid {
+    /// The texels that show the `n_side` x `n_side` points of a cell, once for each point that is within the region and
+    /// that no other receiver hides.
+    pub fn texels_of<'a>(
+        &'a self,
+        region: &'a Region,
+        receiver: usize,
+        cell: UVec2,
+        n_side: u32,
+    ) -> impl Iterator<Item = UVec2> + 'a {
+        (0..n_side * n_side).filter_map(move |k| {
+            let within = (UVec2::new(k % n_side, k / n_side).as_dvec2() + 0.5) / f64::from(n_side);
+            let in_plane = self.origin_in_plane + (cell.as_dvec2() + within) * self.cell_m;
+            let px = region.receivers[receiver].region_px(in_plane)?;
+            let is_within = px.cmpge(DVec2::ZERO).all() && px.cmplt(region.size_px.as_dvec2()).all();
+            let texel = is_within.then(|| px.as_uvec2())?;
+            let shown = region.receiver_point(centre_px(texel))?;
+            (shown.receiver == receiver).then_some(texel)
+        })
+    }
+
+    /// The value between cells at a point of the receiver.
+    #[must_use]
+    pub fn value_at(&self, cells: &Raster<DVec3>, in_plane: DVec2) -> DVec3 {
+        cells.bilinear((in_plane - self.origin_in_plane) / self.cell_m)
+    }
+}
+
+/// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of
+/// values times certainties and of certainties, which count at most as much as `most_kept` full ones.
+#[must_use]
+pub fn remember(kept: DVec4, fresh: Cell, most_kept: f64) -> (Cell, DVec4) {
+    let known = kept + (fresh.value * fresh.certainty).extend(fresh.certainty);
+    if known.w == 0.0 {
+        return (Cell::default(), DVec4::ZERO);
+    }
+    let value = known.truncate() / known.w;
+    let cell = Cell {
+        value,
+        certainty: known.w.min(1.0),
+    };
+    let weight = known.w.min(most_kept);
+    (cell, (value * weight).extend(weight))
+}

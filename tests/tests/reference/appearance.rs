@@ -1,0 +1,78 @@
+//! Colours of a toy where it is plain from which pixel they are.
+
+use glam::{DVec3, UVec2};
+use harness::reference::appearance::{AppearanceConstants, Seen, ToyPixel, clean};
+use harness::reference::raster::Raster;
+
+const SIZE: UVec2 = UVec2::new(17, 11);
+
+fn pixel(value: f64) -> ToyPixel {
+    ToyPixel {
+        color: DVec3::splat(value),
+        lit: DVec3::splat(2.0 * value),
+        base: DVec3::splat(3.0 * value),
+    }
+}
+
+/// A toy at `depth` all over, of which some pixels of known value show one surface; all others would give 9.
+fn scene(depth: f64, known: &[(UVec2, f64, f64)]) -> Raster<Seen> {
+    Raster::from_fn(SIZE, |at| {
+        let found = known.iter().find(|(place, ..)| *place == at);
+        found.map_or(
+            Seen {
+                pixel: pixel(9.0),
+                depth,
+                is_one_surface: false,
+            },
+            |(_, value, depth)| Seen {
+                pixel: pixel(*value),
+                depth: *depth,
+                is_one_surface: true,
+            },
+        )
+    })
+}
+
+fn color(seen: &Raster<Seen>, at: UVec2) -> Option<f64> {
+    let found = clean(seen, &AppearanceConstants::from_shader().unwrap(), at)?;
+    assert!(
+        (found.lit - 2.0 * found.color).abs().max_element() < 1e-12,
+        "{found:?}"
+    );
+    assert!(
+        (found.base - 3.0 * found.color).abs().max_element() < 1e-12,
+        "{found:?}"
+    );
+    Some(found.color.x)
+}
+
+#[test]
+fn one_pixel_is_carried_as_far_as_it_reaches() {
+    let reach = u32::try_from(AppearanceConstants::from_shader().unwrap().reach_px).unwrap();
+    let middle = UVec2::new(8, 5);
+    let beside_toy = scene(0.0, &[(middle, 0.25, 0.5)]);
+    for (offset, is_reached) in [(0, true), (reach, true), (reach + 1, false)] {
+        let expected = is_reached.then_some(0.25);
+        for at in [middle + UVec2::new(offset, 0), middle + UVec2::splat(offset)] {
+            assert_eq!(color(&beside_toy, at), expected, "{at}");
+        }
+    }
+    // A part of the toy too thin to have such a pixel keeps its own.
+    let thin = scene(0.5, &[(middle, 0.25, 0.5)]);
+    assert_eq!(color(&thin, UVec2::new(1, 5)), Some(9.0));
+}
+
+#[test]
+fn the_nearer_counts_by_the_fourth_power_and_another_surface_next_to_nothing() {
+    let (near, far) = (UVec2::new(7, 5), UVec2::new(10, 5));
+    let at = UVec2::new(8, 5);
+    // Beside the toy, at one and at two pixels: 16 to 1.
+    let found = color(&scene(0.0, &[(near, 0.0, 0.5), (far, 1.0, 0.5)]), at).unwrap();
+    assert!((found - 1.0 / 17.0).abs() < 1e-12, "{found}");
+    // The nearer one is of another surface.
+    let found = color(&scene(0.5, &[(near, 0.0, 0.4), (far, 1.0, 0.5)]), at).unwrap();
+    let other = 16.0 * AppearanceConstants::from_shader().unwrap().other_surface;
+    assert!((found - 1.0 / (1.0 + other)).abs() < 1e-12, "{found}");
+    // Where there is no other it will do.
+    assert_eq!(color(&scene(0.5, &[(near, 0.125, 0.4)]), at), Some(0.125));
+}
