@@ -69,7 +69,8 @@ pub(crate) struct Capture {
     pub(crate) light_points: Vec<Vec<glam::Vec4>>,
     /// Those of them that are in stage space.
     stage_points: Vec<Vec<glam::Vec4>>,
-    light_targets: Vec<OcclusionTargets>,
+    /// All lights use them, one after the other.
+    light_targets: OcclusionTargets,
     ambient_targets: OcclusionTargets,
     ambient_directions: Vec<glam::Vec4>,
 }
@@ -80,6 +81,7 @@ impl Capture {
         let region_px = plan.region.size_px;
         let target = |label, format| texture(gpu, label, region_px, (format, 1));
         let n_receivers = plan.n_receivers as usize;
+        let most_light_points = plan.lights.iter().map(|light| light.n_points).max().unwrap_or(0);
         Self {
             known: *globals,
             globals: gpu.uniform("globals", globals),
@@ -103,16 +105,17 @@ impl Capture {
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
-            light_targets: plan
-                .lights
-                .iter()
-                .map(|light| OcclusionTargets::new(gpu, region_px, region_px, light.n_points))
-                .collect(),
+            light_targets: OcclusionTargets::new(
+                gpu,
+                (region_px, region_px),
+                most_light_points,
+                plan.n_receivers,
+            ),
             ambient_targets: OcclusionTargets::new(
                 gpu,
-                plan.ambient_px,
-                region_px,
+                (plan.ambient_px, region_px),
                 plan.n_ambient_directions,
+                plan.n_receivers,
             ),
             // Each receiver has its own hemisphere.
             ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
@@ -309,20 +312,16 @@ impl Capture {
         (toy, positions): (&ToyMesh, &wgpu::Buffer),
         outputs: &Visibilities,
     ) {
-        for (index, points) in self.light_points.iter().enumerate() {
-            let (Some(targets), Some(pass)) = (self.light_targets.get(index), passes.lights.get(index))
-            else {
-                continue;
-            };
+        for (points, visibility) in self.light_points.iter().zip(&passes.lights) {
             let caster = Caster {
                 toy,
                 positions,
                 points,
             };
-            pass.occlusion
-                .encode(gpu, encoder, &self.globals, &caster, targets);
-            pass.visibility
-                .encode(gpu, encoder, targets, &outputs.lights.view);
+            passes
+                .occlusion
+                .encode(gpu, encoder, &self.globals, &caster, &self.light_targets);
+            visibility.encode(gpu, encoder, &self.light_targets, &outputs.lights.view);
         }
         if let Some(injected) = &outputs.injected {
             outputs.lights.encode_copy(encoder, injected);
@@ -333,12 +332,10 @@ impl Capture {
             points: &self.ambient_directions,
         };
         passes
-            .ambient
             .occlusion
             .encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
         passes
             .ambient
-            .visibility
             .encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
     }
 }

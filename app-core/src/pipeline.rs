@@ -26,12 +26,6 @@ use crate::passes::visibility::Visibility;
 use crate::plan::Plan;
 use crate::work::Work;
 
-/// Flattening and averaging for one map.
-pub(crate) struct VisibilityPasses {
-    pub(crate) occlusion: Occlusion,
-    pub(crate) visibility: Visibility,
-}
-
 /// What a missing plate is made by.
 pub(crate) struct EstimatePasses {
     pub(crate) lit: Lit,
@@ -53,8 +47,10 @@ pub(crate) struct Passes {
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
-    pub(crate) lights: Vec<VisibilityPasses>,
-    pub(crate) ambient: VisibilityPasses,
+    pub(crate) occlusion: Occlusion,
+    /// One a light.
+    pub(crate) lights: Vec<Visibility>,
+    pub(crate) ambient: Visibility,
     pub(crate) plate: Plate,
     pub(crate) estimate: Option<EstimatePasses>,
     pub(crate) fit: Fit,
@@ -68,22 +64,19 @@ pub(crate) struct Passes {
 
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let passes = |n_points, channel, format| VisibilityPasses {
-            occlusion: Occlusion::new(gpu, n_points, plan.n_receivers),
-            visibility: Visibility::new(gpu, n_points, channel, format),
-        };
         Self {
             self_shadow: SelfShadow::new(gpu),
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
+            occlusion: Occlusion::new(gpu, plan.n_receivers),
             lights: plan
                 .lights
                 .iter()
                 .enumerate()
-                .map(|(channel, light)| passes(light.n_points, channel, plan.visibility_format))
+                .map(|(channel, light)| Visibility::new(gpu, light.n_points, channel, plan.visibility_format))
                 .collect(),
-            ambient: passes(plan.n_ambient_directions, 0, AMBIENT_FORMAT),
+            ambient: Visibility::new(gpu, plan.n_ambient_directions, 0, AMBIENT_FORMAT),
             plate: Plate::new(gpu),
             estimate: plan.is_plate_estimated.then(|| EstimatePasses::new(gpu)),
             fit: Fit::new(gpu),

@@ -67,7 +67,7 @@ pub(crate) const APPEARANCE: Shader = Shader {
 pub(crate) const OCCLUSION: Shader = Shader {
     name: "occlusion",
     parts: &[GLOBALS, FLATTEN, wgsl!("occlusion")],
-    entry_points: &["vs_flatten", "fs_cover"],
+    entry_points: &["vs_route", "fs_route", "vs_flatten", "fs_cover"],
 };
 pub(crate) const VISIBILITY: Shader = Shader {
     name: "visibility",
