@@ -184,7 +184,7 @@ impl Capture {
             gpu,
             encoder,
             passes,
-            (toy, &toy.physical.positions),
+            physical,
             &self.physical,
         );
         passes.plate.encode(
@@ -303,19 +303,19 @@ impl Capture {
             .encode(gpu, encoder, &self.plan.self_shadow, &shadowed, maps);
     }
 
-    /// Encodes visibility and ambient visibility of the toy at `positions`.
+    /// Encodes visibility and ambient visibility of the toy in a pose.
     pub(crate) fn encode_visibilities(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         passes: &Passes,
-        (toy, positions): (&ToyMesh, &wgpu::Buffer),
+        (toy, pose): (&ToyMesh, &PoseBuffers),
         outputs: &Visibilities,
     ) {
         for (points, visibility) in self.light_points.iter().zip(&passes.lights) {
             let caster = Caster {
                 toy,
-                positions,
+                pose,
                 points,
             };
             passes
@@ -328,7 +328,7 @@ impl Capture {
         }
         let caster = Caster {
             toy,
-            positions,
+            pose,
             points: &self.ambient_directions,
         };
         passes

@@ -105,8 +105,8 @@ impl Passes {
         toy: &ToyMesh,
         frame: &wgpu::TextureView,
     ) {
-        capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
         let shown = (toy, &toy.shown);
+        capture.encode_visibilities(gpu, encoder, self, shown, &capture.shown);
         capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
         self.motion
             .encode(gpu, encoder, &capture.globals, toy, &capture.motion);

@@ -1,9 +1,11 @@
 //! `occlusion`: shadows of the posed toy on the receivers from many light points, 16 of them a pass.
 
+use std::ops::Range;
+
 use glam::{UVec2, Vec4};
 use wgpu::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
-    DepthStencilState, StencilFaceState, StencilOperation, StencilState, TextureFormat, VertexFormat,
+    DepthStencilState, Face, StencilFaceState, StencilOperation, StencilState, TextureFormat, VertexFormat,
 };
 
 use crate::gpu::Gpu;
@@ -13,7 +15,7 @@ use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages};
 use crate::gpu::shaders::OCCLUSION;
 use crate::gpu::texture::{Texture, TextureShape};
 
-use super::toy_mesh::{Stream, ToyMesh};
+use super::toy_mesh::{PoseBuffers, Stream, ToyMesh};
 
 /// Light points that one colour target holds: four channels of four multisample positions.
 const POINTS_PER_TARGET: u32 = 16;
@@ -75,6 +77,8 @@ impl Occlusion {
             targets: &[Some(saturating())],
             n_samples: N_SAMPLES,
             depth: is_routed.then(|| stencil(CompareFunction::Equal, StencilOperation::Keep)),
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            culled: Some(Face::Back),
             constants: &[],
         };
         let cover_stages = Stages {
@@ -88,6 +92,7 @@ impl Occlusion {
                 ..FORMAT.into()
             })],
             depth: Some(stencil(CompareFunction::Always, StencilOperation::Replace)),
+            culled: None,
             ..cover
         };
         let route_stages = Stages {
@@ -113,6 +118,7 @@ impl Occlusion {
     ) {
         let n_points = u32::try_from(caster.points.len()).unwrap_or(0) / self.n_receivers;
         let uniform = light_points_uniform(caster.points, n_points, targets.texel_px);
+        let triangles = caster.triangles(n_points as usize);
         let points = gpu.uniform("light points", &uniform);
         let groups = |pipeline: &wgpu::RenderPipeline| {
             [(GROUP_GLOBALS, globals), (GROUP_PASS, &points)].map(|(group, buffer)| {
@@ -135,13 +141,12 @@ impl Occlusion {
                 }
             }
             bind(&mut render, &self.cover, &cover);
+            caster.toy.bind_positions(&mut render, &caster.pose.positions);
             for receiver in 0..self.n_receivers {
                 render.set_stencil_reference(receiver + 1);
                 let start = receiver * n_points + first;
                 let instances = start..start + n_points.min(POINTS_PER_TARGET);
-                caster
-                    .toy
-                    .draw_instances(&mut render, caster.positions, instances);
+                render.draw_indexed(triangles.clone(), 0, instances);
             }
         }
     }
@@ -213,7 +218,21 @@ fn light_points_uniform(points: &[Vec4], n_points: u32, texel_px: [f32; 2]) -> L
 /// A posed toy and the light points that it hides.
 pub(crate) struct Caster<'a> {
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) positions: &'a wgpu::Buffer,
+    pub(crate) pose: &'a PoseBuffers,
     /// Those in the space of the first receiver, then those of the next.
     pub(crate) points: &'a [Vec4],
+}
+
+impl Caster<'_> {
+    /// What to draw of it, of which only triangles that face the light are seen.
+    fn triangles(&self, n_points: usize) -> Range<u32> {
+        let ranges = &self.toy.shadow_ranges;
+        // The first receiver's space is the pose's own.
+        let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
+        if self.points.iter().take(n_points).any(is_within) {
+            ranges.both_sides.clone()
+        } else {
+            ranges.facing.clone()
+        }
+    }
 }

@@ -40,6 +40,7 @@ impl Visibility {
             targets: &[Some(target)],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants: &constants,
         };
         let pipeline = gpu.render_pipeline(&VISIBILITY, &gpu.module(&VISIBILITY), &stages, &shape);
