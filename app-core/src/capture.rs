@@ -81,7 +81,6 @@ impl Capture {
         let region_px = plan.region.size_px;
         let target = |label, format| texture(gpu, label, region_px, (format, 1));
         let n_receivers = plan.n_receivers as usize;
-        let most_light_points = plan.lights.iter().map(|light| light.n_points).max().unwrap_or(0);
         Self {
             known: *globals,
             globals: gpu.uniform("globals", globals),
@@ -105,18 +104,8 @@ impl Capture {
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
-            light_targets: OcclusionTargets::new(
-                gpu,
-                (region_px, region_px),
-                most_light_points,
-                plan.n_receivers,
-            ),
-            ambient_targets: OcclusionTargets::new(
-                gpu,
-                (plan.ambient_px, region_px),
-                plan.n_ambient_directions,
-                plan.n_receivers,
-            ),
+            light_targets: OcclusionTargets::new(gpu, region_px, region_px),
+            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, region_px),
             // Each receiver has its own hemisphere.
             ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
             stage_points: light_points

@@ -67,41 +67,6 @@ impl Encoder {
         depth: Option<&wgpu::TextureView>,
         keep_depth: wgpu::StoreOp,
     ) -> wgpu::RenderPass<'a> {
-        let depth = depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: keep_depth,
-            }),
-            stencil_ops: None,
-        });
-        self.render_onto(pass, colors, depth)
-    }
-
-    /// Begins a render pass whose stencil starts at zero and never leaves the chip, where there is one.
-    pub(crate) fn render_routed<'a>(
-        &'a mut self,
-        pass: &'static str,
-        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-        stencil: Option<&wgpu::TextureView>,
-    ) -> wgpu::RenderPass<'a> {
-        let stencil = stencil.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: None,
-            stencil_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0),
-                store: wgpu::StoreOp::Discard,
-            }),
-        });
-        self.render_onto(pass, colors, stencil)
-    }
-
-    fn render_onto<'a>(
-        &'a mut self,
-        pass: &'static str,
-        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-        depth_stencil: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
-    ) -> wgpu::RenderPass<'a> {
         let timed = self.timer.as_mut().and_then(|timer| timer.next(self.path, pass));
         let stamps = timed.map(|(query_set, first)| wgpu::RenderPassTimestampWrites {
             query_set,
@@ -111,7 +76,14 @@ impl Encoder {
         self.raw.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(pass),
             color_attachments: colors,
-            depth_stencil_attachment: depth_stencil,
+            depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: keep_depth,
+                }),
+                stencil_ops: None,
+            }),
             timestamp_writes: stamps,
             occlusion_query_set: None,
             multiview_mask: None,
