@@ -10,7 +10,6 @@ override N_POINTS: u32 = 64u;
 
 @fragment
 fn fs_average(@builtin(position) at: vec4f) -> @location(0) vec4f {
-  // The mean of four multisample positions, less what storing it rounded away: a point is some four codes.
-  let n_hidden = round(4.0 * textureLoad(hidden, vec2u(at.xy), 0).r / HIDDEN_POINT);
+  let n_hidden = round(textureLoad(hidden, vec2u(at.xy), 0).r / HIDDEN_POINT);
   return vec4f(1.0 - n_hidden / f32(N_POINTS));
 }

@@ -1,2 +1,2 @@
-// What one hidden light point adds at its multisample position: a whole code, of which 16 points fit into eight bits.
-const HIDDEN_POINT: f32 = 15.0 / 255.0;
+// What one hidden light point adds: whole codes, of which 64 points fit into eight bits.
+const HIDDEN_POINT: f32 = 3.0 / 255.0;

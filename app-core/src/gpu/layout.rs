@@ -12,7 +12,7 @@ pub const MAX_PLATES: usize = 4;
 pub const MAX_CELLS: usize = 64 * 64;
 /// Most unknowns of a fit: two, and one a light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
-/// Most light points of one occlusion pass: 16 at each of four multisample positions.
+/// Most light points of one occlusion pass, of which each adds some of the codes that eight bits have.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
 /// Most depth maps of the toy from the lights.

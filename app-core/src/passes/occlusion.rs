@@ -9,7 +9,7 @@ use wgpu::{
 };
 
 use crate::gpu::Gpu;
-use crate::gpu::encoder::{Encoder, resolved};
+use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS, MAX_RECEIVERS};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface};
 use crate::gpu::shaders::OCCLUSION;
@@ -17,7 +17,7 @@ use crate::gpu::texture::{Texture, TextureShape};
 
 use super::toy_mesh::{PoseBuffers, Stream, ToyMesh};
 
-const N_SAMPLES: u32 = 4;
+/// Format of what hidden points add up to.
 const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Format of the depths that tell light points apart.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
@@ -30,9 +30,9 @@ pub(crate) struct Occlusion {
     n_receivers: u32,
 }
 
-/// Targets for maps of one size: multisampled ones that stay on the chip, and what they are resolved to.
+/// Targets for maps of one size.
 pub(crate) struct OcclusionTargets {
-    samples: Texture,
+    /// Which point was drawn last; never leaves the chip.
     order: Texture,
     pub(crate) hidden: Texture,
     /// Size of a texel in the region.
@@ -42,18 +42,17 @@ pub(crate) struct OcclusionTargets {
 impl OcclusionTargets {
     /// For maps of `size_px` texels over a region of `region_px` pixels.
     pub(crate) fn new(gpu: &Gpu, size_px: UVec2, region_px: UVec2) -> Self {
-        let texture = |label, format, n_samples| {
+        let texture = |label, format| {
             let shape = TextureShape {
                 size_px: size_px.to_array(),
                 format,
-                n_samples,
+                n_samples: 1,
             };
             Texture::target(gpu, label, shape)
         };
         Self {
-            samples: texture("occlusion samples", FORMAT, N_SAMPLES),
-            order: texture("occlusion order", ORDER_FORMAT, N_SAMPLES),
-            hidden: texture("occlusion", FORMAT, 1),
+            order: texture("occlusion order", ORDER_FORMAT),
+            hidden: texture("occlusion", FORMAT),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
         }
     }
@@ -65,7 +64,7 @@ impl Occlusion {
         let stream = Stream::new(0, VertexFormat::Float32x3);
         let cover = RenderShape {
             targets: &[Some(adding())],
-            n_samples: N_SAMPLES,
+            n_samples: 1,
             depth: Some(ordered(CompareFunction::Greater)),
             // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
             culled: Some(Face::Back),
@@ -119,7 +118,7 @@ impl Occlusion {
         let cover = groups(&self.cover);
         let route = self.route.as_ref().map(|pipeline| (pipeline, groups(pipeline)));
         let triangles = caster.triangles(n_points as usize);
-        let colors = [Some(resolved(&targets.samples.view, &targets.hidden.view))];
+        let colors = [Some(cleared(&targets.hidden.view))];
         let order = Some(&targets.order.view);
         let mut render = encoder.render(OCCLUSION.name, &colors, order, StoreOp::Discard);
         caster.toy.bind_positions(&mut render, &caster.pose.positions);
