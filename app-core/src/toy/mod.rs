@@ -1,7 +1,7 @@
 //! The toy: a glTF file as one posable mesh.
 //!
 //! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
-//! triangles, materials, texture coordinates.
+//! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`).
 //! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) set nodes and morph weights (`rig`), the
 //! weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
