@@ -169,13 +169,7 @@ impl Capture {
         passes
             .evidence
             .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
-        self.encode_visibilities(
-            gpu,
-            encoder,
-            passes,
-            physical,
-            &self.physical,
-        );
+        self.encode_visibilities(gpu, encoder, passes, physical, &self.physical);
         passes.plate.encode(
             gpu,
             encoder,
@@ -302,11 +296,7 @@ impl Capture {
         outputs: &Visibilities,
     ) {
         for (points, visibility) in self.light_points.iter().zip(&passes.lights) {
-            let caster = Caster {
-                toy,
-                pose,
-                points,
-            };
+            let caster = Caster { toy, pose, points };
             passes
                 .occlusion
                 .encode(gpu, encoder, &self.globals, &caster, &self.light_targets);

@@ -91,8 +91,7 @@ impl Occlusion {
         };
         Self {
             cover: gpu.render_pipeline(&OCCLUSION, &module, &cover_stages, &cover),
-            route: (n_receivers > 1)
-                .then(|| gpu.render_pipeline(&OCCLUSION, &module, &route_stages, &route)),
+            route: (n_receivers > 1).then(|| gpu.render_pipeline(&OCCLUSION, &module, &route_stages, &route)),
             n_receivers,
         }
     }

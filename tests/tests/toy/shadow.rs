@@ -60,14 +60,14 @@ fn a_closed_piece_is_drawn_from_one_side_and_an_open_one_from_both() {
 #[test]
 fn what_lacks_a_face_or_has_one_turned_around_is_open() {
     let [a, b, c] = FACES[3];
-    for faces in [
-        &FACES[..3],
-        &[FACES[0], FACES[1], FACES[2], [a, c, b]],
-    ] {
+    for faces in [&FACES[..3], &[FACES[0], FACES[1], FACES[2], [a, c, b]]] {
         let n_triangles = u32::try_from(faces.len() + 1).unwrap();
         let toy = faceted(faces);
         let ranges = &toy.shadow_indices().ranges;
-        assert_eq!((ranges.all.end, ranges.facing.end), (3 * n_triangles, 6 * n_triangles));
+        assert_eq!(
+            (ranges.all.end, ranges.facing.end),
+            (3 * n_triangles, 6 * n_triangles)
+        );
     }
 }
 
