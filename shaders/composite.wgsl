@@ -133,7 +133,7 @@ fn receiver(position: vec4f) -> Receiver {
   let keep = seen * max(is_near, is_unknown);
   let inside = max(inside_border(at), 1.0 - seen);
   return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
-    select(1.0 - evident.r, 0.0, has_moved) * is_near);
+    select(1.0 - evident.r, 0.0, has_moved || evident.a < 1.0) * is_near);
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {

@@ -1,5 +1,5 @@
 // Which pixels of the frame show what: r is 1 where it is clear of the toy, g where it shows one surface of the toy, b
-// where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right.
+// where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are evidence of neither.
 // Reads: depth of the physical toy. Writes: 0 or 1 each.

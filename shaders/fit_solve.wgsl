@@ -23,7 +23,7 @@ const MOST_KEPT: f32 = 8.0;
 const WHITE_WEIGHT: f32 = 0.003;
 // A toy of middle grey throws back this fraction of the ambient light it takes away.
 const PRIOR_BOUNCE: f32 = 0.2;
-// All lights together, half of the plate's radiance.
+// All lights together, half of the plate's radiance; each as if it gave as much as the others at one metre.
 const PRIOR_SHARE: f32 = 0.5;
 // Shares sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
 const MAX_SHARE: f32 = 0.98;
@@ -49,12 +49,20 @@ fn of_first(i: u32) -> f32 {
   return select(0.0, irradiance(step.receiver, i) / first, first > 0.0);
 }
 
+// A light's share of the first receiver's radiance, before any is seen.
+fn first_share(light: u32) -> f32 {
+  var total = 0.0;
+  for (var i = 0u; i < step.n_columns - 2u; i++) { total += irradiance(0u, i); }
+  if total == 0.0 { return 0.0; }
+  return PRIOR_SHARE * irradiance(0u, light) / total;
+}
+
 // What is expected of a receiver before it is seen in shadow. Of the first, common values; of the others, that the same
 // lights shine on them, amid as much ambient light.
 fn receiver_prior(column: u32, channel: u32) -> f32 {
   if column == 0u { return 1.0; }
-  if step.receiver == 0u { return select(PRIOR_SHARE / f32(step.n_columns - 2u), PRIOR_BOUNCE, column == 1u); }
-  if column == 1u { return solution.receivers[0].bounce[channel]; }
+  if column == 1u { return select(solution.receivers[0].bounce[channel], PRIOR_BOUNCE, step.receiver == 0u); }
+  if step.receiver == 0u { return first_share(column - 2u); }
   var total = 1.0;
   for (var i = 0u; i < step.n_columns - 2u; i++) { total += solution.receivers[0].share[i][channel] * (of_first(i) - 1.0); }
   // A light behind the first receiver tells nothing there.

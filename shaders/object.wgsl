@@ -1,7 +1,8 @@
 // The toy in its physical pose as the camera sees it: base colour, normal, what it receives of each light, and depth.
 //
 // Reads: physical positions and normals in stage space, materials, depth maps from the lights. Writes: base colour (linear,
-// alpha 1 on the toy), unit normal in stage space, each light's cosine times its visibility, reversed depth.
+// alpha 1 on the toy), unit normal in stage space and the material's number, each light's cosine times its visibility,
+// reversed depth.
 
 struct Vertex {
   @location(0) in_stage: vec3f,
@@ -33,5 +34,5 @@ struct ObjectTexel {
 fn fs_describe(in: Surface) -> ObjectTexel {
   let base = vec4f(base_color(in.uv, in.color), 1.0);
   let normal = unit_normal(in.normal);
-  return ObjectTexel(base, vec4f(normal, 0.0), light_received(normal, in.in_stage));
+  return ObjectTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in.in_stage));
 }

@@ -1,12 +1,12 @@
 // The toy in the pose to be shown, drawn with its camera pixels.
 //
 // Its surface takes the camera's pixels where the camera saw that point in the physical pose, scaled by how the fitted light
-// falls on the turned surface; what was hidden takes the model's base colour under the fitted light.
+// falls on the turned surface; what was hidden takes the model's base colour under the fitted light, tinted as the paint
+// beside it is.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
 // Reads: both poses, materials, the toy's own colours and the light they were seen under, the physical toy, the fit, depth
-// maps from the lights. Writes: linear radiance, premultiplied;
-// the resolve makes alpha the coverage.
+// maps from the lights, tints. Writes: linear radiance, premultiplied; the resolve makes alpha the coverage.
 
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;
@@ -14,6 +14,8 @@
 @group(1) @binding(3) var appearance_lit: texture_2d<f32>;
 // By which the whole picture is moved, in pixels to the right and down.
 @group(1) @binding(4) var<uniform> offset_px: vec2f;
+@group(1) @binding(5) var<uniform> tint_grid: TintGrid;
+@group(1) @binding(6) var<storage, read> tints: array<vec4f>;
 
 // A turned surface is never made more than this much brighter or darker than its camera pixel.
 const MAX_TURN: f32 = 4.0;
@@ -122,6 +124,11 @@ fn light_change(texel: vec2i, lit: vec3f) -> f32 {
   return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
 }
 
+// How the real toy's paint differs from its model's at a point of the physical pose.
+fn tint(physical_in_stage: vec3f) -> vec3f {
+  return between_tints(TINT_PYRAMID * tint_grid_of(material.index), TINT_SIDE, tint_place(physical_in_stage)).rgb;
+}
+
 struct Drawn {
   @location(0) radiance: vec4f,
   // Where it shows what the camera did not see in this place.
@@ -138,7 +145,7 @@ fn fs_toy(in: Surface) -> Drawn {
   let clip = globals.clip_from_stage * vec4f(in.physical_in_stage, 1.0);
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(normal, in.in_stage));
-  let unseen = fit.gain.rgb * base * lit;
+  let unseen = fit.gain.rgb * base * tint(in.physical_in_stage) * lit;
   let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_stage, 1.0)), physical_px);

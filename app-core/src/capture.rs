@@ -20,6 +20,7 @@ use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutp
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::plate::PLATE_FORMAT;
 use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
+use crate::passes::tint::TintInputs;
 use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
@@ -51,7 +52,10 @@ pub(crate) struct Capture {
     pub(crate) object_normal: Texture,
     pub(crate) object_received: Texture,
     pub(crate) object_depth: Texture,
-    pub(crate) evidence: Texture,
+    /// What the frame shows.
+    pub(crate) evident: Texture,
+    /// The same without the real shadow, where that is withheld.
+    pub(crate) withheld: Option<Texture>,
     /// What was photographed without the toy.
     pub(crate) photographed: Texture,
     /// The same, with an estimate where nothing was.
@@ -90,7 +94,10 @@ impl Capture {
             object_normal: target("object normal", NORMAL_FORMAT),
             object_received: target("object received", RECEIVED_FORMAT),
             object_depth: target("object depth", TextureFormat::Depth32Float),
-            evidence: target("evidence", EVIDENCE_FORMAT),
+            evident: target("evidence", EVIDENCE_FORMAT),
+            withheld: plan
+                .is_shadow_withheld
+                .then(|| target("withheld evidence", EVIDENCE_FORMAT)),
             photographed: target("plate", PLATE_FORMAT),
             estimated: plan
                 .is_plate_estimated
@@ -135,6 +142,11 @@ impl Capture {
             .write_buffer(&self.globals, 0, bytemuck::bytes_of(globals));
     }
 
+    /// What the frame may tell, but for the first fits.
+    pub(crate) fn evidence(&self) -> &Texture {
+        self.withheld.as_ref().unwrap_or(&self.evident)
+    }
+
     /// The plate that all passes read.
     pub(crate) fn plate(&self) -> &Texture {
         self.estimated
@@ -168,7 +180,7 @@ impl Capture {
         passes.object.encode(gpu, encoder, &inputs, &outputs);
         passes
             .evidence
-            .encode(gpu, encoder, &self.object_depth.view, &self.evidence.view);
+            .encode(gpu, encoder, &self.object_depth.view, &self.evident.view);
         self.encode_visibilities(gpu, encoder, passes, physical, &self.physical);
         passes.plate.encode(
             gpu,
@@ -196,8 +208,14 @@ impl Capture {
             passes,
             knowledge,
             frame: pictures.frame,
+            fit_evidence: if is_first {
+                &self.evident.view
+            } else {
+                &self.evidence().view
+            },
         };
         if !is_first {
+            learner.withhold(encoder);
             learner.estimate_plate(encoder, Fineness::Smooth);
             learner.fit_levels(encoder);
         }
@@ -212,6 +230,9 @@ impl Capture {
                 learner.estimate_plate(encoder, Fineness::Smooth);
                 learner.fit_receivers(encoder, is_first);
             }
+        }
+        if is_first {
+            learner.withhold(encoder);
         }
         learner.estimate_plate(encoder, Fineness::Full);
         learner.fit(encoder, Subject::Toy, 0, is_first);
@@ -235,6 +256,7 @@ impl Capture {
             passes,
             knowledge,
             frame,
+            fit_evidence: &self.evidence().view,
         };
         learner.fit_levels(encoder);
         learner.pool_residual(encoder);
@@ -253,7 +275,7 @@ impl Capture {
             globals: &self.globals,
             solution: &knowledge.solution,
             frame,
-            evidence: &self.evidence.view,
+            evidence: &self.evident.view,
             object_depth: &self.object_depth.view,
             object_normal: &self.object_normal.view,
             object_received: &self.object_received.view,
@@ -265,6 +287,18 @@ impl Capture {
             base: &self.appearance_base.view,
         };
         passes.appearance.encode(gpu, encoder, &inputs, &outputs);
+        let inputs = TintInputs {
+            plan: &self.plan,
+            globals: &self.globals,
+            solution: &knowledge.solution,
+            frame,
+            evidence: &self.evident.view,
+            object_depth: &self.object_depth.view,
+            object_normal: &self.object_normal.view,
+            object_received: &self.object_received.view,
+            object_base: &self.object_base.view,
+        };
+        passes.tint.encode(gpu, encoder, &inputs, &knowledge.tints);
     }
 
     /// Encodes the shadow that the toy casts on itself in a pose.

@@ -1,24 +1,22 @@
 //! [`Core`]: the one type a shell or a harness holds.
 
+mod read;
+
 use std::sync::Arc;
 
-use bytemuck::Zeroable;
 use thiserror::Error;
 
-use crate::frame::{FrameInput, FrameReport, Warning};
+use crate::frame::{FrameInput, FrameReport};
 use crate::gpu::encoder::{Encoder, PassTime, Stamps};
-use crate::gpu::layout::{Fit, Grid, MAX_CELLS};
 use crate::gpu::{AdapterChoice, Gpu, GpuError};
 use crate::inject::InjectedVisibility;
-use crate::maps::{FloatMap, Map};
 use crate::plan::Plan;
 use crate::preset::Preset;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::toy::ToyError;
-use crate::unknown::{Unknown, unknowns};
 use crate::window::Window;
-use crate::work::Work;
+use crate::work::{Model, Work};
 
 /// Why the core cannot go on.
 #[derive(Debug, Error)]
@@ -65,10 +63,6 @@ pub enum CoreError {
     #[error("the scene has no receiver")]
     NoReceiver,
 }
-
-/// Energy of the lights' columns over that of the plate, below which too little real shadow was seen to tell the shares:
-/// at 0.006 a share was off by 0.1, at 0.024 and above by less than 0.01.
-const FAINT_CONTRAST: f32 = 0.01;
 
 /// The pipeline on a device: scene in, frames in, pictures out.
 pub struct Core {
@@ -211,50 +205,6 @@ impl Core {
             .unwrap_or_default())
     }
 
-    /// Waits for the device and returns what the model learned from the real shadow, once anything was.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
-        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
-            return Ok(None);
-        };
-        let bytes = self.gpu.read_buffer(&model.knowledge.solution)?;
-        let mut fit = Fit::zeroed();
-        bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
-        Ok(Some(fit))
-    }
-
-    /// Waits for the device and returns what was learned that gives to worry about.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
-        let Some(fit) = self.read_fit()? else {
-            let work = self.stage.as_ref().and_then(Stage::work);
-            let warnings = work.map(|work| work.read_warnings(&self.gpu)).transpose()?;
-            return Ok(warnings.unwrap_or_default());
-        };
-        let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
-        let contrast = contrasts.copied().fold(0.0, f32::max);
-        let faint = (contrast < FAINT_CONTRAST).then_some(Warning::FaintShadow { contrast });
-        let unknown = self.read_unknowns()?.into_iter().map(Warning::Unknown);
-        Ok(faint.into_iter().chain(unknown).collect())
-    }
-
-    fn read_unknowns(&self) -> Result<Vec<Unknown>, CoreError> {
-        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
-            return Ok(Vec::new());
-        };
-        let kept = self.gpu.read_buffer(&model.knowledge.residual.kept)?;
-        let kept: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&kept);
-        let receivers = kept.chunks(MAX_CELLS).map(unknowns);
-        let mut found: Vec<Unknown> = receivers.flatten().collect();
-        found.sort_unstable_by_key(|unknown| *unknown as u8);
-        found.dedup();
-        Ok(found)
-    }
-
     /// Replaces visibilities of the lights in what follows, so that errors of visibility can be told from all others.
     ///
     /// What was learned is learned again with the next frame. The maps stay until the place, the camera or the scene
@@ -286,41 +236,27 @@ impl Core {
         Ok(())
     }
 
-    /// Waits for the device and returns a map of the latest retargeted frame, once there was one.
+    /// Keeps the real shadow from what follows, so that how well it is rebuilt can be measured on photographs that have no
+    /// truth: of the first frame it tells the fits, and nothing else; of later ones nothing. The physical pose is then made
+    /// like any other, and its photograph is its truth.
+    ///
+    /// Until another scene is set. A measuring aid for the presets of the model; `paper` and `flat` stay as they are.
     ///
     /// # Errors
-    /// When the device is lost.
-    pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
-        let Some(work) = self.stage.as_ref().and_then(Stage::work) else {
-            return Ok(None);
-        };
-        Ok(work.read_map(&self.gpu, map)?)
-    }
-
-    /// Waits for the device and returns each receiver's coarse grid with the filled residuals on it, once there was a
-    /// retargeted frame of the model.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {
-        let Some(model) = self.stage.as_ref().and_then(Stage::work).and_then(Work::model) else {
-            return Ok(Vec::new());
-        };
-        let grids = model.knowledge.layout.grids.into_iter().enumerate();
-        let residuals = grids
-            .take(model.capture.plan.n_receivers as usize)
-            .map(|(receiver, grid)| Ok((grid, model.read_residual(&self.gpu, receiver)?)));
-        residuals.collect()
+    /// When there is no scene.
+    pub fn withhold_shadow(&mut self) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
+        Ok(())
     }
 
     /// The model's plan of the latest retargeted frame, once there was one.
     #[must_use]
     pub fn plan(&self) -> Option<&Plan> {
-        self.stage
-            .as_ref()
-            .and_then(Stage::work)
-            .and_then(Work::model)
-            .map(|model| &model.capture.plan)
+        self.model().map(|model| &model.capture.plan)
+    }
+
+    fn model(&self) -> Option<&Model> {
+        self.stage.as_ref().and_then(Stage::work).and_then(Work::model)
     }
 
     /// The device, for reports.

@@ -81,6 +81,12 @@ pub enum Warning {
         /// Energy of the lights' columns over that of the plate.
         contrast: f32,
     },
+    /// The real shadow does not tell how strong some lights are, since theirs falls together with that of others, or where the
+    /// camera does not see it.
+    LightsNotTold {
+        /// Their places among the lights in use.
+        lights: Vec<usize>,
+    },
     /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
     NothingToSample,
     /// New shadows fall or overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
@@ -130,6 +136,15 @@ impl fmt::Display for Warning {
             Self::FaintShadow { contrast } => write!(
                 f,
                 "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
+            ),
+            Self::LightsNotTold { lights } => write!(
+                f,
+                "the real shadow does not tell how strong {} is: it is taken to be a light like the others",
+                lights
+                    .iter()
+                    .map(|light| format!("light {light}"))
+                    .collect::<Vec<_>>()
+                    .join(" or ")
             ),
             Self::NothingToSample => f.write_str(
                 "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",

@@ -5,9 +5,11 @@ use wgpu::BufferUsages;
 use crate::gpu::Gpu;
 use crate::gpu::layout::Grids;
 use crate::grids::CellBuffers;
+use crate::light_tiles::Sphere;
 use crate::passes::fit::{Fit, kept_bytes};
+use crate::passes::tint::Tints;
 
-/// Fits, residuals and lit colours, with what they are summed from.
+/// Fits, residuals, lit colours and tints, with what they are summed from.
 pub(crate) struct Knowledge {
     /// What the fit found.
     pub(crate) solution: wgpu::Buffer,
@@ -18,12 +20,18 @@ pub(crate) struct Knowledge {
     pub(crate) grids: wgpu::Buffer,
     pub(crate) residual: CellBuffers,
     pub(crate) lit: CellBuffers,
+    pub(crate) tints: Tints,
     n_lights: usize,
 }
 
 impl Knowledge {
-    /// Nothing known, on `grids`.
-    pub(crate) fn new(gpu: &Gpu, grids: Grids, n_lights: usize) -> Self {
+    /// Nothing known, on `grids`, of a toy of so many materials within a ball.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        grids: Grids,
+        n_lights: usize,
+        (toy, n_materials): (&Sphere, usize),
+    ) -> Self {
         Self {
             solution: gpu.buffer(
                 "fit",
@@ -33,12 +41,13 @@ impl Knowledge {
             fit_sums: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("fit sums"),
                 size: kept_bytes(),
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
             grids: gpu.uniform("grids", &grids),
             residual: CellBuffers::new(gpu, "residual cells", &grids),
             lit: CellBuffers::new(gpu, "lit cells", &grids),
+            tints: Tints::new(gpu, toy, n_materials),
             layout: grids,
             n_lights,
         }
@@ -49,6 +58,7 @@ impl Knowledge {
         gpu.queue
             .write_buffer(&self.solution, 0, bytemuck::bytes_of(&Fit::start(self.n_lights)));
         encoder.clear_buffer(&self.residual.kept, 0, None);
+        encoder.clear_buffer(&self.tints.kept, 0, None);
         self.forget_sums(encoder);
     }
 

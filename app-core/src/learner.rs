@@ -11,6 +11,7 @@ use crate::passes::estimate::{EstimateInputs, Fineness};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
 use crate::passes::residual::ResidualInputs;
+use crate::passes::withhold::WithholdInputs;
 use crate::pipeline::{EstimatePasses, Passes};
 use crate::pool::PoolGrids;
 
@@ -20,6 +21,8 @@ pub(crate) struct Learner<'a> {
     pub(crate) passes: &'a Passes,
     pub(crate) knowledge: &'a Knowledge,
     pub(crate) frame: &'a wgpu::TextureView,
+    /// What the frame may tell the fits.
+    pub(crate) fit_evidence: &'a wgpu::TextureView,
 }
 
 impl Learner<'_> {
@@ -46,7 +49,7 @@ impl Learner<'_> {
         let inputs = FitInputs {
             frame: self.frame,
             plate: &capture.plate().view,
-            evidence: &capture.evidence.view,
+            evidence: self.fit_evidence,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
             object_base: &capture.object_base.view,
@@ -76,7 +79,7 @@ impl Learner<'_> {
         let inputs = LitInputs {
             on: self.pool_grids(&knowledge.lit),
             frame: self.frame,
-            evidence: &capture.evidence.view,
+            evidence: self.fit_evidence,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };
@@ -97,7 +100,7 @@ impl Learner<'_> {
             lit_cells: &knowledge.lit.cells,
             plate: &capture.photographed.view,
             frame: self.frame,
-            evidence: &capture.evidence.view,
+            evidence: &capture.evidence().view,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };
@@ -116,7 +119,23 @@ impl Learner<'_> {
             solution: &knowledge.solution,
             frame: self.frame,
             plate: &capture.plate().view,
-            evidence: &capture.evidence.view,
+            evidence: &capture.evidence().view,
+            visibility: &capture.physical.lights.view,
+            ambient: &capture.physical.ambient.view,
+        };
+        pass.encode(self.gpu, encoder, &inputs, &target.view);
+    }
+
+    /// Keeps the real shadow from what follows, where that is asked for.
+    pub(crate) fn withhold(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let (Some(pass), Some(target)) = (&self.passes.withhold, &capture.withheld) else {
+            return;
+        };
+        let inputs = WithholdInputs {
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            evidence: &capture.evident.view,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };
@@ -130,7 +149,7 @@ impl Learner<'_> {
             on: self.pool_grids(&knowledge.residual),
             frame: self.frame,
             plate: &capture.plate().view,
-            evidence: &capture.evidence.view,
+            evidence: &capture.evidence().view,
             visibility: &capture.physical.lights.view,
             ambient: &capture.physical.ambient.view,
         };

@@ -20,6 +20,7 @@ pub mod outline;
 pub mod plan;
 pub mod preset;
 pub mod region;
+pub mod resolution;
 pub mod scene;
 pub mod session;
 pub mod toy;

@@ -92,7 +92,7 @@ impl Model {
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let capture = &self.capture;
         let map = match map {
-            Map::Evidence => read_texture(gpu, &capture.evidence.raw),
+            Map::Evidence => read_texture(gpu, &capture.evidence().raw),
             Map::ObjectBase => read_texture(gpu, &capture.object_base.raw),
             Map::ObjectReceived => read_texture(gpu, &capture.object_received.raw),
             Map::Appearance => read_texture(gpu, &capture.appearance.raw),

@@ -20,9 +20,11 @@ use crate::passes::plate::Plate;
 use crate::passes::present::{Present, PresentInputs};
 use crate::passes::residual::Residual;
 use crate::passes::self_shadow::SelfShadow;
+use crate::passes::tint::Tint;
 use crate::passes::toy::{Toy, ToyInputs};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::passes::visibility::Visibility;
+use crate::passes::withhold::Withhold;
 use crate::plan::Plan;
 use crate::work::Work;
 
@@ -47,6 +49,7 @@ pub(crate) struct Passes {
     pub(crate) object: Object,
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
+    pub(crate) tint: Tint,
     pub(crate) occlusion: Occlusion,
     /// One a light.
     pub(crate) lights: Vec<Visibility>,
@@ -54,6 +57,7 @@ pub(crate) struct Passes {
     pub(crate) plate: Plate,
     pub(crate) estimate: Option<EstimatePasses>,
     pub(crate) fit: Fit,
+    pub(crate) withhold: Option<Withhold>,
     pub(crate) residual: Residual,
     pub(crate) fill: Fill,
     pub(crate) detail: Option<Detail>,
@@ -69,6 +73,7 @@ impl Passes {
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
+            tint: Tint::new(gpu),
             occlusion: Occlusion::new(gpu, plan.n_receivers),
             lights: plan
                 .lights
@@ -80,6 +85,7 @@ impl Passes {
             plate: Plate::new(gpu),
             estimate: plan.is_plate_estimated.then(|| EstimatePasses::new(gpu)),
             fit: Fit::new(gpu),
+            withhold: plan.is_shadow_withheld.then(|| Withhold::new(gpu)),
             residual: Residual::new(gpu),
             fill: Fill::new(gpu),
             detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
@@ -118,6 +124,7 @@ impl Passes {
             object_depth: &capture.object_depth.view,
             appearance_base: &capture.appearance_base.view,
             self_shadow: &capture.shown_self_shadow,
+            tints: &knowledge.tints,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
         let inputs = CompositeInputs {
@@ -127,7 +134,7 @@ impl Passes {
             cells: &knowledge.residual.cells,
             frame,
             plate: &capture.plate().view,
-            evidence: &capture.evidence.view,
+            evidence: &capture.evidence().view,
             physical_visibility: &capture.physical.lights.view,
             physical_ambient: &capture.physical.ambient.view,
             visibility: &capture.shown.lights.view,

@@ -59,6 +59,7 @@ pub const BALANCED: Settings = Settings {
     n_self_shadow_points: 16,
     self_shadow_tile_px: 256,
     is_noise_removed: false,
+    is_shadow_withheld: false,
 };
 
 /// What `best` spends.
@@ -123,6 +124,9 @@ pub struct Settings {
     pub self_shadow_tile_px: u32,
     /// Whether the real shadow is cleared of the photograph's noise, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
+    /// Whether the real shadow is kept from all but the first fits, and the physical pose made like any other: see
+    /// [`Core::withhold_shadow`](crate::core::Core::withhold_shadow). No preset does so.
+    pub is_shadow_withheld: bool,
 }
 
 /// The constants that the papers leave open.

@@ -2,6 +2,9 @@
 
 struct Material {
   base_color_linear: vec4f,
+  index: u32,
+  _pad_0: u32,
+  _pad_1: vec2u,
 }
 
 @group(2) @binding(0) var<uniform> material: Material;

@@ -92,6 +92,7 @@ def make(setup, out, spp):
     out.mkdir(parents=True, exist_ok=True)
     toy_file(setup.toy, out / "toy.glb")
     toy = Toy(out / "toy.glb")
+    toy.paint(setup.paints)
     photographer = Photographer(setup, spp)
     for name, shot in [*plates(setup), *photographs(setup, toy)]:
         photographer.shoot(shot, out / name)

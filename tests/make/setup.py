@@ -121,6 +121,7 @@ class Setup:
     focal: float = 0.9  # in picture widths
     yaw: float = -52.0
     scale: float = 1.0
+    paints: tuple = ()  # per material of the toy: factor on its colours that the toy's file does not know
     lift: float = 0.0  # of the toy above the table
     receivers: tuple = (Receiver(),)
     lights: tuple = (Bulb(),)

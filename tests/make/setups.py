@@ -66,6 +66,9 @@ REST = (
     scene("environment-even", "Broad uneven surroundings, no dominant light: none is listed.", sky="overcast", lights=(), effort=4),
     scene("contact", "A foot leaves the table; the surroundings give most of the light.", lights=(Bulb(share=0.3),),
           poses=(("Step", 0.25), ("Step", 0.5), ("Step", 1.3)), eye=(-0.06, 0.17, 0.33), target=(0.0, 0.05, 0.0)),
+    scene("repainted", "The real toy's paints are faded and tinted against its file's; the shown poses turn up sides that the camera has not seen.", toy="turning-llama",
+          poses=(("Turn", 0.4), ("Turn", 1.0), ("Look", 1.8)),
+          paints=((0.8, 0.62, 0.5), (1.6, 1.4, 1.1), (0.7, 0.8, 0.95), (1.0, 1.0, 1.0), (0.65, 1.5, 1.2), (0.8, 0.9, 1.2), (0.55, 0.7, 0.85))),
     scene("orbit-calm", "Twelve frames of a slowly moving camera; the shown pose stays the same.", views=orbit(12, 96.0, 90.0), plates=(0, 11),
           poses=(("Look", 1.8),) * 12, rate=60.0, receivers=(TILES,)),
 )

@@ -60,6 +60,12 @@ class Toy:
         self.document = json.loads(raw[20:20 + length])
         self.binary = raw[28 + length:]
 
+    def paint(self, factors):
+        """Multiplies the base colour of each material, linear."""
+        for material, factor in zip(self.document["materials"], factors):
+            surface = material["pbrMetallicRoughness"]
+            surface["baseColorFactor"] = [*(np.array(surface["baseColorFactor"][:3]) * factor), 1.0]
+
     def accessor(self, index):
         """Tightly packed accessor as an array, normalised integers as fractions."""
         entry = self.document["accessors"][index]

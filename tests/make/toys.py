@@ -17,9 +17,14 @@ def leap():
     return Clip("Leap", [0.0, 0.5, 1.0], {"tail": [still, toy.turn(x=30), still]}, {"root": [toy.cm(0, 100 * h, 0) for h in heights]})
 
 
-def leaping_llama(path):
-    """The llama with one more clip, after its own."""
-    write_glb(path, toy.carve(), toy.joints(), toy.materials(), [*toy.clips(), leap()])
+def about_turn():
+    """"Turn": all of the toy turns on the spot to the left, by 120 degrees in a second."""
+    return Clip("Turn", [0.0, 0.5, 1.0], {"root": [toy.turn(y=angle) for angle in (0, 60, 120)]})
+
+
+def more_clips(path, *clips):
+    """The llama with more clips, after its own."""
+    write_glb(path, toy.carve(), toy.joints(), toy.materials(), [*toy.clips(), *clips])
 
 
 def toy_file(name, path):
@@ -28,4 +33,6 @@ def toy_file(name, path):
         if path.resolve() != BUNDLED.resolve():
             shutil.copyfile(BUNDLED, path)
         return
-    {"leaping-llama": leaping_llama, "heron": heron.write, "blockman": blockman.write}[name](path)
+    writers = {"leaping-llama": lambda path: more_clips(path, leap()), "turning-llama": lambda path: more_clips(path, about_turn()),
+               "heron": heron.write, "blockman": blockman.write}
+    writers[name](path)

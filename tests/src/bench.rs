@@ -2,6 +2,7 @@
 
 mod exact;
 mod table;
+mod withheld;
 
 use std::ops::Range;
 use std::time::Instant;
@@ -21,6 +22,7 @@ use crate::replay::{self, ReplayError, replay};
 use crate::report::Report;
 
 pub use table::{csv, table};
+pub use withheld::{Rebuilt, rebuild, rebuilt_table};
 
 /// Presets that are also measured with exact visibility, which tells errors of visibility from all others.
 const EXACT_PRESETS: &[Preset] = &[Preset::Paper, Preset::Balanced];

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use app_core::gpu::shaders::ALL;
 use app_core::plan::{Plan, PublishedPlan, SceneFacts};
-use app_core::preset::{Method, Preset};
+use app_core::preset::{Method, Preset, Settings};
 use app_core::region::PixelRect;
 use glam::UVec2;
 
 /// Passes whose code is in the module of another: the pass, and that module.
-const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit")];
+const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
 /// Modules among the passes that are none.
 const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
 /// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
@@ -107,7 +107,13 @@ fn planned_passes() -> Vec<&'static str> {
         is_plate_complete: false,
     };
     let passes = |preset: &Preset| match preset.method() {
-        Method::Model(settings) => Plan::new(&facts, &settings).passes,
+        Method::Model(settings) => {
+            let settings = Settings {
+                is_shadow_withheld: true,
+                ..settings
+            };
+            Plan::new(&facts, &settings).passes
+        }
         Method::Published(settings) => PublishedPlan::new(&facts, &settings).passes,
         other => panic!("{other:?} has no plan here"),
     };

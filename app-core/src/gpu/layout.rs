@@ -12,8 +12,21 @@ pub const MAX_PLATES: usize = 4;
 pub const MAX_CELLS: usize = 64 * 64;
 /// Most unknowns of a fit: two, and one a light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
+/// Sums of a fit in one channel: the upper triangle of the normal equations row by row, and their right-hand side.
+pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
+/// Weight of the fit's priors against the energy of its first column.
+pub const PRIOR_WEIGHT: f32 = 1e-4;
 /// Most light points of one occlusion pass, of which each adds some of the codes that eight bits have.
 pub const MAX_LIGHT_POINTS: usize = 64;
+
+/// Cells of a grid of tints along each side.
+pub const TINT_SIDE: usize = 16;
+/// Cells of a grid of tints, and of all levels of its pyramid: 16, 8, 4, 2 and 1 along each side.
+pub const TINT_CELLS: usize = TINT_SIDE * TINT_SIDE * TINT_SIDE;
+#[allow(missing_docs, reason = "documented with the cells of one level")]
+pub const TINT_PYRAMID: usize = 4096 + 512 + 64 + 8 + 1;
+/// Sums of a cell of tints.
+pub const N_TINT_SUMS: usize = 7;
 
 /// Most depth maps of the toy from the lights.
 pub const MAX_TILES: usize = 64;
@@ -162,6 +175,21 @@ pub struct SelfShadow {
 #[allow(missing_docs, reason = "documented where the shader declares them")]
 pub struct Material {
     pub base_color_linear: [f32; 4],
+    pub index: u32,
+    pub _pad_0: u32,
+    pub _pad_1: [u32; 2],
+}
+
+/// `TintGrid` in `common/tint_grid.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs, reason = "documented where the shader declares them")]
+pub struct TintGrid {
+    pub corner_in_stage: [f32; 3],
+    pub cell_m: f32,
+    pub n_materials: u32,
+    pub _pad_0: u32,
+    pub _pad_1: [u32; 2],
 }
 
 /// `Placement` in `present.wgsl`.

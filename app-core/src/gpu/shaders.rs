@@ -25,6 +25,7 @@ macro_rules! wgsl {
 }
 
 const GLOBALS: &str = wgsl!("common/globals");
+const BETWEEN_TINTS: &str = wgsl!("common/between_tints");
 const BETWEEN_CELLS: &str = wgsl!("common/between_cells");
 const CHANNELS: &str = wgsl!("common/channels");
 const CELLS: &str = wgsl!("common/cells");
@@ -42,6 +43,8 @@ const PIXEL: &str = wgsl!("common/pixel");
 const POOL: &str = wgsl!("common/pool");
 const PUBLISHED: &str = wgsl!("common/published");
 const SELF_SHADOW_MAPS: &str = wgsl!("common/self_shadow");
+const TINT_CELLS: &str = wgsl!("common/tint_cells");
+const TINT_GRID: &str = wgsl!("common/tint_grid");
 const TOY_LIGHT: &str = wgsl!("common/toy_light");
 const TOY_RADIANCE: &str = wgsl!("common/toy_radiance");
 
@@ -120,10 +123,34 @@ pub(crate) const FILL: Shader = Shader {
     parts: &[GRID, BETWEEN_CELLS, wgsl!("fill")],
     entry_points: &["cs_pull_push"],
 };
+pub(crate) const TINT: Shader = Shader {
+    name: "tint",
+    parts: &[
+        GLOBALS,
+        FIT,
+        TOY_RADIANCE,
+        PIXEL,
+        CHANNELS,
+        TINT_GRID,
+        TINT_CELLS,
+        wgsl!("tint"),
+    ],
+    entry_points: &["cs_add"],
+};
+pub(crate) const TINT_FILL: Shader = Shader {
+    name: "tint_fill",
+    parts: &[PIXEL, TINT_CELLS, BETWEEN_TINTS, wgsl!("tint_fill")],
+    entry_points: &["cs_fill"],
+};
 pub(crate) const MOTION: Shader = Shader {
     name: "motion",
     parts: &[GLOBALS, MOVED, wgsl!("motion")],
     entry_points: &["vs_physical", "fs_motion"],
+};
+pub(crate) const WITHHOLD: Shader = Shader {
+    name: "withhold",
+    parts: &[GLOBALS, FIT, MODEL, CHANNELS, FULLSCREEN, wgsl!("withhold")],
+    entry_points: &["vs_fullscreen", "fs_withhold"],
 };
 pub(crate) const DETAIL: Shader = Shader {
     name: "detail",
@@ -142,6 +169,9 @@ pub(crate) const TOY: Shader = Shader {
         DEPTH,
         MOVED,
         CHANNELS,
+        TINT_GRID,
+        TINT_CELLS,
+        BETWEEN_TINTS,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
@@ -215,6 +245,8 @@ pub const ALL: &[Shader] = &[
     OBJECT,
     EVIDENCE,
     APPEARANCE,
+    TINT,
+    TINT_FILL,
     OCCLUSION,
     VISIBILITY,
     PLATE,
@@ -224,6 +256,7 @@ pub const ALL: &[Shader] = &[
     FIT_SOLVE,
     RESIDUAL,
     FILL,
+    WITHHOLD,
     DETAIL,
     MOTION,
     TOY,

@@ -3,15 +3,15 @@
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{
-    Fit as FitLayout, FitStep, MAX_LIGHTS, MAX_RECEIVERS, N_COLUMNS, PRIOR_BOUNCE, PRIOR_SHARE, ReceiverFit,
-    Subject,
+    Fit as FitLayout, FitStep, MAX_LIGHTS, MAX_RECEIVERS, N_COLUMNS, N_FIT_SUMS, PRIOR_BOUNCE, PRIOR_SHARE,
+    ReceiverFit, Subject,
 };
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::{FIT_SOLVE, FIT_SUMS};
 use crate::plan::Plan;
 
-/// Sums of one row: the upper triangle of the normal equations and their right-hand side.
-const N_SUMS: u64 = 27;
+/// Sums of one row in one channel.
+const N_SUMS: u64 = N_FIT_SUMS as u64;
 const N_CHANNELS: u64 = 3;
 
 pub(crate) struct Fit {

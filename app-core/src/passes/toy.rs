@@ -11,6 +11,7 @@ use crate::gpu::texture::{Texture, TextureShape};
 
 use super::motion::MOVED_FORMAT;
 use super::self_shadow::{GROUP_SELF_SHADOW, SelfShadowMaps};
+use super::tint::Tints;
 use super::toy_mesh::{Stream, ToyMesh};
 
 /// Format of premultiplied radiance: the resolve averages linear light, and a rim has as many steps as the inside.
@@ -40,6 +41,7 @@ pub(crate) struct ToyInputs<'a> {
     pub(crate) object_depth: &'a wgpu::TextureView,
     pub(crate) appearance_base: &'a wgpu::TextureView,
     pub(crate) self_shadow: &'a SelfShadowMaps,
+    pub(crate) tints: &'a Tints,
 }
 
 /// Textures of the region's size: two multisampled ones that stay on the chip, and one for each draw.
@@ -158,6 +160,8 @@ impl Toy {
                 (2, view(inputs.appearance_base)),
                 (3, view(inputs.appearance_lit)),
                 (4, offset.as_entire_binding()),
+                (5, inputs.tints.grid.as_entire_binding()),
+                (6, inputs.tints.cells.as_entire_binding()),
             ],
         )
     }

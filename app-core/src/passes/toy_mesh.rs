@@ -107,11 +107,16 @@ impl ToyMesh {
             materials: toy
                 .materials()
                 .iter()
-                .map(|m| MaterialBinding::new(gpu, toy, m))
+                .enumerate()
+                .map(|(index, material)| MaterialBinding::new(gpu, toy, index, material))
                 .collect(),
             physical: PoseBuffers::new(gpu, physical),
             shown: PoseBuffers::new(gpu, physical),
         }
+    }
+
+    pub(crate) fn n_materials(&self) -> usize {
+        self.materials.len()
     }
 
     /// Group 2 of `pipeline`, one a material.
@@ -171,7 +176,7 @@ impl ToyMesh {
 }
 
 impl MaterialBinding {
-    fn new(gpu: &Gpu, toy: &Toy, material: &crate::toy::Material) -> Self {
+    fn new(gpu: &Gpu, toy: &Toy, index: usize, material: &crate::toy::Material) -> Self {
         let image = material
             .base_color_texture
             .as_ref()
@@ -201,6 +206,9 @@ impl MaterialBinding {
         });
         let uniform = Material {
             base_color_linear: material.base_color_linear,
+            index: u32::try_from(index).unwrap_or(u32::MAX),
+            _pad_0: 0,
+            _pad_1: [0; 2],
         };
         Self {
             uniform: gpu.uniform("material", &uniform),

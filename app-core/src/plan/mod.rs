@@ -113,6 +113,8 @@ pub struct Plan {
     pub n_toy_draws: u32,
     /// Whether the noise of the real shadow is removed.
     pub is_noise_removed: bool,
+    /// Whether the real shadow is kept from all but the first fits.
+    pub is_shadow_withheld: bool,
     /// The toy's shadow on itself.
     pub self_shadow: SelfShadowPlan,
     /// Steps of a first fit.
@@ -167,6 +169,7 @@ impl Plan {
             is_plate_estimated: !facts.is_plate_complete,
             n_toy_draws: settings.n_toy_draws,
             is_noise_removed: settings.is_noise_removed,
+            is_shadow_withheld: settings.is_shadow_withheld,
             self_shadow: SelfShadowPlan::new(&lights, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
@@ -176,6 +179,7 @@ impl Plan {
                 .iter()
                 .filter(|pass| !(facts.is_plate_complete && ESTIMATE_PASSES.contains(&pass.name)))
                 .filter(|pass| settings.is_noise_removed || pass.name != "detail")
+                .filter(|pass| settings.is_shadow_withheld || pass.name != "withhold")
                 .copied()
                 .collect(),
             lights,

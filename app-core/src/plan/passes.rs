@@ -68,10 +68,13 @@ pub(super) const PASSES: &[PlannedPass] = &[
     capture("estimate"),
     capture("fit"),
     capture("fit_solve"),
+    capture("withhold"),
     capture("residual"),
     capture("fill"),
     capture("detail"),
     capture("appearance"),
+    capture("tint"),
+    capture("tint_fill"),
     frame("occlusion"),
     frame("visibility"),
     frame("self_shadow"),
@@ -97,7 +100,16 @@ pub(super) const PUBLISHED_PASSES: &[PlannedPass] = &[
     frame("present"),
 ];
 /// Capture passes that a new picture of a known view runs.
-const PICTURE_PASSES: &[&str] = &["fit", "fit_solve", "residual", "fill", "detail", "appearance"];
+const PICTURE_PASSES: &[&str] = &[
+    "fit",
+    "fit_solve",
+    "residual",
+    "fill",
+    "detail",
+    "appearance",
+    "tint",
+    "tint_fill",
+];
 /// What a scene does without when one plate shows all of it.
 pub(super) const ESTIMATE_PASSES: &[&str] = &["lit", "estimate"];
 /// What a shadow of constant strength does without.

@@ -14,7 +14,7 @@ use crate::light_points::light_points;
 use crate::pipeline::Passes;
 use crate::plan::{Change, Plan, PublishedPlan, SceneFacts};
 use crate::plates::{self, SAME_CAMERA};
-use crate::preset::{Method, PublishedSettings};
+use crate::preset::{Method, PublishedSettings, Settings};
 use crate::published::{self, Published};
 use crate::region::{PixelRect, PlaneRect};
 use crate::scene::Light;
@@ -85,7 +85,7 @@ impl Stage {
     fn learn(&mut self, gpu: &Gpu, input: &FrameInput, worked: &Worked) {
         let work = match self.preset.method() {
             Method::Model(settings) => {
-                let plan = Plan::new(&self.facts(worked, worked.region), &settings);
+                let plan = Plan::new(&self.facts(worked, worked.region), &self.settings(settings));
                 self.model(gpu, plan, worked)
             }
             Method::Published(settings) => self.published(gpu, &settings, worked.region, worked),
@@ -116,13 +116,20 @@ impl Stage {
                     let plan = model
                         .capture
                         .plan
-                        .for_view(&self.facts(worked, region), &settings);
+                        .for_view(&self.facts(worked, region), &self.settings(settings));
                     model.follow(gpu, plan, &worked.view.globals(&region, &self.place()));
                 }
             }
             Method::Published(settings) => learned.work = self.published(gpu, &settings, region, worked),
         }
         self.learned = Some(learned);
+    }
+
+    fn settings(&self, preset: Settings) -> Settings {
+        Settings {
+            is_shadow_withheld: self.is_shadow_withheld,
+            ..preset
+        }
     }
 
     fn facts(&self, worked: &Worked, region: PixelRect) -> SceneFacts {
@@ -166,7 +173,8 @@ impl Stage {
 
     fn model(&self, gpu: &Gpu, plan: Plan, worked: &Worked) -> Work {
         let globals = worked.view.globals(&plan.region, &self.place());
-        let knowledge = Knowledge::new(gpu, grids_over(&self.known_rects), self.lights.len());
+        let toy = (&self.toy.physical.around, self.toy.n_materials());
+        let knowledge = Knowledge::new(gpu, grids_over(&self.known_rects), self.lights.len(), toy);
         let points = self.lights.iter().zip(&plan.lights);
         let points = points
             .map(|(light, planned)| self.points_of(light, planned.n_points))

@@ -41,6 +41,7 @@ pub(crate) struct Stage {
     receivers: Vec<Receiver>,
     stage_from_object: DMat4,
     physical_bounds: Bounds,
+    is_shadow_withheld: bool,
     /// What the clip shown last reaches.
     reach: Option<ClipReach>,
     /// Where the latest frame was worked on.
@@ -113,9 +114,16 @@ impl Stage {
             preset,
             stage_from_object,
             scene,
+            is_shadow_withheld: false,
             reach: None,
             known_worked: None,
         })
+    }
+
+    /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
+    pub(crate) fn withhold_shadow(&mut self) {
+        self.is_shadow_withheld = matches!(self.preset.method(), Method::Model(_));
+        self.learned = None;
     }
 
     /// The scene that is staged.
@@ -223,7 +231,8 @@ impl Stage {
 
     fn worked(&mut self, input: &FrameInput) -> Result<Result<Arc<Worked>, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
-        if is_same_pose(&input.shown_pose, &self.scene.physical_pose) {
+        let is_physical = is_same_pose(&input.shown_pose, &self.scene.physical_pose);
+        if is_physical && !self.is_shadow_withheld {
             return Ok(Err(PassThrough::PhysicalPose));
         }
         if self.lights.is_empty() {

@@ -12,9 +12,9 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
-use harness::bench::{Options, Row, bench, csv, table};
+use harness::bench::{Options, Row, bench, csv, rebuild, rebuilt_table, table};
 use harness::files::Folder;
-use harness::output::{make_folder, remove_file, write_whole};
+use harness::output::{make_folder, remove_file, write_png, write_whole};
 use harness::program::exit_code;
 
 /// The session that comes with the project.
@@ -45,6 +45,9 @@ struct Args {
     /// Add rows with visibility from rays, which takes minutes
     #[arg(long)]
     exact: bool,
+    /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first"])]
+    withheld: bool,
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -73,6 +76,9 @@ fn run(args: &Args) -> anyhow::Result<()> {
     // A result in the folder means that all sessions were measured.
     remove_file(&result)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    if args.withheld {
+        return rebuild_all(folders, &mut core, args, &out);
+    }
     let mut rows = Vec::new();
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());
@@ -87,14 +93,36 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .context("writing to standard output")
 }
 
+/// Prints how well real shadows are rebuilt, and writes the pictures.
+fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) -> anyhow::Result<()> {
+    let mut all = Vec::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let capture = Capture::open(Folder::open(folder)?)?;
+        let rebuilt = rebuild(&capture, core, &presets(args));
+        all.extend(rebuilt.with_context(|| folder.display().to_string())?);
+    }
+    for one in &all {
+        let file = format!("{}-{}-rebuilt_{:04}.png", one.session, one.preset, one.frame);
+        write_png(&out.join(file), &one.picture)?;
+    }
+    io::stdout()
+        .write_all(format!("{}{}\n", rebuilt_table(&all), out.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+fn presets(args: &Args) -> Vec<Preset> {
+    if args.presets.is_empty() {
+        Preset::ALL.to_vec()
+    } else {
+        args.presets.clone()
+    }
+}
+
 fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
     let capture = Capture::open(Folder::open(folder)?)?;
     let options = Options {
-        presets: if args.presets.is_empty() {
-            Preset::ALL.to_vec()
-        } else {
-            args.presets.clone()
-        },
+        presets: presets(args),
         n_repeats: usize::from(args.repeats),
         frames: args.first.map(|n_frames| Range {
             start: 0,

@@ -156,13 +156,6 @@ fn receiver_priors(
     channel: usize,
 ) -> Vec<f64> {
     let n_lights = region.lights.len();
-    #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
-    let even = constants.prior_share / n_lights as f64;
-    if receiver == 0 {
-        let shares = std::iter::repeat_n(even, n_lights);
-        return std::iter::once(constants.prior_bounce).chain(shares).collect();
-    }
-    // The same lights amid as much ambient light.
     let irradiance = |plane: &ReceiverPlane, i: usize| {
         let light = plane.lights[i];
         let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
@@ -174,6 +167,16 @@ fn receiver_priors(
         };
         (to_light.normalize().y / falloff).max(0.0)
     };
+    if receiver == 0 {
+        // As if each gave as much as the others at one metre.
+        let each: Vec<f64> = (0..n_lights)
+            .map(|i| irradiance(&region.receivers[0], i))
+            .collect();
+        let total: f64 = each.iter().sum();
+        let shares = each.into_iter().map(|one| constants.prior_share * one / total);
+        return std::iter::once(constants.prior_bounce).chain(shares).collect();
+    }
+    // The same lights amid as much ambient light.
     let first = &before.receivers[0];
     let of_first = |i| {
         let there = irradiance(&region.receivers[0], i);

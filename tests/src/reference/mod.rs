@@ -19,6 +19,7 @@ pub mod residual;
 pub mod search;
 pub mod self_shadow;
 pub mod sets;
+pub mod tint;
 pub mod visibility;
 
 use std::str::FromStr;

@@ -164,7 +164,19 @@ fn mirrors_of_passes() -> Vec<Mirror> {
             n_tiles,
             texel_m
         }),
-        mirror!(Material { base_color_linear }),
+        mirror!(Material {
+            base_color_linear,
+            index,
+            _pad_0,
+            _pad_1
+        }),
+        mirror!(TintGrid {
+            corner_in_stage,
+            cell_m,
+            n_materials,
+            _pad_0,
+            _pad_1
+        }),
         mirror!(Placement { origin_px, size_px }),
         mirror!(Published {
             light_radii,
@@ -193,6 +205,10 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_CELLS", layout::MAX_CELLS),
     ("N_COLUMNS", layout::N_COLUMNS),
     ("MAX_TILES", layout::MAX_TILES),
+    ("TINT_SIDE", layout::TINT_SIDE),
+    ("TINT_CELLS", layout::TINT_CELLS),
+    ("TINT_PYRAMID", layout::TINT_PYRAMID),
+    ("N_TINT_SUMS", layout::N_TINT_SUMS),
     ("SUBJECT_RECEIVER", layout::Subject::Receiver as usize),
     ("SUBJECT_TOY", layout::Subject::Toy as usize),
     ("SUBJECT_LEVELS", layout::Subject::Levels as usize),
@@ -200,6 +216,7 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
 
 /// Fractional constants that go by one name on both sides, and the shader they are in.
 pub(crate) const SHARED_FRACTIONS: &[(&str, &str, f32)] = &[
+    ("fit_solve", "PRIOR_WEIGHT", layout::PRIOR_WEIGHT),
     ("fit_solve", "PRIOR_BOUNCE", layout::PRIOR_BOUNCE),
     ("fit_solve", "PRIOR_SHARE", layout::PRIOR_SHARE),
     ("composite", "UNKNOWN_NONE", unknown::UNKNOWN_NONE),

@@ -6,6 +6,7 @@ mod passes;
 mod penumbra;
 mod preset;
 mod region;
+mod resolution;
 mod rig;
 mod transforms;
 mod unknown;

@@ -10,4 +10,5 @@ mod flat;
 mod pcss;
 mod residual;
 mod search;
+mod tint;
 mod visibility;

@@ -26,6 +26,11 @@ impl Errors {
         self.sorted.last().copied().unwrap_or(f64::INFINITY)
     }
 
+    pub(crate) fn mean(&self) -> f64 {
+        let n = f64::from(u32::try_from(self.sorted.len()).unwrap());
+        self.sorted.iter().sum::<f64>() / n
+    }
+
     /// Share of differences larger than `bound`.
     pub(crate) fn share_beyond(&self, bound: f64) -> f64 {
         let n_within = self.sorted.partition_point(|difference| *difference <= bound);

@@ -21,5 +21,8 @@ mod published;
 mod residual;
 mod run;
 mod self_shadow;
+mod tint;
+mod told;
 mod toy;
 mod unknown;
+mod withheld;

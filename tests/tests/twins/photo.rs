@@ -61,6 +61,7 @@ pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
         solution: truth(stand.setup.lights.len()),
         albedo: wood,
         unmodelled: faint_light,
+        paint: |_| DVec3::ONE,
     };
     [photo.plate(stand), photo.frame(stand, &stand.physical)]
 }
@@ -72,6 +73,8 @@ pub(crate) struct Photo {
     pub(crate) albedo: fn(ReceiverPoint) -> DVec3,
     /// What comes to the frame alone, in plates.
     pub(crate) unmodelled: fn(ReceiverPoint) -> DVec3,
+    /// Factor on the toy's base colour, of a triangle.
+    pub(crate) paint: fn(usize) -> DVec3,
 }
 
 impl Photo {
@@ -81,6 +84,7 @@ impl Photo {
             solution: truth(n_lights),
             albedo: smooth,
             unmodelled: |_| DVec3::ZERO,
+            paint: |_| DVec3::ONE,
         }
     }
 
@@ -134,7 +138,10 @@ impl Photo {
                 let columns = toy_columns(normal, received, light_points.len());
                 let terms = columns.iter().zip(&self.solution.toy);
                 let light: DVec3 = terms.map(|(column, light)| *column * *light).sum();
-                return self.solution.gain * toy::base_color(hit.triangle) * light;
+                return self.solution.gain
+                    * (self.paint)(hit.triangle)
+                    * toy::base_color(hit.triangle)
+                    * light;
             }
             let at = point_seen(&region, texel);
             let mut visibility = DVec4::ZERO;

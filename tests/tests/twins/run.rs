@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
-use app_core::gpu::layout::{Fit, ReceiverFit};
+use app_core::gpu::layout::{Fit, ReceiverFit, TintGrid};
 use app_core::maps::{FloatMap, Map};
 use app_core::plan::Plan;
 use app_core::preset::Preset;
@@ -40,6 +40,8 @@ pub(crate) struct Run {
     /// Filled residuals on each receiver, their certainty, and where their cells lie.
     pub(crate) residuals: Vec<Raster<DVec4>>,
     pub(crate) grids: Vec<PlaneGrid>,
+    /// Tints of the toy's paint, a grid a material.
+    pub(crate) tints: (TintGrid, Vec<Vec<[f32; 4]>>),
     /// The lights' share of the plate's radiance.
     pub(crate) share: Raster<DVec3>,
     /// Codes of the finished picture, within the region.
@@ -99,6 +101,7 @@ impl Run {
             solution: solution(&fit, stand.setup.lights.len()),
             residuals: residuals.iter().map(|(_, residual)| raster(residual)).collect(),
             grids: residuals.iter().map(|(grid, _)| PlaneGrid::from(grid)).collect(),
+            tints: core.read_tints()?.expect("the toy moves"),
             share: map(Map::Share)?.map(DVec4::truncate),
             picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
             stand,

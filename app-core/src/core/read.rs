@@ -1,0 +1,119 @@
+//! What was made and learned, read back from the device: for reports, warnings and tests, never for a frame.
+
+use bytemuck::Zeroable;
+
+use super::{Core, CoreError};
+use crate::frame::Warning;
+use crate::gpu::layout::{Fit, Grid, MAX_CELLS, TintGrid};
+use crate::maps::{FloatMap, Map};
+use crate::resolution::light_resolution;
+use crate::stage::Stage;
+use crate::unknown::{Unknown, unknowns};
+
+/// Energy of the lights' columns over that of the plate, below which too little real shadow was seen to tell the shares:
+/// at 0.006 a share was off by 0.1, at 0.024 and above by less than 0.01.
+const FAINT_CONTRAST: f32 = 0.01;
+/// How far a light's strength must be told by what was seen.
+const LEAST_RESOLUTION: f64 = 0.75;
+
+impl Core {
+    /// Waits for the device and returns what the model learned from the real shadow, once anything was.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
+        let Some(model) = self.model() else {
+            return Ok(None);
+        };
+        let bytes = self.gpu.read_buffer(&model.knowledge.solution)?;
+        let mut fit = Fit::zeroed();
+        bytemuck::bytes_of_mut(&mut fit).copy_from_slice(&bytes);
+        Ok(Some(fit))
+    }
+
+    /// Waits for the device and returns what was learned that gives to worry about.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
+        let Some(fit) = self.read_fit()? else {
+            let work = self.stage.as_ref().and_then(Stage::work);
+            let warnings = work.map(|work| work.read_warnings(&self.gpu)).transpose()?;
+            return Ok(warnings.unwrap_or_default());
+        };
+        let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
+        let contrast = contrasts.copied().fold(0.0, f32::max);
+        let faint = (contrast < FAINT_CONTRAST).then_some(Warning::FaintShadow { contrast });
+        let lights = self.read_lights_not_told()?;
+        let is_any = faint.is_none() && !lights.is_empty();
+        let not_told = is_any.then_some(Warning::LightsNotTold { lights });
+        let unknown = self.read_unknowns()?.into_iter().map(Warning::Unknown);
+        Ok(faint.into_iter().chain(not_told).chain(unknown).collect())
+    }
+
+    /// Lights whose strength is assumed more than seen.
+    fn read_lights_not_told(&self) -> Result<Vec<usize>, CoreError> {
+        let Some(model) = self.model() else {
+            return Ok(Vec::new());
+        };
+        let sums = self.gpu.read_buffer(&model.knowledge.fit_sums)?;
+        let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
+        let told = light_resolution(&sums, model.capture.plan.lights.len());
+        let lights = told.iter().enumerate();
+        Ok(lights
+            .filter_map(|(light, told)| (*told < LEAST_RESOLUTION).then_some(light))
+            .collect())
+    }
+
+    fn read_unknowns(&self) -> Result<Vec<Unknown>, CoreError> {
+        let Some(model) = self.model() else {
+            return Ok(Vec::new());
+        };
+        let kept = self.gpu.read_buffer(&model.knowledge.residual.kept)?;
+        let kept: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&kept);
+        let receivers = kept.chunks(MAX_CELLS).map(unknowns);
+        let mut found: Vec<Unknown> = receivers.flatten().collect();
+        found.sort_unstable_by_key(|unknown| *unknown as u8);
+        found.dedup();
+        Ok(found)
+    }
+
+    /// Waits for the device and returns a map of the latest retargeted frame, once there was one.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
+        let Some(work) = self.stage.as_ref().and_then(Stage::work) else {
+            return Ok(None);
+        };
+        Ok(work.read_map(&self.gpu, map)?)
+    }
+
+    /// Waits for the device and returns each receiver's coarse grid with the filled residuals on it, once there was a
+    /// retargeted frame of the model.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {
+        let Some(model) = self.model() else {
+            return Ok(Vec::new());
+        };
+        let grids = model.knowledge.layout.grids.into_iter().enumerate();
+        let residuals = grids
+            .take(model.capture.plan.n_receivers as usize)
+            .map(|(receiver, grid)| Ok((grid, model.read_residual(&self.gpu, receiver)?)));
+        residuals.collect()
+    }
+
+    /// Waits for the device and returns the grid of the tints and, for each material that has one, the tint of each of its
+    /// cells, x fastest, then y; once there was a retargeted frame of the model.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_tints(&self) -> Result<Option<(TintGrid, Vec<Vec<[f32; 4]>>)>, CoreError> {
+        let Some(model) = self.model() else {
+            return Ok(None);
+        };
+        Ok(Some(model.knowledge.tints.read(&self.gpu)?))
+    }
+}

@@ -1,0 +1,21 @@
+// How the real toy's paint differs from that of its model: photograph over what base colour and fitted light give, in the
+// cells of coarse grids over the physical toy, one grid a material.
+
+struct TintGrid {
+  // Lowest corner of the grids, which are cubes.
+  corner_in_stage: vec3f,
+  cell_m: f32,
+  n_materials: u32,
+  _pad_0: u32,
+  _pad_1: vec2u,
+}
+
+// The grid of a material; those beyond the last share it.
+fn tint_grid_of(material: u32) -> u32 {
+  return min(material, tint_grid.n_materials - 1u);
+}
+
+// In cells of the finest level, the centre of the first at (.5, .5, .5).
+fn tint_place(in_stage: vec3f) -> vec3f {
+  return (in_stage - tint_grid.corner_in_stage) / tint_grid.cell_m;
+}

@@ -1,0 +1,190 @@
+//! How well a preset rebuilds the real shadow of photographs that have no truth: the shadow is withheld, the physical pose is
+//! made like any other, and the photograph itself tells the error.
+
+use std::sync::Arc;
+
+use app_core::core::Core;
+use app_core::frame::FrameInput;
+use app_core::maps::{FloatMap, Map};
+use app_core::preset::{Method, Preset};
+use app_core::region::PixelRect;
+use app_core::scene::Image;
+use app_core::session::{Capture, Session};
+use glam::Vec4;
+
+use crate::replay::ReplayError;
+
+use super::table::aligned;
+
+/// One photograph, made again by one preset.
+#[derive(Clone, Debug)]
+pub struct Rebuilt {
+    /// Name of the session.
+    pub session: String,
+    /// The preset.
+    pub preset: Preset,
+    /// The first frame that has this photograph.
+    pub frame: usize,
+    /// Error over all pixels of receivers in the real shadow.
+    pub all: Errors,
+    /// Error over those that are well clear of the toy, where none of its colour bleeds into the photograph.
+    pub clear: Errors,
+    /// What was made.
+    pub picture: Image,
+}
+
+/// Makes every photograph of a session again from the shadow of the first. `paper` and `flat` cannot do without.
+///
+/// # Errors
+/// When a frame cannot be read or made.
+pub fn rebuild(session: &Capture, core: &mut Core, presets: &[Preset]) -> Result<Vec<Rebuilt>, ReplayError> {
+    let mut rebuilt = Vec::new();
+    for &preset in presets {
+        if matches!(preset.method(), Method::Model(_)) {
+            rebuilt.extend(rebuild_with(session, core, preset)?);
+        }
+    }
+    Ok(rebuilt)
+}
+
+fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Vec<Rebuilt>, ReplayError> {
+    let scene = session.scene();
+    core.set_scene(scene.clone(), preset)?;
+    core.withhold_shadow()?;
+    let mut latest: Option<Arc<Image>> = None;
+    let mut rebuilt = Vec::new();
+    for frame in 0..session.n_frames() {
+        let input = FrameInput {
+            shown_pose: scene.physical_pose,
+            ..FrameInput::from(&session.frame(frame)?)
+        };
+        if latest
+            .as_ref()
+            .is_some_and(|image| image.rgba8 == input.image.rgba8)
+        {
+            continue;
+        }
+        let failed = |reason| ReplayError::Frame { index: frame, reason };
+        let region = core.frame(&input).map_err(failed)?.region;
+        let picture = core.read_picture().map_err(failed)?;
+        let (mut all, mut clear) = Default::default();
+        if let Some(region) = region {
+            let read = |map| core.read_map(map).map_err(failed);
+            let (evidence, plate) = (read(Map::Evidence)?, read(Map::Plate)?);
+            let gain = core.read_fit().map_err(failed)?.map(|fit| Vec4::from(fit.gain));
+            if let (Some(evidence), Some(plate), Some(gain)) = (evidence, plate, gain) {
+                let withheld = Withheld {
+                    region,
+                    evidence,
+                    plate,
+                    gain,
+                };
+                all = withheld.errors(&picture, &input.image, |alpha| alpha < 1.0);
+                clear = withheld.errors(&picture, &input.image, |alpha| alpha == 0.0);
+            }
+        }
+        rebuilt.push(Rebuilt {
+            session: scene.name.clone(),
+            preset,
+            frame,
+            all,
+            clear,
+            picture,
+        });
+        latest = Some(input.image);
+    }
+    Ok(rebuilt)
+}
+
+struct Withheld {
+    region: PixelRect,
+    evidence: FloatMap,
+    plate: FloatMap,
+    gain: Vec4,
+}
+
+/// Differences from the photograph.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Errors {
+    /// Sum of squares over pixels and channels of what was made.
+    made: f64,
+    /// The same, were there no shadow at all.
+    unshadowed: f64,
+    n_pixels: usize,
+}
+
+impl Withheld {
+    /// Over the pixels that have such an alpha.
+    fn errors(&self, picture: &Image, photograph: &Image, is_counted: impl Fn(f32) -> bool) -> Errors {
+        let mut errors = Errors::default();
+        for (index, marks) in self.evidence.texels.iter().enumerate() {
+            if !is_counted(marks[3]) {
+                continue;
+            }
+            let width = self.evidence.width as usize;
+            let [left, top] = self.region.origin_px.to_array().map(|px| px as usize);
+            let first = 4 * ((top + index / width) * photograph.width_px as usize + left + index % width);
+            let lit = Vec4::from(self.plate.texels[index]) * self.gain;
+            for channel in 0..3 {
+                let shown = f64::from(photograph.rgba8[first + channel]);
+                errors.made += (f64::from(picture.rgba8[first + channel]) - shown).powi(2);
+                errors.unshadowed += (code(lit[channel]) - shown).powi(2);
+            }
+            errors.n_pixels += 1;
+        }
+        errors
+    }
+}
+
+impl Errors {
+    /// RMSE of what was made, in 8-bit codes, that of no shadow, and the number of pixels.
+    fn cells(&self) -> [String; 3] {
+        #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 pixels")]
+        let n = 3.0 * self.n_pixels as f64;
+        let rmse = |sum: f64| {
+            if n > 0.0 {
+                format!("{:.2}", (sum / n).sqrt())
+            } else {
+                "-".to_owned()
+            }
+        };
+        [rmse(self.made), rmse(self.unshadowed), self.n_pixels.to_string()]
+    }
+}
+
+/// The 8-bit code of a linear value. Source: IEC 61966-2-1.
+fn code(linear: f32) -> f64 {
+    let linear = f64::from(linear.clamp(0.0, 1.0));
+    255.0
+        * if linear <= 0.003_130_8 {
+            12.92 * linear
+        } else {
+            1.055 * linear.powf(1.0 / 2.4) - 0.055
+        }
+}
+
+/// What was made again, in columns.
+#[must_use]
+pub fn rebuilt_table(rebuilt: &[Rebuilt]) -> String {
+    let heads = [
+        "session",
+        "preset",
+        "frame",
+        "clear of the toy",
+        "no shadow",
+        "pixels",
+        "all",
+        "no shadow",
+        "pixels",
+    ];
+    let mut cells = vec![heads.map(str::to_owned).to_vec()];
+    cells.extend(rebuilt.iter().map(|one| {
+        let mut line = vec![one.session.clone(), one.preset.to_string(), one.frame.to_string()];
+        line.extend(one.clear.cells());
+        line.extend(one.all.cells());
+        line
+    }));
+    aligned(&cells)
+        + "RMSE in 8-bit codes against the photograph, over the real shadow: rebuilt from the shadow of the first photograph \
+           alone, and left out.\n"
+}
