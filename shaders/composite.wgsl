@@ -159,13 +159,15 @@ fn stillness(texel: vec2i) -> f32 {
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2u(position.xy);
   let toy = drawn_toy(texel);
-  let still = stillness(vec2i(texel));
   if toy.a == 1.0 {
     let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
-    return vec4f(mix(toy.rgb, frame_color, still), 1.0);
+    return vec4f(mix(toy.rgb, frame_color, stillness(vec2i(texel))), 1.0);
   }
   let behind = receiver(position);
   let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
+  if behind.keep_mixed == 0.0 { return vec4f(laid, 1.0); }
   let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  let still = stillness(vec2i(texel));
   return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
 }

@@ -2,6 +2,7 @@
 //
 // Reads: evidence, visibility, ambient. Writes: the same marks, but none where the receiver is seen in shadow, as if the toy
 // hid it; there a is 0, and a half beside the toy.
+// Twin: reference/withhold.rs.
 
 @group(1) @binding(0) var evidence: texture_2d<f32>;
 @group(1) @binding(1) var visibility: texture_2d<f32>;

@@ -73,7 +73,8 @@ pub(crate) struct Capture {
     pub(crate) light_points: Vec<Vec<glam::Vec4>>,
     /// Those of them that are in stage space.
     stage_points: Vec<Vec<glam::Vec4>>,
-    light_targets: Vec<OcclusionTargets>,
+    /// All lights use them, one after the other.
+    light_targets: OcclusionTargets,
     ambient_targets: OcclusionTargets,
     ambient_directions: Vec<glam::Vec4>,
 }
@@ -110,17 +111,8 @@ impl Capture {
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
-            light_targets: plan
-                .lights
-                .iter()
-                .map(|light| OcclusionTargets::new(gpu, region_px, region_px, light.n_points))
-                .collect(),
-            ambient_targets: OcclusionTargets::new(
-                gpu,
-                plan.ambient_px,
-                region_px,
-                plan.n_ambient_directions,
-            ),
+            light_targets: OcclusionTargets::new(gpu, region_px, region_px),
+            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, region_px),
             // Each receiver has its own hemisphere.
             ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
             stage_points: light_points
@@ -189,13 +181,7 @@ impl Capture {
         passes
             .evidence
             .encode(gpu, encoder, &self.object_depth.view, &self.evident.view);
-        self.encode_visibilities(
-            gpu,
-            encoder,
-            passes,
-            (toy, &toy.physical.positions),
-            &self.physical,
-        );
+        self.encode_visibilities(gpu, encoder, passes, physical, &self.physical);
         passes.plate.encode(
             gpu,
             encoder,
@@ -334,45 +320,35 @@ impl Capture {
             .encode(gpu, encoder, &self.plan.self_shadow, &shadowed, maps);
     }
 
-    /// Encodes visibility and ambient visibility of the toy at `positions`.
+    /// Encodes visibility and ambient visibility of the toy in a pose.
     pub(crate) fn encode_visibilities(
         &self,
         gpu: &Gpu,
         encoder: &mut Encoder,
         passes: &Passes,
-        (toy, positions): (&ToyMesh, &wgpu::Buffer),
+        (toy, pose): (&ToyMesh, &PoseBuffers),
         outputs: &Visibilities,
     ) {
-        for (index, points) in self.light_points.iter().enumerate() {
-            let (Some(targets), Some(pass)) = (self.light_targets.get(index), passes.lights.get(index))
-            else {
-                continue;
-            };
-            let caster = Caster {
-                toy,
-                positions,
-                points,
-            };
-            pass.occlusion
-                .encode(gpu, encoder, &self.globals, &caster, targets);
-            pass.visibility
-                .encode(gpu, encoder, targets, &outputs.lights.view);
+        for (points, visibility) in self.light_points.iter().zip(&passes.lights) {
+            let caster = Caster { toy, pose, points };
+            passes
+                .occlusion
+                .encode(gpu, encoder, &self.globals, &caster, &self.light_targets);
+            visibility.encode(gpu, encoder, &self.light_targets, &outputs.lights.view);
         }
         if let Some(injected) = &outputs.injected {
             outputs.lights.encode_copy(encoder, injected);
         }
         let caster = Caster {
             toy,
-            positions,
+            pose,
             points: &self.ambient_directions,
         };
         passes
-            .ambient
             .occlusion
             .encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
         passes
             .ambient
-            .visibility
             .encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
     }
 }

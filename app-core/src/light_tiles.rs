@@ -30,6 +30,12 @@ impl Sphere {
             radius_m: distances.fold(0.0, f64::max),
         }
     }
+
+    /// Whether a homogeneous light point is within; a direction never is.
+    #[must_use]
+    pub fn holds(&self, light_point: DVec4) -> bool {
+        light_point.w != 0.0 && light_point.xyz().distance(self.centre) <= self.radius_m
+    }
 }
 
 /// The tiles of each light's points over a toy within `toy`. A light inside that ball, from where no frustum holds all of
@@ -81,8 +87,7 @@ impl Frustum {
         let light = light_point.xyz();
         let to_light = light - toy.centre * light_point.w;
         let distance_m = to_light.length();
-        let is_outside = light_point.w == 0.0 || distance_m > toy.radius_m;
-        if !(toy.radius_m > 0.0 && distance_m > 0.0 && is_outside) {
+        if !(toy.radius_m > 0.0 && distance_m > 0.0) || toy.holds(light_point) {
             return None;
         }
         let back = to_light / distance_m;

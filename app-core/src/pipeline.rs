@@ -28,12 +28,6 @@ use crate::passes::withhold::Withhold;
 use crate::plan::Plan;
 use crate::work::Work;
 
-/// Flattening and averaging for one map.
-pub(crate) struct VisibilityPasses {
-    pub(crate) occlusion: Occlusion,
-    pub(crate) visibility: Visibility,
-}
-
 /// What a missing plate is made by.
 pub(crate) struct EstimatePasses {
     pub(crate) lit: Lit,
@@ -56,8 +50,10 @@ pub(crate) struct Passes {
     pub(crate) evidence: Evidence,
     pub(crate) appearance: Appearance,
     pub(crate) tint: Tint,
-    pub(crate) lights: Vec<VisibilityPasses>,
-    pub(crate) ambient: VisibilityPasses,
+    pub(crate) occlusion: Occlusion,
+    /// One a light.
+    pub(crate) lights: Vec<Visibility>,
+    pub(crate) ambient: Visibility,
     pub(crate) plate: Plate,
     pub(crate) estimate: Option<EstimatePasses>,
     pub(crate) fit: Fit,
@@ -72,23 +68,20 @@ pub(crate) struct Passes {
 
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let passes = |n_points, channel, format| VisibilityPasses {
-            occlusion: Occlusion::new(gpu, n_points, plan.n_receivers),
-            visibility: Visibility::new(gpu, n_points, channel, format),
-        };
         Self {
             self_shadow: SelfShadow::new(gpu),
             object: Object::new(gpu),
             evidence: Evidence::new(gpu),
             appearance: Appearance::new(gpu),
             tint: Tint::new(gpu),
+            occlusion: Occlusion::new(gpu, plan.n_receivers),
             lights: plan
                 .lights
                 .iter()
                 .enumerate()
-                .map(|(channel, light)| passes(light.n_points, channel, plan.visibility_format))
+                .map(|(channel, light)| Visibility::new(gpu, light.n_points, channel, plan.visibility_format))
                 .collect(),
-            ambient: passes(plan.n_ambient_directions, 0, AMBIENT_FORMAT),
+            ambient: Visibility::new(gpu, plan.n_ambient_directions, 0, AMBIENT_FORMAT),
             plate: Plate::new(gpu),
             estimate: plan.is_plate_estimated.then(|| EstimatePasses::new(gpu)),
             fit: Fit::new(gpu),
@@ -118,8 +111,8 @@ impl Passes {
         toy: &ToyMesh,
         frame: &wgpu::TextureView,
     ) {
-        capture.encode_visibilities(gpu, encoder, self, (toy, &toy.shown.positions), &capture.shown);
         let shown = (toy, &toy.shown);
+        capture.encode_visibilities(gpu, encoder, self, shown, &capture.shown);
         capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
         self.motion
             .encode(gpu, encoder, &capture.globals, toy, &capture.motion);

@@ -17,23 +17,32 @@ fn plate_falloff(point: ReceiverPoint) -> vec3f {
   return total;
 }
 
-// What the ambient light and what the toy throws back leave of the plate.
-fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {
+// What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
+fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   var ambient_share = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) { ambient_share -= fit.receivers[point.receiver].share[i].rgb; }
-  return ambient * ambient_share / plate_falloff(point) + fit.receivers[point.receiver].bounce.rgb * (1.0 - ambient);
+  return ambient * ambient_share / total + fit.receivers[point.receiver].bounce.rgb * (1.0 - ambient);
 }
 
-// Light `i`'s share of the plate's radiance at a point.
+// Light `i`'s share of the plate's radiance at a point, where the plate's falloff is `total`.
+fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
+  return fit.receivers[point.receiver].share[i].rgb * falloff(i, point) / total;
+}
+
+fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {
+  return ambient_part(point, ambient, plate_falloff(point));
+}
+
 fn light_share(i: u32, point: ReceiverPoint) -> vec3f {
-  return fit.receivers[point.receiver].share[i].rgb * falloff(i, point) / plate_falloff(point);
+  return light_part(i, point, plate_falloff(point));
 }
 
 // `visibility` holds up to four lights, light 0 in x.
 fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
-  var kept = ambient_model(point, ambient);
+  let total = plate_falloff(point);
+  var kept = ambient_part(point, ambient, total);
   for (var i = 0u; i < globals.n_lights; i++) {
-    kept += light_share(i, point) * fit.level[i].rgb * visibility[i];
+    kept += light_part(i, point, total) * fit.level[i].rgb * visibility[i];
   }
   return kept;
 }

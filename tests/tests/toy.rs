@@ -8,6 +8,8 @@ mod builder;
 mod poses;
 #[path = "toy/refusals.rs"]
 mod refusals;
+#[path = "toy/shadow.rs"]
+mod shadow;
 
 use app_core::toy::{PosedMesh, Toy, ToyError, ToyWarning, Wrap};
 use glam::{DMat4, DQuat, DVec3, Vec3};

@@ -16,7 +16,7 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
 /// Weight of the fit's priors against the energy of its first column.
 pub const PRIOR_WEIGHT: f32 = 1e-4;
-/// Most light points of one occlusion pass: 16 a colour target, four targets.
+/// Most light points of one occlusion pass, of which each adds some of the codes that eight bits have.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
 /// Cells of a grid of tints along each side.

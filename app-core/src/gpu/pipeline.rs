@@ -10,11 +10,13 @@ pub(crate) const GROUP_PASS: u32 = 1;
 /// Group of what changes from draw to draw.
 pub(crate) const GROUP_DRAW: u32 = 2;
 
-/// Colour targets, multisampling, depth and blending of a render pipeline.
+/// Colour targets, multisampling, depth, blending and culling of a render pipeline.
 pub(crate) struct RenderShape<'a> {
     pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
     pub(crate) n_samples: u32,
     pub(crate) depth: Option<wgpu::DepthStencilState>,
+    /// Which side of a triangle is not drawn.
+    pub(crate) culled: Option<wgpu::Face>,
     pub(crate) constants: &'a [(&'a str, f64)],
 }
 
@@ -54,7 +56,10 @@ impl Gpu {
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: stages.buffers,
                 },
-                primitive: wgpu::PrimitiveState::default(),
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: shape.culled,
+                    ..Default::default()
+                },
                 depth_stencil: shape.depth.clone(),
                 multisample: wgpu::MultisampleState {
                     count: shape.n_samples,
@@ -88,6 +93,7 @@ impl Gpu {
             targets: &[Some(format.into())],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants,
         };
         self.render_pipeline(shader, &self.module(shader), &stages, &shape)

@@ -35,6 +35,7 @@ const FIT_STEP: &str = wgsl!("common/fit_step");
 const FLATTEN: &str = wgsl!("common/flatten");
 const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
+const HIDDEN: &str = wgsl!("common/hidden");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const MOVED: &str = wgsl!("common/moved");
@@ -69,12 +70,12 @@ pub(crate) const APPEARANCE: Shader = Shader {
 };
 pub(crate) const OCCLUSION: Shader = Shader {
     name: "occlusion",
-    parts: &[GLOBALS, FLATTEN, wgsl!("occlusion")],
-    entry_points: &["vs_flatten", "fs_cover"],
+    parts: &[GLOBALS, FLATTEN, HIDDEN, wgsl!("occlusion")],
+    entry_points: &["vs_route", "fs_route", "vs_flatten", "fs_cover"],
 };
 pub(crate) const VISIBILITY: Shader = Shader {
     name: "visibility",
-    parts: &[FULLSCREEN, wgsl!("visibility")],
+    parts: &[FULLSCREEN, HIDDEN, wgsl!("visibility")],
     entry_points: &["vs_fullscreen", "fs_average"],
 };
 pub(crate) const FIT_SUMS: Shader = Shader {

@@ -52,6 +52,7 @@ impl Appearance {
             ],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants: &[],
         };
         Self {

@@ -28,6 +28,7 @@ impl Masks {
             targets: &[Some(MASKS_FORMAT.into())],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants: &[],
         };
         Self {
@@ -48,6 +49,6 @@ impl Masks {
         let mut render = encoder.render(MASKS.name, &[Some(cleared(masks))], None, StoreOp::Discard);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
-        toy.draw_positions(&mut render, &toy.physical.positions, 1);
+        toy.draw_positions(&mut render, &toy.physical.positions, 0..1);
     }
 }

@@ -58,6 +58,7 @@ impl Motion {
             targets: &[Some(MOVED_FORMAT.into())],
             n_samples: N_SAMPLES,
             depth: Some(nearest_surface()),
+            culled: None,
             constants: &[],
         };
         Self {
@@ -82,6 +83,6 @@ impl Motion {
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &group, &[]);
         render.set_vertex_buffer(1, toy.shown.positions.slice(..));
-        toy.draw_positions(&mut render, &toy.physical.positions, 1);
+        toy.draw_positions(&mut render, &toy.physical.positions, 0..1);
     }
 }

@@ -58,6 +58,7 @@ impl Object {
             ],
             n_samples: 1,
             depth: Some(nearest_surface()),
+            culled: None,
             constants: &[],
         };
         Self {

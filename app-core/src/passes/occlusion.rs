@@ -1,93 +1,102 @@
 //! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
 
+use std::ops::Range;
+
 use glam::{UVec2, Vec4};
-use wgpu::{BlendComponent, BlendFactor, BlendOperation, BlendState, StoreOp, TextureFormat, VertexFormat};
+use wgpu::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
+    DepthStencilState, Face, StoreOp, TextureFormat, VertexFormat,
+};
 
 use crate::gpu::Gpu;
-use crate::gpu::encoder::{Encoder, resolved};
+use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS, MAX_RECEIVERS};
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages};
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface};
 use crate::gpu::shaders::OCCLUSION;
 use crate::gpu::texture::{Texture, TextureShape};
 
-use super::toy_mesh::{Stream, ToyMesh};
+use super::toy_mesh::{PoseBuffers, Stream, ToyMesh};
 
-/// Light points that one colour target holds: four channels of four multisample positions.
-const POINTS_PER_TARGET: usize = 16;
-const N_SAMPLES: u32 = 4;
-const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Format of what hidden points add up to.
+const FORMAT: TextureFormat = TextureFormat::R8Unorm;
+/// Format of the depths that tell light points apart.
+const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 
-/// The pass for a number of light points; more points are more colour targets.
+/// The pass for a number of receivers.
 pub(crate) struct Occlusion {
-    pipeline: wgpu::RenderPipeline,
-    n_points: usize,
+    cover: wgpu::RenderPipeline,
+    /// Shuts out pixels that show another receiver, where there are several.
+    route: Option<wgpu::RenderPipeline>,
+    n_receivers: u32,
 }
 
-/// Targets for one map: multisampled ones that stay on the chip, and what they are resolved to.
+/// Targets for maps of one size.
 pub(crate) struct OcclusionTargets {
-    samples: Vec<Texture>,
-    pub(crate) hidden: Vec<Texture>,
+    /// Which point was drawn last; never leaves the chip.
+    order: Texture,
+    pub(crate) hidden: Texture,
     /// Size of a texel in the region.
     texel_px: [f32; 2],
 }
 
 impl OcclusionTargets {
     /// For maps of `size_px` texels over a region of `region_px` pixels.
-    pub(crate) fn new(gpu: &Gpu, size_px: UVec2, region_px: UVec2, n_points: usize) -> Self {
-        let n_targets = n_points.div_ceil(POINTS_PER_TARGET);
-        let shape = |n_samples| TextureShape {
-            size_px: size_px.to_array(),
-            format: FORMAT,
-            n_samples,
-        };
-        let textures = |label, n_samples| {
-            (0..n_targets)
-                .map(|_| Texture::target(gpu, label, shape(n_samples)))
-                .collect()
+    pub(crate) fn new(gpu: &Gpu, size_px: UVec2, region_px: UVec2) -> Self {
+        let texture = |label, format| {
+            let shape = TextureShape {
+                size_px: size_px.to_array(),
+                format,
+                n_samples: 1,
+            };
+            Texture::target(gpu, label, shape)
         };
         Self {
-            samples: textures("occlusion samples", N_SAMPLES),
-            hidden: textures("occlusion", 1),
+            order: texture("occlusion order", ORDER_FORMAT),
+            hidden: texture("occlusion", FORMAT),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
         }
     }
 }
 
 impl Occlusion {
-    /// For 4 points, or a multiple of 16 up to 64.
-    pub(crate) fn new(gpu: &Gpu, n_points: usize, n_receivers: u32) -> Self {
-        let n_points = n_points.min(MAX_LIGHT_POINTS);
-        let keep_largest = BlendComponent {
-            src_factor: BlendFactor::One,
-            dst_factor: BlendFactor::One,
-            operation: BlendOperation::Max,
-        };
-        let target = wgpu::ColorTargetState {
-            format: FORMAT,
-            blend: Some(BlendState {
-                color: keep_largest,
-                alpha: keep_largest,
-            }),
-            write_mask: wgpu::ColorWrites::ALL,
-        };
-        let targets = vec![Some(target); n_points.div_ceil(POINTS_PER_TARGET)];
+    pub(crate) fn new(gpu: &Gpu, n_receivers: u32) -> Self {
+        let module = gpu.module(&OCCLUSION);
         let stream = Stream::new(0, VertexFormat::Float32x3);
-        let stages = Stages {
+        let cover = RenderShape {
+            targets: &[Some(adding())],
+            n_samples: 1,
+            depth: Some(ordered(CompareFunction::Greater)),
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            culled: Some(Face::Back),
+            constants: &[],
+        };
+        let cover_stages = Stages {
             vertex: "vs_flatten",
             fragment: "fs_cover",
             buffers: &[stream.layout()],
         };
-        let shape = RenderShape {
-            targets: &targets,
-            n_samples: N_SAMPLES,
-            depth: None,
-            constants: &[("IS_SHARED", f64::from(u8::from(n_receivers > 1)))],
+        let route = RenderShape {
+            targets: &[Some(ColorTargetState {
+                write_mask: ColorWrites::empty(),
+                ..FORMAT.into()
+            })],
+            depth: Some(ordered(CompareFunction::Always)),
+            culled: None,
+            ..cover
         };
-        let pipeline = gpu.render_pipeline(&OCCLUSION, &gpu.module(&OCCLUSION), &stages, &shape);
-        Self { pipeline, n_points }
+        let route_stages = Stages {
+            vertex: "vs_route",
+            fragment: "fs_route",
+            buffers: &[],
+        };
+        Self {
+            cover: gpu.render_pipeline(&OCCLUSION, &module, &cover_stages, &cover),
+            route: (n_receivers > 1).then(|| gpu.render_pipeline(&OCCLUSION, &module, &route_stages, &route)),
+            n_receivers,
+        }
     }
 
-    /// Draws the caster from its points, of which there are as many as the pass was made for on each receiver.
+    /// Draws the caster from its points: 4 or a multiple of 16, up to 64, on each receiver.
     pub(crate) fn encode(
         &self,
         gpu: &Gpu,
@@ -96,47 +105,101 @@ impl Occlusion {
         caster: &Caster<'_>,
         targets: &OcclusionTargets,
     ) {
-        let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
-        let points = gpu.uniform(
-            "light points",
-            &self.light_points_uniform(caster.points, targets.texel_px),
-        );
-        let own = gpu.bind(&layout(GROUP_PASS), &[(0, points.as_entire_binding())]);
-        let colors: Vec<_> = targets
-            .samples
-            .iter()
-            .zip(&targets.hidden)
-            .map(|(samples, hidden)| Some(resolved(&samples.view, &hidden.view)))
-            .collect();
-        let mut render = encoder.render(OCCLUSION.name, &colors, None, StoreOp::Discard);
-        render.set_pipeline(&self.pipeline);
-        render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
-        render.set_bind_group(GROUP_PASS, &own, &[]);
-        let n_instances = u32::try_from(caster.points.len()).unwrap_or(0);
-        caster
-            .toy
-            .draw_positions(&mut render, caster.positions, n_instances);
-    }
-
-    fn light_points_uniform(&self, points: &[Vec4], texel_px: [f32; 2]) -> LightPoints {
-        let mut uniform = LightPoints {
-            points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
-            texel_px,
-            n_points: u32::try_from(self.n_points).unwrap_or(1),
-            _pad: 0,
+        let n_points = u32::try_from(caster.points.len()).unwrap_or(0) / self.n_receivers;
+        let uniform = light_points_uniform(caster.points, n_points, targets.texel_px);
+        let points = gpu.uniform("light points", &uniform);
+        let groups = |pipeline: &wgpu::RenderPipeline| {
+            [(GROUP_GLOBALS, globals), (GROUP_PASS, &points)].map(|(group, buffer)| {
+                let layout = pipeline.get_bind_group_layout(group);
+                (group, gpu.bind(&layout, &[(0, buffer.as_entire_binding())]))
+            })
         };
-        for (slot, point) in uniform.points.iter_mut().zip(points) {
-            *slot = point.to_array();
+        let cover = groups(&self.cover);
+        let route = self.route.as_ref().map(|pipeline| (pipeline, groups(pipeline)));
+        let triangles = caster.triangles(n_points as usize);
+        let colors = [Some(cleared(&targets.hidden.view))];
+        let order = Some(&targets.order.view);
+        let mut render = encoder.render(OCCLUSION.name, &colors, order, StoreOp::Discard);
+        caster.toy.bind_positions(&mut render, &caster.pose.positions);
+        for receiver in 0..self.n_receivers {
+            if let Some((pipeline, groups)) = &route {
+                bind(&mut render, pipeline, groups);
+                render.draw(0..3, receiver..receiver + 1);
+            }
+            bind(&mut render, &self.cover, &cover);
+            let instances = receiver * n_points..(receiver + 1) * n_points;
+            render.draw_indexed(triangles.clone(), 0, instances);
         }
-        uniform
     }
+}
+
+fn bind(
+    render: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[(u32, wgpu::BindGroup)],
+) {
+    render.set_pipeline(pipeline);
+    for (index, group) in groups {
+        render.set_bind_group(*index, group, &[]);
+    }
+}
+
+/// A target that adds up what is drawn.
+fn adding() -> ColorTargetState {
+    let sum = BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    };
+    ColorTargetState {
+        format: FORMAT,
+        blend: Some(BlendState {
+            color: sum,
+            alpha: sum,
+        }),
+        write_mask: ColorWrites::ALL,
+    }
+}
+
+fn ordered(compare: CompareFunction) -> DepthStencilState {
+    DepthStencilState {
+        format: ORDER_FORMAT,
+        depth_compare: Some(compare),
+        ..nearest_surface()
+    }
+}
+
+fn light_points_uniform(points: &[Vec4], n_points: u32, texel_px: [f32; 2]) -> LightPoints {
+    let mut uniform = LightPoints {
+        points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+        texel_px,
+        n_points,
+        _pad: 0,
+    };
+    for (slot, point) in uniform.points.iter_mut().zip(points) {
+        *slot = point.to_array();
+    }
+    uniform
 }
 
 /// A posed toy and the light points that it hides.
 pub(crate) struct Caster<'a> {
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) positions: &'a wgpu::Buffer,
+    pub(crate) pose: &'a PoseBuffers,
     /// Those in the space of the first receiver, then those of the next.
     pub(crate) points: &'a [Vec4],
+}
+
+impl Caster<'_> {
+    /// What to draw of it, of which only triangles that face the light are seen.
+    fn triangles(&self, n_points: usize) -> Range<u32> {
+        let ranges = &self.toy.shadow_ranges;
+        // The first receiver's space is the pose's own.
+        let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
+        if self.points.iter().take(n_points).any(is_within) {
+            ranges.both_sides.clone()
+        } else {
+            ranges.facing.clone()
+        }
+    }
 }

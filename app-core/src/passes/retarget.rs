@@ -105,7 +105,7 @@ impl Retarget {
         render.set_bind_group(GROUP_GLOBALS, &toy_shared, &[]);
         render.set_bind_group(GROUP_PASS, &toy_own, &[]);
         render.set_vertex_buffer(1, toy.physical.positions.slice(..));
-        toy.draw_positions(&mut render, &toy.shown.positions, 1);
+        toy.draw_positions(&mut render, &toy.shown.positions, 0..1);
     }
 }
 
@@ -120,6 +120,7 @@ fn picture_shape(depth: DepthStencilState) -> RenderShape<'static> {
         targets: &PICTURE_TARGETS,
         n_samples: N_SAMPLES,
         depth: Some(depth),
+        culled: None,
         constants: &[],
     }
 }

@@ -37,6 +37,7 @@ impl Search {
             targets: &[Some(TERM_FORMAT.into()), Some(TAPS_FORMAT.into())],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants: &[],
         };
         Self {

@@ -87,6 +87,7 @@ impl SelfShadow {
             targets: &[],
             n_samples: 1,
             depth: Some(nearest_surface()),
+            culled: None,
             constants: &[],
         };
         Self {
@@ -114,6 +115,6 @@ impl SelfShadow {
         let n_tiles = tiles.n_tiles.iter().sum();
         shadowed
             .toy
-            .draw_positions(&mut render, &shadowed.pose.positions, n_tiles);
+            .draw_positions(&mut render, &shadowed.pose.positions, 0..n_tiles);
     }
 }

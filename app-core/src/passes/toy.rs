@@ -106,6 +106,7 @@ impl Toy {
             targets: &[Some(FORMAT.into()), Some(MOVED_FORMAT.into())],
             n_samples: N_SAMPLES,
             depth: Some(nearest_surface()),
+            culled: None,
             constants: &[],
         };
         let offsets: &[Vec2] = if n_draws == 1 { &[Vec2::ZERO] } else { &OFFSETS_PX };

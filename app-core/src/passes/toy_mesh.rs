@@ -1,5 +1,7 @@
 //! The toy on the device: what never changes, the physical pose, and the pose of the frame.
 
+use std::ops::Range;
+
 use wgpu::{BufferUsages, VertexAttribute, VertexFormat, VertexStepMode};
 
 use crate::gpu::Gpu;
@@ -7,7 +9,7 @@ use crate::gpu::layout::Material;
 use crate::gpu::pipeline::{GROUP_DRAW, view};
 use crate::gpu::texture::Texture;
 use crate::light_tiles::Sphere;
-use crate::toy::{PosedMesh, Toy, Wrap};
+use crate::toy::{PosedMesh, ShadowRanges, Toy, Wrap};
 
 /// The texture of a material that has none.
 const WHITE: [u8; 4] = [255; 4];
@@ -49,7 +51,7 @@ impl PoseBuffers {
 
 /// A run of indices with one material.
 struct Part {
-    indices: std::ops::Range<u32>,
+    indices: Range<u32>,
     material: usize,
 }
 
@@ -62,7 +64,8 @@ struct MaterialBinding {
 /// The toy's buffers.
 pub(crate) struct ToyMesh {
     indices: wgpu::Buffer,
-    n_indices: u32,
+    shadow_indices: wgpu::Buffer,
+    pub(crate) shadow_ranges: ShadowRanges,
     uvs: wgpu::Buffer,
     colors: wgpu::Buffer,
     parts: Vec<Part>,
@@ -81,7 +84,12 @@ impl ToyMesh {
                 bytemuck::cast_slice(toy.indices()),
                 BufferUsages::INDEX,
             ),
-            n_indices: u32::try_from(toy.indices().len()).unwrap_or(u32::MAX),
+            shadow_indices: gpu.buffer(
+                "shadow indices",
+                bytemuck::cast_slice(&toy.shadow_indices().indices),
+                BufferUsages::INDEX,
+            ),
+            shadow_ranges: toy.shadow_indices().ranges.clone(),
             uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
             colors: gpu.buffer(
                 "colors",
@@ -129,26 +137,21 @@ impl ToyMesh {
             .collect()
     }
 
-    /// Draws the whole mesh `n_instances` times, without materials; positions are in slot 0.
+    /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
     pub(crate) fn draw_positions(
         &self,
         render: &mut wgpu::RenderPass<'_>,
         positions: &wgpu::Buffer,
-        n_instances: u32,
+        instances: Range<u32>,
     ) {
-        self.draw_instances(render, positions, 0..n_instances);
+        self.bind_positions(render, positions);
+        render.draw_indexed(self.shadow_ranges.all.clone(), 0, instances);
     }
 
-    /// Draws the whole mesh as the instances of these indices, without materials; positions are in slot 0.
-    pub(crate) fn draw_instances(
-        &self,
-        render: &mut wgpu::RenderPass<'_>,
-        positions: &wgpu::Buffer,
-        instances: std::ops::Range<u32>,
-    ) {
+    /// Binds what [`ToyMesh::shadow_ranges`] are ranges of; positions are in slot 0.
+    pub(crate) fn bind_positions(&self, render: &mut wgpu::RenderPass<'_>, positions: &wgpu::Buffer) {
         render.set_vertex_buffer(0, positions.slice(..));
-        render.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.n_indices, 0, instances);
+        render.set_index_buffer(self.shadow_indices.slice(..), wgpu::IndexFormat::Uint32);
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.

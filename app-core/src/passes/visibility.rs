@@ -40,6 +40,7 @@ impl Visibility {
             targets: &[Some(target)],
             n_samples: 1,
             depth: None,
+            culled: None,
             constants: &constants,
         };
         let pipeline = gpu.render_pipeline(&VISIBILITY, &gpu.module(&VISIBILITY), &stages, &shape);
@@ -54,14 +55,10 @@ impl Visibility {
         occlusion: &OcclusionTargets,
         visibility: &wgpu::TextureView,
     ) {
-        // The shader names four targets; those that were not drawn are not read.
-        let resources: Vec<_> = (0..4)
-            .filter_map(|k| {
-                let hidden = occlusion.hidden.get(k as usize).or(occlusion.hidden.first())?;
-                Some((k, view(&hidden.view)))
-            })
-            .collect();
-        let own = gpu.bind(&self.pipeline.get_bind_group_layout(GROUP_PASS), &resources);
+        let own = gpu.bind(
+            &self.pipeline.get_bind_group_layout(GROUP_PASS),
+            &[(0, view(&occlusion.hidden.view))],
+        );
         let mut target = cleared(visibility);
         if self.channel > 0 {
             target.ops.load = LoadOp::Load;

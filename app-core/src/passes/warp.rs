@@ -44,6 +44,7 @@ impl Warp {
             targets: &[Some(WARP_FORMAT.into())],
             n_samples: 1,
             depth: Some(nearest_surface()),
+            culled: None,
             constants: &[],
         };
         Self {
@@ -69,6 +70,6 @@ impl Warp {
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
         render.set_vertex_buffer(1, toy.physical.positions.slice(..));
         let first = shadow.light * N_SLOTS;
-        toy.draw_instances(&mut render, shown, first..first + shadow.n_receivers);
+        toy.draw_positions(&mut render, shown, first..first + shadow.n_receivers);
     }
 }

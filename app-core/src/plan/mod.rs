@@ -20,7 +20,7 @@ use passes::{ESTIMATE_PASSES, PASSES};
 
 /// A penumbra narrower than this is drawn as a hard edge.
 const HARD_PENUMBRA_PX: f64 = 1.0;
-/// Light points of a hard edge: one for each multisample position, so that it stays antialiased.
+/// Light points of a hard edge: one for each position within a pixel, so that it stays antialiased.
 const N_HARD_POINTS: usize = 4;
 /// Steps of the reweighted least squares; each more moved no share by 1e-3 on the sessions they were chosen on.
 const N_FIT_STEPS: u32 = 5;

@@ -14,6 +14,7 @@ use super::geometry::{self, Geometry};
 use super::limits::{MAX_INDICES, MAX_VERTICES};
 use super::material::{self, Material, tex_coord};
 use super::rig::{Rig, RigPose};
+use super::shadow_indices::ShadowIndices;
 use super::surface::{Surface, is_mirrored, lay_out};
 use super::{Toy, clip, graph, skin};
 
@@ -44,6 +45,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     Ok(Toy {
         file: file.to_owned(),
         rig,
+        shadow_indices: ShadowIndices::new(&surfaces, &geometries, &draws.indices),
         geometries,
         surfaces,
         draws,

@@ -35,6 +35,15 @@ pub(super) struct MorphTarget {
     normals: Option<Vec<Vec3>>,
 }
 
+impl MorphTarget {
+    /// What it adds to a vertex's position.
+    pub(super) fn offset(&self, vertex: usize) -> Vec3 {
+        self.positions
+            .as_ref()
+            .map_or(Vec3::ZERO, |positions| positions[vertex])
+    }
+}
+
 /// A morph target and its weight, which is not zero.
 pub(super) struct ActiveTarget<'a> {
     target: &'a MorphTarget,

@@ -1,7 +1,7 @@
 //! The toy: a glTF file as one posable mesh.
 //!
 //! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
-//! triangles, materials, texture coordinates.
+//! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`).
 //! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) set nodes and morph weights (`rig`), the
 //! weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
@@ -23,6 +23,7 @@ mod material;
 mod normal;
 mod pose;
 mod rig;
+mod shadow_indices;
 mod skin;
 mod surface;
 mod texture;
@@ -36,6 +37,7 @@ pub use clip::{Clip, ClipId};
 pub use error::{ToyError, ToyProblem, ToyWarning};
 pub use material::{Material, MaterialTexture, Wrap};
 pub use pose::PosedMesh;
+pub use shadow_indices::{ShadowIndices, ShadowRanges};
 pub use surface::Part;
 pub use texture::Texture;
 
@@ -50,6 +52,7 @@ pub struct Toy {
     geometries: Vec<Geometry>,
     surfaces: Vec<Surface>,
     draws: Draws,
+    shadow_indices: ShadowIndices,
     materials: Vec<Material>,
     textures: Vec<Texture>,
     warnings: Vec<ToyWarning>,
@@ -146,6 +149,11 @@ impl Toy {
     /// Corners of all triangles, counter-clockwise seen from outside; each below [`Toy::n_vertices`].
     pub fn indices(&self) -> &[u32] {
         &self.draws.indices
+    }
+
+    /// The same triangles for passes that need positions alone.
+    pub fn shadow_indices(&self) -> &ShadowIndices {
+        &self.shadow_indices
     }
 
     /// Base colour texture coordinates, one for each vertex, v downwards; zero where a part has none.

@@ -32,14 +32,20 @@ pub(super) struct Influences {
 }
 
 impl Influences {
+    /// The joints of one vertex, each with its weight.
+    pub(super) fn of(&self, vertex: usize) -> impl Iterator<Item = (u16, f32)> + '_ {
+        let range = vertex * self.n_per_vertex..(vertex + 1) * self.n_per_vertex;
+        let joints = self.joints[range.clone()].iter().copied();
+        joints.zip(self.weights[range].iter().copied())
+    }
+
     /// The weighted mean of the joints' transforms for one vertex.
     pub(super) fn blend(&self, vertex: usize, palette: &[DAffine3]) -> DAffine3 {
         let mut blend = DAffine3 {
             matrix3: DMat3::ZERO,
             translation: DVec3::ZERO,
         };
-        let range = vertex * self.n_per_vertex..(vertex + 1) * self.n_per_vertex;
-        for (&joint, &weight) in self.joints[range.clone()].iter().zip(&self.weights[range]) {
+        for (joint, weight) in self.of(vertex) {
             if weight > 0.0 {
                 let (joint, weight) = (&palette[usize::from(joint)], f64::from(weight));
                 blend.matrix3 += joint.matrix3 * weight;

@@ -29,6 +29,7 @@ pub mod self_shadow;
 pub mod sets;
 pub mod tint;
 pub mod visibility;
+pub mod withhold;
 
 use std::str::FromStr;
 

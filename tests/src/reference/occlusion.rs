@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use super::model::Region;
 
-/// Where the multisample positions lie within a pixel. Source: Vulkan 1.3, table of standard sample locations.
+/// Where light points are seen from within a pixel: a rotated grid, that of Vulkan's standard sample locations.
 pub const SAMPLE_POSITIONS: [DVec2; 4] = [
     DVec2::new(0.375, 0.125),
     DVec2::new(0.875, 0.375),
@@ -87,10 +87,10 @@ pub struct Caster {
     pub light_points: Vec<DVec4>,
 }
 
-/// Share of the light points of each multisample position that the mesh hides from `texel` of a map of `map_px` texels
+/// Share of the light points, each seen from its position, that the mesh hides from `texel` of a map of `map_px` texels
 /// over the region, or `None` where that texel looks past the receivers. There is a caster for each of them.
 ///
-/// Light point i is seen from multisample position i % 4. Of several receivers a texel shows the one at its centre;
+/// Light point i is seen from position i % 4. Of several receivers a texel shows the one at its centre;
 /// a single one is taken to go on for ever.
 #[must_use]
 pub fn hidden_share(casters: &[Caster], region: &Region, (map_px, texel): (UVec2, UVec2)) -> Option<f64> {

@@ -77,9 +77,9 @@ fn light_points_have_the_moments_of_a_disc() {
     }
 }
 
-/// A multisample position gets every fourth point, and must see the whole light.
+/// A position within the pixel gets every fourth point, and must see the whole light.
 #[test]
-fn each_multisample_position_gets_points_from_all_over_the_light() {
+fn each_position_gets_points_from_all_over_the_light() {
     for preset in Preset::ALL {
         let Method::Model(settings) = preset.method() else {
             continue;

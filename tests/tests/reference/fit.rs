@@ -141,9 +141,13 @@ fn unseen_shadow_leaves_the_expected_share() {
         sample.frame = sample.plate * 0.9;
     }
     let fitted = fit_receiver(&region, (0, &lit), &start(2), &constants, 5);
-    for share in &fitted.receivers[0].shares {
+    // Like bulbs: cosine over squared distance of each, from the reference point at the origin.
+    let of_bulb = |bulb: DVec4| bulb.y / bulb.truncate().length().powi(3);
+    let bulbs = two_bulbs();
+    let both: f64 = bulbs.iter().map(|bulb| of_bulb(*bulb)).sum();
+    for (share, bulb) in fitted.receivers[0].shares.iter().zip(bulbs) {
         // Whatever the gain is, which is found first.
-        let expected = constants.prior_share / 2.0;
+        let expected = constants.prior_share * of_bulb(bulb) / both;
         assert!((share - expected).abs().max_element() < 1e-3, "{fitted:?}");
     }
     assert!((fitted.gain - 0.9).abs().max_element() < 1e-3, "{fitted:?}");

@@ -7,12 +7,17 @@ use app_core::frame::FrameInput;
 use app_core::maps::Map;
 use app_core::preset::Preset;
 use app_core::scene::Image;
+use app_core::wgpu;
 use glam::UVec2;
+use harness::reference::withhold::{lit_of_shader, withhold};
 
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::Photo;
 use crate::place::Stand;
 use crate::run::{core_on, input, raster, scene, texel_of};
+use crate::scrambled::{Scrambled, buffers, views};
 use crate::setups::SETUPS;
 
 const MAGENTA: [u8; 4] = [255, 0, 255, 255];
@@ -62,4 +67,46 @@ fn a_withheld_shadow_is_rebuilt_and_tells_nothing() {
     let again = rebuilt(&mut core, &stand, &Arc::new(Image::clone(&photograph)));
     let of_defaced = rebuilt(&mut core, &stand, &Arc::new(defaced));
     pairs(&of_defaced, &again).check_all("codes of a defaced shadow", 1.0);
+}
+
+/// How far marks are off that `source` makes.
+fn errors(source: &str) -> Errors {
+    let (device, scene) = (Device::open(), Scrambled::new());
+    let maps = [
+        device.map(&scene.evidence),
+        device.map(&scene.visibility),
+        device.filterable(&scene.ambient),
+    ];
+    let linear = device.linear_sampler();
+    let mut own = views(0, &maps);
+    own.push((3, wgpu::BindingResource::Sampler(&linear)));
+    let draw = Draw {
+        source,
+        fragment: "fs_withhold",
+        constants: &[],
+        output: 0,
+        size: scene.rect.size_px,
+    };
+    let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+    let marks = (&scene.evidence, lit_of_shader().unwrap());
+    let expected = withhold(&scene.region, &scene.pictures(0), &scene.solution, marks);
+    let both = actual.texels().iter().zip(expected.texels());
+    Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
+}
+
+#[test]
+fn evidence_without_the_shadow() {
+    errors(&source("withhold")).check_all("withhold", 0.0);
+}
+
+#[test]
+fn a_fault_in_withholding_is_found() {
+    let faults = [
+        ("LIT: f32 = 0.95", "LIT: f32 = 0.7"),
+        ("|| marks.r == 0.0", ""),
+        ("!is_hit(point) ||", ""),
+        ("smallest(left)", "largest(left)"),
+        ("1.0 - marks.b", "1.0 - marks.g"),
+    ];
+    check_faults("withhold", &faults, 0.0, errors);
 }

@@ -1,0 +1,94 @@
+//! The shape that shadows are drawn from: what is welded, and what counts as closed.
+
+use std::collections::{HashMap, HashSet};
+
+use app_core::toy::Toy;
+use serde_json::json;
+
+use super::FILE;
+use super::builder::{CORNERS, Glb, triangle};
+
+/// Corners of a tetrahedron, its faces counter-clockwise seen from outside.
+const TETRAHEDRON: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+/// Faces of the tetrahedron with corners of their own, and a triangle beside it.
+fn faceted(faces: &[[usize; 3]]) -> Toy {
+    let mut corners: Vec<f32> = faces
+        .as_flattened()
+        .iter()
+        .flat_map(|&k| TETRAHEDRON[k])
+        .collect();
+    corners.extend(CORNERS.map(|coordinate| coordinate + 2.0));
+    let mut glb = Glb::new();
+    let position = glb.floats("VEC3", &corners);
+    let mesh = glb.mesh(json!({ "attributes": { "POSITION": position } }));
+    glb.push("nodes", json!({ "mesh": mesh }));
+    Toy::from_glb(FILE, &glb.bytes()).unwrap()
+}
+
+/// How often each edge is passed one way more than the other.
+fn unmatched(corners: &[u32]) -> usize {
+    let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
+    for &[a, b, c] in corners.as_chunks().0 {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *passes.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    passes.values().filter(|n| **n != 0).count()
+}
+
+/// Number of different corners.
+fn n_corners(corners: &[u32]) -> usize {
+    corners.iter().collect::<HashSet<_>>().len()
+}
+
+#[test]
+fn a_closed_piece_is_drawn_from_one_side_and_an_open_one_from_both() {
+    let toy = faceted(&FACES);
+    let shadow = toy.shadow_indices();
+    let ranges = &shadow.ranges;
+    assert_eq!((ranges.all.clone(), ranges.facing.clone()), (0..15, 0..18));
+    assert_eq!((ranges.both_sides.clone(), shadow.indices.len()), (0..30, 30));
+    assert_eq!(n_corners(&shadow.indices), 4 + 3);
+    // Nothing is open any more, whichever side is drawn.
+    assert_eq!(unmatched(&shadow.indices[..15]), 3);
+    assert_eq!(unmatched(&shadow.indices[..18]), 0);
+    assert_eq!(unmatched(&shadow.indices), 0);
+}
+
+#[test]
+fn what_lacks_a_face_or_has_one_turned_around_is_open() {
+    let [a, b, c] = FACES[3];
+    for faces in [&FACES[..3], &[FACES[0], FACES[1], FACES[2], [a, c, b]]] {
+        let n_triangles = u32::try_from(faces.len() + 1).unwrap();
+        let toy = faceted(faces);
+        let ranges = &toy.shadow_indices().ranges;
+        assert_eq!(
+            (ranges.all.end, ranges.facing.end),
+            (3 * n_triangles, 6 * n_triangles)
+        );
+    }
+}
+
+/// Two nodes show one mesh in one place, but a clip may part them; so may morph targets.
+#[test]
+fn what_a_pose_can_part_is_not_welded() {
+    let mut glb = triangle();
+    glb.push("nodes", json!({ "mesh": 0 }));
+    glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let toy = Toy::from_glb(FILE, &glb.bytes()).unwrap();
+    assert_eq!(n_corners(&toy.shadow_indices().indices), 6);
+
+    let mut glb = triangle();
+    let primitive = glb.json["meshes"][0]["primitives"][0].clone();
+    let offsets = glb.floats("VEC3", &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    let mut still = primitive.clone();
+    let zeros = glb.floats("VEC3", &[0.0; 9]);
+    still["targets"] = json!([{ "POSITION": zeros }]);
+    let mut moving = primitive;
+    moving["targets"] = json!([{ "POSITION": offsets }]);
+    glb.json["meshes"][0]["primitives"] = json!([still, moving]);
+    let toy = Toy::from_glb(FILE, &glb.bytes()).unwrap();
+    assert_eq!(n_corners(&toy.shadow_indices().indices), 4);
+}
