@@ -133,6 +133,8 @@ struct PlaneReach {
     world_from_plane: DMat4,
     plane_from_stage: DMat4,
     half_extent_m: DVec2,
+    /// What is reached on a receiver that is seen from behind changes nothing in the picture.
+    is_seen: bool,
     /// Corners of each light's disc, boxed: their shadows bound those of the whole light.
     sources: Vec<DVec4>,
     rect: PlaneRect,
@@ -157,6 +159,7 @@ impl<'a> Reach<'a> {
                 world_from_plane: receiver.world_from_plane,
                 plane_from_stage,
                 half_extent_m,
+                is_seen: view.sees_front_of(receiver),
                 sources: corners.filter(|source| source.y > 0.0).collect(),
                 rect: PlaneRect {
                     min: DVec2::INFINITY,
@@ -245,6 +248,9 @@ impl<'a> Reach<'a> {
         let kept = on_receiver.clamp(plane.kept.min, plane.kept.max);
         plane.rect.min = plane.rect.min.min(kept);
         plane.rect.max = plane.rect.max.max(kept);
+        if !plane.is_seen {
+            return;
+        }
         let at = DVec4::new(on_receiver.x, 0.0, on_receiver.y, 1.0);
         let px = self.view.image_px_from(&plane.world_from_plane, at);
         self.include_px(px);

@@ -1,8 +1,10 @@
 //! The work region: it holds what toy and shadows reach, and not much else.
 
+use std::f64::consts::FRAC_PI_2;
+
 use app_core::region::{Bounds, PixelRect, Reach};
-use app_core::scene::Intrinsics;
-use glam::{DVec2, DVec3, UVec2};
+use app_core::scene::{Intrinsics, Receiver};
+use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 
 use crate::rig::{BULB_AT, RECT, Rig, TOY, place, points_on_plane, shadow};
 
@@ -92,6 +94,31 @@ fn the_region_of_some_points_is_within_that_of_their_box() {
     }
     let boxed = rig.region(&TOY, &lights).unwrap();
     assert!(boxed.contains(&region) && !region.contains(&boxed));
+}
+
+/// A low light beside the toy throws its shadow on a wall behind it, beyond a small table.
+#[test]
+fn shadows_on_a_wall_count_where_its_front_is_seen() {
+    let mut rig = Rig::new(DVec3::ZERO);
+    let light = [rig.bulb(DVec3::new(0.5, 0.3, 0.15), 0.0)];
+    let stage_from_wall =
+        DMat4::from_rotation_translation(DQuat::from_rotation_x(FRAC_PI_2), DVec3::new(0.0, 0.0, -0.1));
+    let wall = Receiver {
+        world_from_plane: rig.world_from_plane() * stage_from_wall,
+        ..rig.receiver()
+    };
+    let table = Receiver {
+        half_extent_m: DVec2::splat(0.1),
+        ..rig.receiver()
+    };
+    let receivers = [table, wall];
+    for (z_m, is_before) in [(1.2, true), (-1.2, false)] {
+        rig.place_camera(DVec3::new(0.0, 1.0, z_m), DVec3::ZERO);
+        let view = rig.view();
+        let [alone, both] = [1, 2].map(|n| view.region(&TOY, &place(&receivers[..n], &light)).unwrap());
+        assert!(both.contains(&alone));
+        assert_eq!(both != alone, is_before, "{both:?} and {alone:?}");
+    }
 }
 
 #[test]
