@@ -9,7 +9,7 @@ use crate::gpu::layout::{Globals, PlateViews, Subject};
 use crate::gpu::texture::{Texture, TextureShape};
 use crate::knowledge::Knowledge;
 use crate::learner::Learner;
-use crate::light_points::ambient_directions;
+use crate::lighting::{Lighting, Visibilities};
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
 use crate::passes::detail::DETAIL_FORMAT;
@@ -17,28 +17,15 @@ use crate::passes::estimate::Fineness;
 use crate::passes::evidence::EVIDENCE_FORMAT;
 use crate::passes::motion::MotionTargets;
 use crate::passes::object::{BASE_FORMAT, NORMAL_FORMAT, ObjectInputs, ObjectOutputs, RECEIVED_FORMAT};
-use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::plate::PLATE_FORMAT;
 use crate::passes::self_shadow::{SelfShadowMaps, Shadowed};
-use crate::passes::tint::TintInputs;
 use crate::passes::toy::ToyTargets;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::pipeline::Passes;
 use crate::plan::{Change, Plan};
 
-/// Format of the ambient map.
-pub(crate) const AMBIENT_FORMAT: TextureFormat = TextureFormat::R16Float;
-
 /// Rounds in which plate and light are estimated from one another.
 const N_ESTIMATE_ROUNDS: u32 = 3;
-
-/// Visibility of the lights and of the ambient light, for one pose.
-pub(crate) struct Visibilities {
-    pub(crate) lights: Texture,
-    pub(crate) ambient: Texture,
-    /// Replaces what the passes make of the lights.
-    pub(crate) injected: Option<Texture>,
-}
 
 /// Everything of the region's size.
 pub(crate) struct Capture {
@@ -70,13 +57,7 @@ pub(crate) struct Capture {
     /// Each pixel's own residual, cleared of noise.
     pub(crate) detail: Option<Texture>,
     pub(crate) picture: Texture,
-    pub(crate) light_points: Vec<Vec<glam::Vec4>>,
-    /// Those of them that are in stage space.
-    stage_points: Vec<Vec<glam::Vec4>>,
-    /// All lights use them, one after the other.
-    light_targets: OcclusionTargets,
-    ambient_targets: OcclusionTargets,
-    ambient_directions: Vec<glam::Vec4>,
+    pub(crate) lighting: Lighting,
 }
 
 impl Capture {
@@ -84,12 +65,11 @@ impl Capture {
     pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<glam::Vec4>>) -> Self {
         let region_px = plan.region.size_px;
         let target = |label, format| texture(gpu, label, region_px, (format, 1));
-        let n_receivers = plan.n_receivers as usize;
         Self {
             known: *globals,
             globals: gpu.uniform("globals", globals),
-            physical: visibilities(gpu, &plan),
-            shown: visibilities(gpu, &plan),
+            physical: Visibilities::new(gpu, &plan),
+            shown: Visibilities::new(gpu, &plan),
             object_base: target("object base", BASE_FORMAT),
             object_normal: target("object normal", NORMAL_FORMAT),
             object_received: target("object received", RECEIVED_FORMAT),
@@ -111,15 +91,7 @@ impl Capture {
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
-            light_targets: OcclusionTargets::new(gpu, region_px, region_px),
-            ambient_targets: OcclusionTargets::new(gpu, plan.ambient_px, region_px),
-            // Each receiver has its own hemisphere.
-            ambient_directions: ambient_directions(plan.n_ambient_directions).repeat(n_receivers),
-            stage_points: light_points
-                .iter()
-                .map(|points| points[..points.len() / n_receivers.max(1)].to_vec())
-                .collect(),
-            light_points,
+            lighting: Lighting::new(gpu, &plan, light_points),
             plan,
         }
     }
@@ -181,7 +153,8 @@ impl Capture {
         passes
             .evidence
             .encode(gpu, encoder, &self.object_depth.view, &self.evident.view);
-        self.encode_visibilities(gpu, encoder, passes, physical, &self.physical);
+        self.lighting
+            .encode(gpu, encoder, (passes, &self.globals), physical, &self.physical);
         passes.plate.encode(
             gpu,
             encoder,
@@ -238,6 +211,7 @@ impl Capture {
         learner.fit(encoder, Subject::Toy, 0, is_first);
         learner.pool_residual(encoder);
         learner.separate_detail(encoder);
+        learner.pool_tint(encoder);
     }
 
     /// Encodes what follows each new camera picture of a known view: its exposure, the lights' power, and what has come
@@ -261,6 +235,7 @@ impl Capture {
         learner.fit_levels(encoder);
         learner.pool_residual(encoder);
         learner.separate_detail(encoder);
+        learner.pool_tint(encoder);
     }
 
     /// Encodes the toy's own colours, which follow each new camera frame.
@@ -287,18 +262,6 @@ impl Capture {
             base: &self.appearance_base.view,
         };
         passes.appearance.encode(gpu, encoder, &inputs, &outputs);
-        let inputs = TintInputs {
-            plan: &self.plan,
-            globals: &self.globals,
-            solution: &knowledge.solution,
-            frame,
-            evidence: &self.evident.view,
-            object_depth: &self.object_depth.view,
-            object_normal: &self.object_normal.view,
-            object_received: &self.object_received.view,
-            object_base: &self.object_base.view,
-        };
-        passes.tint.encode(gpu, encoder, &inputs, &knowledge.tints);
     }
 
     /// Encodes the shadow that the toy casts on itself in a pose.
@@ -313,43 +276,11 @@ impl Capture {
         let shadowed = Shadowed {
             toy,
             pose,
-            light_points: &self.stage_points,
+            light_points: &self.lighting.points_in_stage(),
         };
         passes
             .self_shadow
             .encode(gpu, encoder, &self.plan.self_shadow, &shadowed, maps);
-    }
-
-    /// Encodes visibility and ambient visibility of the toy in a pose.
-    pub(crate) fn encode_visibilities(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
-        passes: &Passes,
-        (toy, pose): (&ToyMesh, &PoseBuffers),
-        outputs: &Visibilities,
-    ) {
-        for (points, visibility) in self.light_points.iter().zip(&passes.lights) {
-            let caster = Caster { toy, pose, points };
-            passes
-                .occlusion
-                .encode(gpu, encoder, &self.globals, &caster, &self.light_targets);
-            visibility.encode(gpu, encoder, &self.light_targets, &outputs.lights.view);
-        }
-        if let Some(injected) = &outputs.injected {
-            outputs.lights.encode_copy(encoder, injected);
-        }
-        let caster = Caster {
-            toy,
-            pose,
-            points: &self.ambient_directions,
-        };
-        passes
-            .occlusion
-            .encode(gpu, encoder, &self.globals, &caster, &self.ambient_targets);
-        passes
-            .ambient
-            .encode(gpu, encoder, &self.ambient_targets, &outputs.ambient.view);
     }
 }
 
@@ -370,17 +301,4 @@ fn texture(gpu: &Gpu, label: &str, size_px: UVec2, (format, n_samples): (Texture
             n_samples,
         },
     )
-}
-
-fn visibilities(gpu: &Gpu, plan: &Plan) -> Visibilities {
-    Visibilities {
-        lights: texture(
-            gpu,
-            "visibility",
-            plan.region.size_px,
-            (plan.visibility_format, 1),
-        ),
-        ambient: texture(gpu, "ambient", plan.ambient_px, (AMBIENT_FORMAT, 1)),
-        injected: None,
-    }
 }

@@ -11,6 +11,7 @@ use crate::passes::estimate::{EstimateInputs, Fineness};
 use crate::passes::fit::{FitInputs, FitShared, FitTask};
 use crate::passes::lit::LitInputs;
 use crate::passes::residual::ResidualInputs;
+use crate::passes::tint::TintInputs;
 use crate::passes::withhold::WithholdInputs;
 use crate::pipeline::{EstimatePasses, Passes};
 use crate::pool::PoolGrids;
@@ -124,6 +125,25 @@ impl Learner<'_> {
             ambient: &capture.physical.ambient.view,
         };
         pass.encode(self.gpu, encoder, &inputs, &target.view);
+    }
+
+    /// What the toy's visible surface tells of its paint, also where no camera sees it.
+    pub(crate) fn pool_tint(&self, encoder: &mut Encoder) {
+        let (capture, knowledge) = (self.capture, self.knowledge);
+        let inputs = TintInputs {
+            plan: &capture.plan,
+            globals: &capture.globals,
+            solution: &knowledge.solution,
+            frame: self.frame,
+            evidence: &capture.evident.view,
+            object_depth: &capture.object_depth.view,
+            object_normal: &capture.object_normal.view,
+            object_received: &capture.object_received.view,
+            object_base: &capture.object_base.view,
+        };
+        self.passes
+            .tint
+            .encode(self.gpu, encoder, &inputs, &knowledge.tints);
     }
 
     /// Keeps the real shadow from what follows, where that is asked for.

@@ -32,6 +32,7 @@ mod clip_reach;
 mod exposure;
 mod knowledge;
 mod learner;
+mod lighting;
 mod passes;
 mod pipeline;
 mod plate_store;

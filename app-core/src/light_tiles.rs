@@ -41,7 +41,7 @@ impl Sphere {
 /// The tiles of each light's points over a toy within `toy`. A light inside that ball, from where no frustum holds all of
 /// the toy, gets none.
 #[must_use]
-pub fn light_tiles(light_points: &[Vec<Vec4>], toy: &Sphere, plan: &SelfShadowPlan) -> SelfShadow {
+pub fn light_tiles(light_points: &[&[Vec4]], toy: &Sphere, plan: &SelfShadowPlan) -> SelfShadow {
     let mut tiles = SelfShadow {
         atlas_from_stage: [[[0.0; 4]; 4]; MAX_TILES],
         first_tile: [0; MAX_LIGHTS],

@@ -1,10 +1,11 @@
 //! The passes of a plan, built once, and the frame path in order.
 
-use crate::capture::{AMBIENT_FORMAT, Capture};
+use crate::capture::Capture;
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::Placement;
 use crate::knowledge::Knowledge;
+use crate::lighting::AMBIENT_FORMAT;
 use crate::passes::appearance::Appearance;
 use crate::passes::composite::{Composite, CompositeInputs};
 use crate::passes::detail::Detail;
@@ -112,7 +113,8 @@ impl Passes {
         frame: &wgpu::TextureView,
     ) {
         let shown = (toy, &toy.shown);
-        capture.encode_visibilities(gpu, encoder, self, shown, &capture.shown);
+        let lighting = &capture.lighting;
+        lighting.encode(gpu, encoder, (self, &capture.globals), shown, &capture.shown);
         capture.encode_self_shadow(gpu, encoder, self, shown, &capture.shown_self_shadow);
         self.motion
             .encode(gpu, encoder, &capture.globals, toy, &capture.motion);

@@ -164,7 +164,7 @@ impl Model {
         if plan.region.size_px == self.capture.plan.region.size_px {
             self.capture.follow(gpu, plan, globals);
         } else {
-            let light_points = self.capture.light_points.clone();
+            let light_points = self.capture.lighting.points.clone();
             self.capture = Capture::new(gpu, plan, globals, light_points);
         }
     }

@@ -72,7 +72,7 @@ pub(crate) struct SelfShadow {
 pub(crate) struct Shadowed<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
-    pub(crate) light_points: &'a [Vec<Vec4>],
+    pub(crate) light_points: &'a [&'a [Vec4]],
 }
 
 impl SelfShadow {
