@@ -27,8 +27,14 @@
 // Each pixel's own residual, in plates.
 @group(1) @binding(16) var detail: texture_2d<f32>;
 
+// Parts of a pixel that the toy covers: four positions in each channel.
+@group(1) @binding(17) var covered_0: texture_2d<f32>;
+@group(1) @binding(18) var covered_16: texture_2d<f32>;
+
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
+// Number of positions of a pixel in all targets of `coverage`, each of which holds 16.
+override N_POSITIONS: u32 = 32u;
 // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
 override HAS_DETAIL: bool = false;
 
@@ -142,6 +148,35 @@ fn drawn_toy(texel: vec2u) -> vec4f {
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
+// Part of a pixel that the toy covers.
+fn coverage(texel: vec2u) -> f32 {
+  var covered = textureLoad(covered_0, texel, 0);
+  if N_POSITIONS > 16u { covered += textureLoad(covered_16, texel, 0); }
+  return dot(covered, vec4f(4.0)) / f32(N_POSITIONS);
+}
+
+// The toy's colour in a pixel: that of its draws, or where they miss what is in it that beside it.
+fn toy_color(texel: vec2u) -> vec4f {
+  let own = drawn_toy(texel);
+  if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
+  let last = vec2i(globals.region_size_px) - 1;
+  var sum = vec4f(0.0);
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      sum += drawn_toy(vec2u(clamp(vec2i(texel) + vec2i(x, y), vec2i(0), last)));
+    }
+  }
+  if sum.a == 0.0 { return vec4f(0.0); }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// The toy over what is behind it: premultiplied colour, and its coverage.
+fn toy_layer(texel: vec2u) -> vec4f {
+  let covered = coverage(texel);
+  if covered == 0.0 { return vec4f(0.0); }
+  return covered * toy_color(texel);
+}
+
 // 1 where everything in and around a pixel is as the camera saw it.
 fn stillness(texel: vec2i) -> f32 {
   let last = vec2i(globals.region_size_px) - 1;
@@ -158,7 +193,7 @@ fn stillness(texel: vec2i) -> f32 {
 @fragment
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2u(position.xy);
-  let toy = drawn_toy(texel);
+  let toy = toy_layer(texel);
   let still = stillness(vec2i(texel));
   if toy.a == 1.0 {
     let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;

@@ -7,6 +7,7 @@ use crate::gpu::layout::Placement;
 use crate::knowledge::Knowledge;
 use crate::passes::appearance::Appearance;
 use crate::passes::composite::{Composite, CompositeInputs};
+use crate::passes::coverage::Coverage;
 use crate::passes::detail::Detail;
 use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
@@ -63,6 +64,7 @@ pub(crate) struct Passes {
     pub(crate) detail: Option<Detail>,
     pub(crate) motion: Motion,
     pub(crate) toy: Toy,
+    pub(crate) coverage: Coverage,
     pub(crate) composite: Composite,
 }
 
@@ -92,7 +94,8 @@ impl Passes {
             detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
             motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
-            composite: Composite::new(gpu, plan.n_toy_draws, plan.is_noise_removed),
+            coverage: Coverage::new(gpu, plan.n_coverage_positions),
+            composite: Composite::new(gpu, plan),
         }
     }
 
@@ -127,6 +130,13 @@ impl Passes {
             self_shadow: &capture.shown_self_shadow,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
+        self.coverage.encode(
+            gpu,
+            encoder,
+            &capture.globals,
+            (toy, &toy.shown.positions),
+            &capture.coverage,
+        );
         let inputs = CompositeInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
@@ -140,6 +150,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
+            coverage: &capture.coverage,
             detail: capture.detail.as_ref().map(|detail| &detail.view),
             motion: &capture.motion.moved.view,
         };

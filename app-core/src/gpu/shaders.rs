@@ -145,6 +145,11 @@ pub(crate) const TOY: Shader = Shader {
     ],
     entry_points: &["vs_toy", "fs_toy"],
 };
+pub(crate) const COVERAGE: Shader = Shader {
+    name: "coverage",
+    parts: &[GLOBALS, wgsl!("coverage")],
+    entry_points: &["vs_move", "fs_cover"],
+};
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
     parts: &[
@@ -226,6 +231,7 @@ pub const ALL: &[Shader] = &[
     DETAIL,
     MOTION,
     TOY,
+    COVERAGE,
     COMPOSITE,
     PRESENT,
     MASKS,

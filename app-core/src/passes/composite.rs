@@ -7,6 +7,9 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::COMPOSITE;
 
+use crate::plan::Plan;
+
+use super::coverage::CoverageTargets;
 use super::toy::ToyTargets;
 
 /// Format of the picture.
@@ -29,6 +32,7 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) physical_ambient: &'a wgpu::TextureView,
     pub(crate) visibility: &'a wgpu::TextureView,
     pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) coverage: &'a CoverageTargets,
     pub(crate) toy: &'a ToyTargets,
     pub(crate) motion: &'a wgpu::TextureView,
     /// Each pixel's own residual; without it that is what the frame shows.
@@ -36,11 +40,11 @@ pub(crate) struct CompositeInputs<'a> {
 }
 
 impl Composite {
-    /// For a toy drawn once or four times, with or without residuals cleared of noise.
-    pub(crate) fn new(gpu: &Gpu, n_toy_draws: u32, is_noise_removed: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let constants = [
-            ("N_TOY_DRAWS", f64::from(n_toy_draws)),
-            ("HAS_DETAIL", f64::from(u8::from(is_noise_removed))),
+            ("N_TOY_DRAWS", f64::from(plan.n_toy_draws)),
+            ("N_POSITIONS", f64::from(plan.n_coverage_positions)),
+            ("HAS_DETAIL", f64::from(u8::from(plan.is_noise_removed))),
         ];
         Self {
             pipeline: gpu.fullscreen_pipeline(&COMPOSITE, "fs_compose", PICTURE_FORMAT, &constants),
@@ -64,6 +68,7 @@ impl Composite {
             ],
         );
         let [toy_0, toy_1, toy_2, toy_3] = inputs.toy.views();
+        let [covered_0, covered_16, ..] = inputs.coverage.views();
         let own = gpu.bind(
             &layout(GROUP_PASS),
             &[
@@ -85,6 +90,8 @@ impl Composite {
                 (15, view(inputs.motion)),
                 // Not read where there is none.
                 (16, view(inputs.detail.unwrap_or(inputs.plate))),
+                (17, view(covered_0)),
+                (18, view(covered_16)),
             ],
         );
         encoder.fullscreen(
