@@ -2,7 +2,7 @@
 //
 // Position i sets channel (i / 4) % 4 of target i / 16 at multisample position i % 4: its instance draws the mesh moved so
 // that this sample sees the position. Blending keeps the maximum, and the resolve averages four positions. Where any triangle
-// covers a position the toy does, so there is no depth.
+// covers a position the toy does, so there is no depth but that of the receivers.
 // The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
 //
 // Reads: posed positions in stage space. Writes: share of four positions covered, per channel, in [0, 1].
@@ -24,6 +24,7 @@ const MULTISAMPLE_PX = array<vec2f, 4>(
 struct Moved {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
+  @location(1) @interpolate(flat, either) move_px: vec2f,
 }
 
 // From the pixel's corner.
@@ -37,7 +38,7 @@ fn vs_move(@location(0) in_stage: vec3f, @builtin(instance_index) index: u32) ->
   let move_px = samples_px[index % 4u] - position_px(index);
   var clip = globals.clip_from_stage * vec4f(in_stage, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * move_px / globals.region_size_px, 0.0, 0.0);
-  return Moved(clip, index);
+  return Moved(clip, index, move_px);
 }
 
 struct Covered {
@@ -50,6 +51,7 @@ struct Covered {
 
 @fragment
 fn fs_cover(in: Moved) -> Covered {
+  if is_behind_receiver(in.clip.xy - in.move_px, in.clip.w) { discard; }
   let one = vec4f(vec4u(0u, 1u, 2u, 3u) == vec4u((in.index / 4u) % 4u));
   let slot = in.index / 16u;
   return Covered(

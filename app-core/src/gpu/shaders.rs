@@ -34,6 +34,7 @@ const FIT_STEP: &str = wgsl!("common/fit_step");
 const FLATTEN: &str = wgsl!("common/flatten");
 const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
+const HIDDEN: &str = wgsl!("common/hidden");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const MOVED: &str = wgsl!("common/moved");
@@ -141,13 +142,14 @@ pub(crate) const TOY: Shader = Shader {
         DEPTH,
         MOVED,
         CHANNELS,
+        HIDDEN,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
 };
 pub(crate) const COVERAGE: Shader = Shader {
     name: "coverage",
-    parts: &[GLOBALS, wgsl!("coverage")],
+    parts: &[GLOBALS, HIDDEN, wgsl!("coverage")],
     entry_points: &["vs_move", "fs_cover"],
 };
 pub(crate) const COMPOSITE: Shader = Shader {
