@@ -22,7 +22,7 @@ const MOST_KEPT: f32 = 8.0;
 // Weight of the three channels' common solution, for the toy, against their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
 // A toy of middle grey throws back this fraction of the ambient light it takes away.
-const PRIOR_BOUNCE: f32 = 0.2;
+const PRIOR_BOUNCE: f32 = 0.27;
 // All lights together, half of the plate's radiance.
 const PRIOR_SHARE: f32 = 0.5;
 // Shares sum to less than 1, since some light is always ambient: keeps plate_falloff positive.

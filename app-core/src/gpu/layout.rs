@@ -19,7 +19,7 @@ pub const MAX_LIGHT_POINTS: usize = 64;
 pub const MAX_TILES: usize = 64;
 
 /// What the fit takes a toy to throw back until it knows better.
-pub const PRIOR_BOUNCE: f32 = 0.2;
+pub const PRIOR_BOUNCE: f32 = 0.27;
 /// What the fit takes all lights' shares to sum to until it knows better.
 pub const PRIOR_SHARE: f32 = 0.5;
 
