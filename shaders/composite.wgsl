@@ -33,8 +33,6 @@
 
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
-// Number of positions of a pixel in all targets of `coverage`, each of which holds 16.
-override N_POSITIONS: u32 = 32u;
 // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
 override HAS_DETAIL: bool = false;
 
@@ -150,9 +148,8 @@ fn drawn_toy(texel: vec2u) -> vec4f {
 
 // Part of a pixel that the toy covers.
 fn coverage(texel: vec2u) -> f32 {
-  var covered = textureLoad(covered_0, texel, 0);
-  if N_POSITIONS > 16u { covered += textureLoad(covered_16, texel, 0); }
-  return dot(covered, vec4f(4.0)) / f32(N_POSITIONS);
+  let covered = textureLoad(covered_0, texel, 0) + textureLoad(covered_16, texel, 0);
+  return dot(covered, vec4f(1.0 / 8.0));
 }
 
 // The toy's colour in a pixel: that of its draws, or where they miss what is in it that beside it.

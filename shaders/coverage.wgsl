@@ -8,10 +8,9 @@
 // Reads: posed positions in stage space. Writes: share of four positions covered, per channel, in [0, 1].
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
-// A multiple of 16.
-override N_POSITIONS: u32 = 32u;
-// Rows from one column's position to the next one's.
-override LATTICE_STEP: u32 = 9u;
+const N_POSITIONS: u32 = 32u;
+// Rows from one column's position to the next one's: of all lattices of 32 this one has the least error at a straight edge.
+const LATTICE_STEP: u32 = 9u;
 
 // Where the four samples of a pixel lie, from its corner. Source: WebGPU, standard sample pattern.
 const MULTISAMPLE_PX = array<vec2f, 4>(
@@ -44,8 +43,6 @@ fn vs_move(@location(0) in_stage: vec3f, @builtin(instance_index) index: u32) ->
 struct Covered {
   @location(0) positions_0: vec4f,
   @location(1) positions_16: vec4f,
-  @location(2) positions_32: vec4f,
-  @location(3) positions_48: vec4f,
   @builtin(sample_mask) samples: u32,
 }
 
@@ -57,8 +54,6 @@ fn fs_cover(in: Moved) -> Covered {
   return Covered(
     select(vec4f(0.0), one, slot == 0u),
     select(vec4f(0.0), one, slot == 1u),
-    select(vec4f(0.0), one, slot == 2u),
-    select(vec4f(0.0), one, slot == 3u),
     1u << (in.index % 4u),
   );
 }

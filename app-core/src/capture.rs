@@ -103,7 +103,7 @@ impl Capture {
             shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             motion: MotionTargets::new(gpu, region_px),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
-            coverage: CoverageTargets::new(gpu, region_px, plan.n_coverage_positions),
+            coverage: CoverageTargets::new(gpu, region_px),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
             light_targets: plan

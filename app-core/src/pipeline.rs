@@ -94,8 +94,8 @@ impl Passes {
             detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
             motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
-            coverage: Coverage::new(gpu, plan.n_coverage_positions),
-            composite: Composite::new(gpu, plan),
+            coverage: Coverage::new(gpu),
+            composite: Composite::new(gpu, plan.n_toy_draws, plan.is_noise_removed),
         }
     }
 

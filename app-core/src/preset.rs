@@ -56,7 +56,6 @@ pub const BALANCED: Settings = Settings {
     n_ambient_directions: 64,
     ambient_divisor: 4,
     n_toy_draws: 1,
-    n_coverage_positions: 32,
     n_self_shadow_points: 16,
     self_shadow_tile_px: 256,
     is_noise_removed: false,
@@ -118,8 +117,6 @@ pub struct Settings {
     /// RMSE of the edge region over the four sessions of the bundled toy: 6.7 with one draw, 5.7 with four; the toy region
     /// stays the same, the pass `toy` costs four times as much.
     pub n_toy_draws: u32,
-    /// Positions of a pixel that the shown toy's outline is made from: 16, 32 or 64.
-    pub n_coverage_positions: u32,
     /// Points of each light from which the toy's shadow on itself is drawn, of those on the receiver; up to 16.
     pub n_self_shadow_points: usize,
     /// Texels along each side of one such depth map.

@@ -25,6 +25,7 @@ macro_rules! wgsl {
 }
 
 const GLOBALS: &str = wgsl!("common/globals");
+const BEHIND: &str = wgsl!("common/behind");
 const BETWEEN_CELLS: &str = wgsl!("common/between_cells");
 const CHANNELS: &str = wgsl!("common/channels");
 const CELLS: &str = wgsl!("common/cells");
@@ -34,7 +35,6 @@ const FIT_STEP: &str = wgsl!("common/fit_step");
 const FLATTEN: &str = wgsl!("common/flatten");
 const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
-const HIDDEN: &str = wgsl!("common/hidden");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const MOVED: &str = wgsl!("common/moved");
@@ -142,14 +142,14 @@ pub(crate) const TOY: Shader = Shader {
         DEPTH,
         MOVED,
         CHANNELS,
-        HIDDEN,
+        BEHIND,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
 };
 pub(crate) const COVERAGE: Shader = Shader {
     name: "coverage",
-    parts: &[GLOBALS, HIDDEN, wgsl!("coverage")],
+    parts: &[GLOBALS, BEHIND, wgsl!("coverage")],
     entry_points: &["vs_move", "fs_cover"],
 };
 pub(crate) const COMPOSITE: Shader = Shader {

@@ -7,8 +7,6 @@ use crate::gpu::encoder::Encoder;
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
 use crate::gpu::shaders::COMPOSITE;
 
-use crate::plan::Plan;
-
 use super::coverage::CoverageTargets;
 use super::toy::ToyTargets;
 
@@ -40,11 +38,11 @@ pub(crate) struct CompositeInputs<'a> {
 }
 
 impl Composite {
-    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+    /// For a toy drawn once or four times, with or without residuals cleared of noise.
+    pub(crate) fn new(gpu: &Gpu, n_toy_draws: u32, is_noise_removed: bool) -> Self {
         let constants = [
-            ("N_TOY_DRAWS", f64::from(plan.n_toy_draws)),
-            ("N_POSITIONS", f64::from(plan.n_coverage_positions)),
-            ("HAS_DETAIL", f64::from(u8::from(plan.is_noise_removed))),
+            ("N_TOY_DRAWS", f64::from(n_toy_draws)),
+            ("HAS_DETAIL", f64::from(u8::from(is_noise_removed))),
         ];
         Self {
             pipeline: gpu.fullscreen_pipeline(&COMPOSITE, "fs_compose", PICTURE_FORMAT, &constants),
@@ -68,7 +66,7 @@ impl Composite {
             ],
         );
         let [toy_0, toy_1, toy_2, toy_3] = inputs.toy.views();
-        let [covered_0, covered_16, ..] = inputs.coverage.views();
+        let [covered_0, covered_16] = inputs.coverage.views();
         let own = gpu.bind(
             &layout(GROUP_PASS),
             &[

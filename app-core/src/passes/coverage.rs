@@ -11,75 +11,48 @@ use crate::gpu::texture::{Texture, TextureShape};
 
 use super::toy_mesh::{Stream, ToyMesh};
 
-/// Positions that one colour target holds: four channels of four multisample positions.
-const POSITIONS_PER_TARGET: u32 = 16;
+/// Colour targets, of 16 positions each: four channels of four multisample positions.
+const N_TARGETS: usize = 2;
+/// As many as the targets hold. RMS error of the area that a straight edge of any direction cuts off a pixel: 0.020, where
+/// the four multisample positions alone have 0.092 and 16 such positions 0.036.
+const N_POSITIONS: u32 = 32;
 const N_SAMPLES: u32 = 4;
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Most colour targets of the pass.
-pub(crate) const MAX_TARGETS: usize = 4;
-
-/// Positions of a pixel that the toy is looked for at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Lattice {
-    n_positions: u32,
-    step: u32,
-}
-
-impl Lattice {
-    /// The lattice of 16, 32 or 64 positions with the least RMS error of the area that a straight edge of any direction cuts
-    /// off a pixel: 0.036, 0.020, 0.012. The four multisample positions alone have 0.092.
-    pub(crate) fn new(n_positions: u32) -> Self {
-        match n_positions {
-            0..=16 => Self { n_positions: 16, step: 5 },
-            17..=32 => Self { n_positions: 32, step: 9 },
-            _ => Self { n_positions: 64, step: 19 },
-        }
-    }
-
-    fn n_targets(self) -> u32 {
-        self.n_positions / POSITIONS_PER_TARGET
-    }
-}
 
 pub(crate) struct Coverage {
     pipeline: wgpu::RenderPipeline,
-    lattice: Lattice,
 }
 
 /// Textures of the region's size: multisampled ones that stay on the chip, and what they are resolved to.
 pub(crate) struct CoverageTargets {
-    samples: Vec<Texture>,
-    pub(crate) covered: Vec<Texture>,
+    samples: [Texture; N_TARGETS],
+    covered: [Texture; N_TARGETS],
 }
 
 impl CoverageTargets {
-    pub(crate) fn new(gpu: &Gpu, size_px: UVec2, n_positions: u32) -> Self {
-        let textures = |label, n_samples| {
+    pub(crate) fn new(gpu: &Gpu, size_px: UVec2) -> Self {
+        let target = |label, n_samples| {
             let shape = TextureShape {
                 size_px: size_px.to_array(),
                 format: FORMAT,
                 n_samples,
             };
-            (0..Lattice::new(n_positions).n_targets())
-                .map(|_| Texture::target(gpu, label, shape))
-                .collect()
+            Texture::target(gpu, label, shape)
         };
         Self {
-            samples: textures("coverage samples", N_SAMPLES),
-            covered: textures("coverage", 1),
+            samples: std::array::from_fn(|_| target("coverage samples", N_SAMPLES)),
+            covered: std::array::from_fn(|_| target("coverage", 1)),
         }
     }
 
-    /// What was drawn; the first stands in for targets that there are not.
-    pub(crate) fn views(&self) -> [&wgpu::TextureView; MAX_TARGETS] {
-        let of = |index: usize| &self.covered.get(index).unwrap_or(&self.covered[0]).view;
-        std::array::from_fn(of)
+    /// What was drawn: each channel has four positions.
+    pub(crate) fn views(&self) -> [&wgpu::TextureView; N_TARGETS] {
+        self.covered.each_ref().map(|covered| &covered.view)
     }
 }
 
 impl Coverage {
-    pub(crate) fn new(gpu: &Gpu, n_positions: u32) -> Self {
-        let lattice = Lattice::new(n_positions);
+    pub(crate) fn new(gpu: &Gpu) -> Self {
         let keep_largest = BlendComponent {
             src_factor: BlendFactor::One,
             dst_factor: BlendFactor::One,
@@ -100,17 +73,13 @@ impl Coverage {
             buffers: &[stream.layout()],
         };
         let shape = RenderShape {
-            targets: &vec![Some(target); lattice.n_targets() as usize],
+            targets: &std::array::from_fn::<_, N_TARGETS, _>(|_| Some(target.clone())),
             n_samples: N_SAMPLES,
             depth: None,
-            constants: &[
-                ("N_POSITIONS", f64::from(lattice.n_positions)),
-                ("LATTICE_STEP", f64::from(lattice.step)),
-            ],
+            constants: &[],
         };
         Self {
             pipeline: gpu.render_pipeline(&COVERAGE, &gpu.module(&COVERAGE), &stages, &shape),
-            lattice,
         }
     }
 
@@ -136,6 +105,6 @@ impl Coverage {
         let mut render = encoder.render(COVERAGE.name, &colors, None, StoreOp::Discard);
         render.set_pipeline(&self.pipeline);
         render.set_bind_group(GROUP_GLOBALS, &shared, &[]);
-        toy.draw_positions(&mut render, positions, self.lattice.n_positions);
+        toy.draw_positions(&mut render, positions, N_POSITIONS);
     }
 }

@@ -111,8 +111,6 @@ pub struct Plan {
     pub is_plate_estimated: bool,
     /// Draws of the shown toy, each by a part of a pixel beside the others.
     pub n_toy_draws: u32,
-    /// Positions of a pixel that the shown toy's outline is made from: 16, 32 or 64.
-    pub n_coverage_positions: u32,
     /// Whether the noise of the real shadow is removed.
     pub is_noise_removed: bool,
     /// The toy's shadow on itself.
@@ -168,7 +166,6 @@ impl Plan {
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
             n_toy_draws: settings.n_toy_draws,
-            n_coverage_positions: settings.n_coverage_positions,
             is_noise_removed: settings.is_noise_removed,
             self_shadow: SelfShadowPlan::new(&lights, settings),
             n_fit_steps: N_FIT_STEPS,
