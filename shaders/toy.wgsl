@@ -40,21 +40,19 @@ struct Vertex {
 
 struct Surface {
   @builtin(position) clip: vec4f,
-  @location(0) @interpolate(perspective, centroid) in_stage: vec3f,
-  @location(1) @interpolate(perspective, centroid) normal: vec3f,
-  @location(2) @interpolate(perspective, centroid) uv: vec2f,
-  @location(3) @interpolate(perspective, centroid) color: vec4f,
-  @location(4) @interpolate(perspective, centroid) physical_in_stage: vec3f,
-  @location(5) @interpolate(perspective, centroid) physical_normal: vec3f,
-  @location(6) stage_centre: vec3f,
-  @location(7) physical_centre: vec3f,
+  @location(0) in_stage: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_stage: vec3f,
+  @location(5) physical_normal: vec3f,
 }
 
 @vertex
 fn vs_toy(in: Vertex) -> Surface {
   var clip = globals.clip_from_stage * vec4f(in.in_stage, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
-  return Surface(clip, in.in_stage, in.normal, in.uv, in.color, in.physical_in_stage, in.physical_normal, in.in_stage, in.physical_in_stage);
+  return Surface(clip, in.in_stage, in.normal, in.uv, in.color, in.physical_in_stage, in.physical_normal);
 }
 
 // Whether the camera's colour at `texel` is of another material of the model.
@@ -135,8 +133,8 @@ fn fs_toy(in: Surface) -> Drawn {
   let base = base_color(in.uv, in.color);
   let normal = unit_normal(in.normal);
   let physical_normal = unit_normal(in.physical_normal);
-  let physical_facing = facing(in.physical_centre, physical_normal);
-  let stretch = select(0.0, physical_facing / max(facing(in.stage_centre, normal), physical_facing), physical_facing > 0.0);
+  let physical_facing = facing(in.physical_in_stage, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in.in_stage, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_stage * vec4f(in.physical_in_stage, 1.0);
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(normal, in.in_stage));
