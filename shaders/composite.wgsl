@@ -16,7 +16,7 @@
 @group(1) @binding(7) var visibility: texture_2d<f32>;
 @group(1) @binding(8) var ambient: texture_2d<f32>;
 @group(1) @binding(9) var linear_sampler: sampler;
-// Premultiplied radiance of the toy, alpha its coverage, one for each draw.
+// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
 @group(1) @binding(10) var toy_0: texture_2d<f32>;
 @group(1) @binding(11) var toy_1: texture_2d<f32>;
 @group(1) @binding(12) var toy_2: texture_2d<f32>;
@@ -152,7 +152,7 @@ fn coverage(texel: vec2u) -> f32 {
   return dot(covered, vec4f(1.0 / 8.0));
 }
 
-// The toy's colour in a pixel: that of its draws, or where they miss what is in it that beside it.
+// The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
 fn toy_color(texel: vec2u) -> vec4f {
   let own = drawn_toy(texel);
   if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }

@@ -23,7 +23,6 @@ const MULTISAMPLE_PX = array<vec2f, 4>(
 struct Moved {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
-  @location(1) @interpolate(flat, either) move_px: vec2f,
 }
 
 // From the pixel's corner.
@@ -31,13 +30,17 @@ fn position_px(index: u32) -> vec2f {
   return (vec2f(vec2u(index, index * LATTICE_STEP % N_POSITIONS)) + 0.5) / f32(N_POSITIONS);
 }
 
+fn sample_px(index: u32) -> vec2f {
+  var samples_px = MULTISAMPLE_PX;
+  return samples_px[index % 4u];
+}
+
 @vertex
 fn vs_move(@location(0) in_stage: vec3f, @builtin(instance_index) index: u32) -> Moved {
-  var samples_px = MULTISAMPLE_PX;
-  let move_px = samples_px[index % 4u] - position_px(index);
+  let move_px = sample_px(index) - position_px(index);
   var clip = globals.clip_from_stage * vec4f(in_stage, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * move_px / globals.region_size_px, 0.0, 0.0);
-  return Moved(clip, index, move_px);
+  return Moved(clip, index);
 }
 
 struct Covered {
@@ -48,7 +51,10 @@ struct Covered {
 
 @fragment
 fn fs_cover(in: Moved) -> Covered {
-  if is_behind_receiver(in.clip.xy - in.move_px, in.clip.w) { discard; }
+  // Inverse depth is linear on the screen: from the pixel's centre to the sample.
+  let slope = vec2f(dpdx(in.clip.w), dpdy(in.clip.w));
+  let inverse_depth = in.clip.w + dot(slope, sample_px(in.index) - 0.5);
+  if is_behind_receiver(floor(in.clip.xy) + position_px(in.index), inverse_depth) { discard; }
   let one = vec4f(vec4u(0u, 1u, 2u, 3u) == vec4u((in.index / 4u) % 4u));
   let slot = in.index / 16u;
   return Covered(

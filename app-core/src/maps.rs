@@ -29,6 +29,8 @@ pub enum Map {
     Visibility,
     /// Visibility of the ambient light with the shown toy, in r, at a fraction of the region's size.
     Ambient,
+    /// How much of each pixel the shown toy covers, in r.
+    Coverage,
     /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where it is unknown.
     Plate,
     /// The filled grid of residuals on the first receiver in rgb, in plates; alpha is 1.
@@ -64,6 +66,7 @@ impl Map {
         Self::PhysicalAmbient,
         Self::Visibility,
         Self::Ambient,
+        Self::Coverage,
         Self::Plate,
         Self::Residual,
         Self::Share,
@@ -100,6 +103,7 @@ impl Model {
             Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient.raw),
             Map::Visibility => read_texture(gpu, &capture.shown.lights.raw),
             Map::Ambient => read_texture(gpu, &capture.shown.ambient.raw),
+            Map::Coverage => self.read_coverage(gpu),
             Map::Plate => read_texture(gpu, &capture.plate().raw),
             Map::Residual => self.read_residual(gpu, 0),
             Map::Share => self.read_share(gpu),
@@ -108,6 +112,17 @@ impl Model {
             }
         };
         map.map(Some)
+    }
+
+    /// The mean over all positions: no pass has it as a texture.
+    fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let [first, second] = self.capture.coverage.textures();
+        let (mut map, other) = (read_texture(gpu, first)?, read_texture(gpu, second)?);
+        for (texel, other) in map.texels.iter_mut().zip(&other.texels) {
+            let covered = texel.iter().chain(other).sum::<f32>() / 8.0;
+            *texel = [covered, 0.0, 0.0, 1.0];
+        }
+        Ok(map)
     }
 
     /// The lights' share, worked out here from what was fitted: no pass has it as a texture.

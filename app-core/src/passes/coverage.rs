@@ -45,6 +45,10 @@ impl CoverageTargets {
         }
     }
 
+    pub(crate) fn textures(&self) -> [&wgpu::Texture; N_TARGETS] {
+        self.covered.each_ref().map(|covered| &covered.raw)
+    }
+
     /// What was drawn: each channel has four positions.
     pub(crate) fn views(&self) -> [&wgpu::TextureView; N_TARGETS] {
         self.covered.each_ref().map(|covered| &covered.view)

@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod composite;
+mod coverage;
 mod device;
 mod errors;
 mod estimate;
