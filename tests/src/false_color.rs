@@ -121,12 +121,6 @@ pub fn describe(map: Map) -> Option<Shown> {
             "Colours taken from the camera frame and carried past the outline: what the moved toy is painted with.",
             None,
         ),
-        Map::Coverage => (
-            "coverage",
-            "Outline",
-            "How much of each pixel the moved toy covers.",
-            Some(("nothing", "all", GRAY)),
-        ),
         Map::PhysicalVisibility => (
             "visibility-before",
             "Light, real pose",

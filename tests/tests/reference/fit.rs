@@ -42,7 +42,10 @@ fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
     (0..N_SAMPLES).map(sample).collect()
 }
 
-/// Largest difference of gain, bounce and shares.
+/// Most of a bounce that a point sees: A (1 - A) where half of the sky is hidden.
+const MOST_BOUNCED: f64 = 0.25;
+
+/// Largest difference of gain, bounce and shares, by what they make of a frame at most.
 fn difference(a: &Solution, b: &Solution) -> f64 {
     let (of_a, of_b) = (&a.receivers[0], &b.receivers[0]);
     let shares = of_a
@@ -52,7 +55,7 @@ fn difference(a: &Solution, b: &Solution) -> f64 {
         .map(|(a, b)| (a - b).abs().max_element());
     let rest = [
         (a.gain - b.gain).abs().max_element(),
-        (of_a.bounce - of_b.bounce).abs().max_element(),
+        MOST_BOUNCED * (of_a.bounce - of_b.bounce).abs().max_element(),
     ];
     shares.chain(rest).fold(0.0, f64::max)
 }
@@ -77,7 +80,7 @@ fn priors_and_few_steps_cost_little() {
         let samples = samples(&region, &truth(n_lights));
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &constants, 5);
         let error = difference(&fitted, &truth(n_lights));
-        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 2e-4.
+        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 3e-4.
         assert!(error < 1e-3, "{n_lights} lights: off by {error:e}");
     }
 }
