@@ -16,7 +16,7 @@
 @group(1) @binding(7) var visibility: texture_2d<f32>;
 @group(1) @binding(8) var ambient: texture_2d<f32>;
 @group(1) @binding(9) var linear_sampler: sampler;
-// Premultiplied radiance of the toy, alpha its coverage, one for each draw.
+// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
 @group(1) @binding(10) var toy_0: texture_2d<f32>;
 @group(1) @binding(11) var toy_1: texture_2d<f32>;
 @group(1) @binding(12) var toy_2: texture_2d<f32>;
@@ -26,6 +26,9 @@
 @group(1) @binding(15) var motion: texture_2d<f32>;
 // Each pixel's own residual, in plates.
 @group(1) @binding(16) var detail: texture_2d<f32>;
+
+// COVERED_POSITION for each position that the shown toy covers.
+@group(1) @binding(17) var covered: texture_2d<f32>;
 
 // Number of draws of the toy, 1 or 4.
 override N_TOY_DRAWS: u32 = 1u;
@@ -142,6 +145,33 @@ fn drawn_toy(texel: vec2u) -> vec4f {
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
+// Part of a pixel that the toy covers.
+fn coverage(texel: vec2u) -> f32 {
+  return round(textureLoad(covered, texel, 0).r / COVERED_POSITION) / f32(N_POSITIONS);
+}
+
+// The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
+fn toy_color(texel: vec2u) -> vec4f {
+  let own = drawn_toy(texel);
+  if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
+  let last = vec2i(globals.region_size_px) - 1;
+  var sum = vec4f(0.0);
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      sum += drawn_toy(vec2u(clamp(vec2i(texel) + vec2i(x, y), vec2i(0), last)));
+    }
+  }
+  if sum.a == 0.0 { return vec4f(0.0); }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// The toy over what is behind it: premultiplied colour, and its coverage.
+fn toy_layer(texel: vec2u) -> vec4f {
+  let part = coverage(texel);
+  if part == 0.0 { return vec4f(0.0); }
+  return part * toy_color(texel);
+}
+
 // 1 where everything in and around a pixel is as the camera saw it.
 fn stillness(texel: vec2i) -> f32 {
   let last = vec2i(globals.region_size_px) - 1;
@@ -158,7 +188,7 @@ fn stillness(texel: vec2i) -> f32 {
 @fragment
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2u(position.xy);
-  let toy = drawn_toy(texel);
+  let toy = toy_layer(texel);
   if toy.a == 1.0 {
     let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
     return vec4f(mix(toy.rgb, frame_color, stillness(vec2i(texel))), 1.0);

@@ -1,6 +1,6 @@
 // Sums of the weighted normal equations, for a receiver, for the toy, or for the levels of the light.
 //
-// Receiver: frame / gain = plate c (A + bounce (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
+// Receiver: frame / gain = plate c (A + bounce A (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
 // is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
 // Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i level_i max(n.l_i, 0) V_i), V_i with its shadow on itself.
 // Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
@@ -88,7 +88,7 @@ fn receiver_equation(seen: Observation, channel: u32) -> Equation {
   let total = plate_falloff(seen.point)[channel];
   eq.value = seen.frame[channel] / fit.gain[channel];
   eq.columns[0] = b * seen.ambient;
-  eq.columns[1] = b * (1.0 - seen.ambient);
+  eq.columns[1] = b * bounced(seen.ambient);
   var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce[channel] * eq.columns[1];
   for (var i = 0u; i < globals.n_lights; i++) {
     let visible = fit.level[i][channel] * seen.visibility[i] - seen.ambient;

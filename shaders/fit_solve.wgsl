@@ -21,8 +21,8 @@ const SAME_GAIN_WEIGHT: f32 = 10.0;
 const MOST_KEPT: f32 = 8.0;
 // Weight of the three channels' common solution, for the toy, against their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
-// A toy of middle grey throws back this fraction of the ambient light it takes away.
-const PRIOR_BOUNCE: f32 = 0.2;
+// Bounce of a toy of middle grey: the mean over channels of what sessions of the bundled toy show.
+const PRIOR_BOUNCE: f32 = 0.27;
 // All lights together, half of the plate's radiance; each as if it gave as much as the others at one metre.
 const PRIOR_SHARE: f32 = 0.5;
 // Shares sum to less than 1, since some light is always ambient: keeps plate_falloff positive.

@@ -148,6 +148,7 @@ fn fs_toy(in: Surface) -> Drawn {
   let unseen = fit.gain.rgb * base * tint(in.physical_in_stage) * lit;
   let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
+  if is_behind_receiver(in.clip.xy - offset_px, in.clip.w) { discard; }
   let is_moved = moved(region_px(globals.clip_from_stage * vec4f(in.in_stage, 1.0)), physical_px);
   let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));

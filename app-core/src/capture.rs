@@ -12,6 +12,7 @@ use crate::learner::Learner;
 use crate::lighting::{Lighting, Visibilities};
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
+use crate::passes::coverage::CoverageTargets;
 use crate::passes::detail::DETAIL_FORMAT;
 use crate::passes::estimate::Fineness;
 use crate::passes::evidence::EVIDENCE_FORMAT;
@@ -54,6 +55,7 @@ pub(crate) struct Capture {
     pub(crate) shown_self_shadow: SelfShadowMaps,
     pub(crate) motion: MotionTargets,
     pub(crate) toy: ToyTargets,
+    pub(crate) coverage: CoverageTargets,
     /// Each pixel's own residual, cleared of noise.
     pub(crate) detail: Option<Texture>,
     pub(crate) picture: Texture,
@@ -89,6 +91,7 @@ impl Capture {
             shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             motion: MotionTargets::new(gpu, region_px),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
+            coverage: CoverageTargets::new(gpu, region_px),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
             lighting: Lighting::new(gpu, &plan, light_points),

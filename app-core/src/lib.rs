@@ -29,6 +29,7 @@ pub mod view;
 
 mod capture;
 mod clip_reach;
+mod counting;
 mod exposure;
 mod knowledge;
 mod learner;

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use wgpu::TextureFormat;
 
-use crate::gpu::layout::{Fit, Globals, TintGrid};
+use crate::gpu::layout::{COVERED_CODES, Fit, Globals, N_POSITIONS, TintGrid};
 use crate::gpu::{Gpu, GpuError};
 use crate::published::Published;
 use crate::work::Model;
@@ -29,6 +29,8 @@ pub enum Map {
     Visibility,
     /// Visibility of the ambient light with the shown toy, in r, at a fraction of the region's size.
     Ambient,
+    /// How much of each pixel the shown toy covers, in r.
+    Coverage,
     /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where it is unknown.
     Plate,
     /// The filled grid of residuals on the first receiver in rgb, in plates; alpha is 1.
@@ -64,6 +66,7 @@ impl Map {
         Self::PhysicalAmbient,
         Self::Visibility,
         Self::Ambient,
+        Self::Coverage,
         Self::Plate,
         Self::Residual,
         Self::Share,
@@ -109,6 +112,7 @@ impl Model {
             Map::PhysicalAmbient => read_texture(gpu, &capture.physical.ambient.raw),
             Map::Visibility => read_texture(gpu, &capture.shown.lights.raw),
             Map::Ambient => read_texture(gpu, &capture.shown.ambient.raw),
+            Map::Coverage => self.read_coverage(gpu),
             Map::Plate => read_texture(gpu, &capture.plate().raw),
             Map::Residual => self.read_residual(gpu, 0),
             Map::Share => self.read_share(gpu),
@@ -117,6 +121,15 @@ impl Model {
             }
         };
         map.map(Some)
+    }
+
+    /// Parts of pixels, from the count that `coverage` made.
+    fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let mut map = read_texture(gpu, &self.capture.coverage.covered.raw)?;
+        #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
+        let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
+        map.texels.iter_mut().for_each(|texel| texel[0] /= all);
+        Ok(map)
     }
 
     /// The lights' share, worked out here from what was fitted: no pass has it as a texture.

@@ -8,6 +8,7 @@ use crate::knowledge::Knowledge;
 use crate::lighting::AMBIENT_FORMAT;
 use crate::passes::appearance::Appearance;
 use crate::passes::composite::{Composite, CompositeInputs};
+use crate::passes::coverage::Coverage;
 use crate::passes::detail::Detail;
 use crate::passes::estimate::Estimate;
 use crate::passes::evidence::Evidence;
@@ -64,6 +65,7 @@ pub(crate) struct Passes {
     pub(crate) detail: Option<Detail>,
     pub(crate) motion: Motion,
     pub(crate) toy: Toy,
+    pub(crate) coverage: Coverage,
     pub(crate) composite: Composite,
 }
 
@@ -92,6 +94,7 @@ impl Passes {
             detail: plan.is_noise_removed.then(|| Detail::new(gpu)),
             motion: Motion::new(gpu),
             toy: Toy::new(gpu, plan.n_toy_draws),
+            coverage: Coverage::new(gpu),
             composite: Composite::new(gpu, plan.n_toy_draws, plan.is_noise_removed),
         }
     }
@@ -129,6 +132,10 @@ impl Passes {
             tints: &knowledge.tints,
         };
         self.toy.encode(gpu, encoder, toy, &inputs, &capture.toy);
+        let camera = glam::Vec3::from(capture.known.camera_in_stage);
+        let coverage = &capture.coverage;
+        self.coverage
+            .encode(gpu, encoder, &capture.globals, (toy, camera), coverage);
         let inputs = CompositeInputs {
             globals: &capture.globals,
             solution: &knowledge.solution,
@@ -142,6 +149,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
+            coverage: &capture.coverage.covered.view,
             detail: capture.detail.as_ref().map(|detail| &detail.view),
             motion: &capture.motion.moved.view,
         };

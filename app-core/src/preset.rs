@@ -115,8 +115,7 @@ pub struct Settings {
     pub ambient_divisor: u32,
     /// Draws of the shown toy, 1 or 4, each of four samples a pixel.
     ///
-    /// RMSE of the edge region over the four sessions of the bundled toy: 6.7 with one draw, 5.7 with four; the toy region
-    /// stays the same, the pass `toy` costs four times as much.
+    /// The outline has its samples from `coverage`: more draws smooth the edges within the toy.
     pub n_toy_draws: u32,
     /// Points of each light from which the toy's shadow on itself is drawn, of those on the receiver; up to 16.
     pub n_self_shadow_points: usize,

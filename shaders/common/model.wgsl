@@ -1,9 +1,10 @@
 // The model of a receiver: what a frame is, as a fraction of the plate times the gain.
 //
-//   M = A (1 - sum f) + bounce (1 - A) + sum f level V
+//   M = A (1 - sum f) + bounce A (1 - A) + sum f level V
 //   f = share falloff / (1 - sum share + sum share falloff)
 //
 // V is the visibility of a light, A the ambient visibility, f a light's share of the plate's radiance there.
+// What hides 1 - A of the sky throws back light that came in through what is open, A: in a crevice it is dark itself.
 // Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one share per
 // light, so that no sample with the same overlap is needed (compare Chuang et al. 2003, shadow matting).
 
@@ -17,11 +18,16 @@ fn plate_falloff(point: ReceiverPoint) -> vec3f {
   return total;
 }
 
+// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it.
+fn bounced(ambient: f32) -> f32 {
+  return ambient * (1.0 - ambient);
+}
+
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   var ambient_share = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) { ambient_share -= fit.receivers[point.receiver].share[i].rgb; }
-  return ambient * ambient_share / total + fit.receivers[point.receiver].bounce.rgb * (1.0 - ambient);
+  return ambient * ambient_share / total + fit.receivers[point.receiver].bounce.rgb * bounced(ambient);
 }
 
 // Light `i`'s share of the plate's radiance at a point, where the plate's falloff is `total`.

@@ -14,7 +14,7 @@ use glam::UVec2;
 /// Passes whose code is in the module of another: the pass, and that module.
 const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
 /// Passes that draw meshes or copy rather than compute: they have no twin.
-const DRAWING_PASSES: &[&str] = &["masks", "motion", "object", "present", "toy", "warp"];
+const DRAWING_PASSES: &[&str] = &["coverage", "masks", "motion", "object", "present", "toy", "warp"];
 /// Modules among the passes that are none.
 const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
 /// What the core must not know of: it has no clock, opens nothing and is the same on every platform.

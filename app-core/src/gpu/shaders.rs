@@ -26,9 +26,11 @@ macro_rules! wgsl {
 
 const GLOBALS: &str = wgsl!("common/globals");
 const BETWEEN_TINTS: &str = wgsl!("common/between_tints");
+const BEHIND: &str = wgsl!("common/behind");
 const BETWEEN_CELLS: &str = wgsl!("common/between_cells");
 const CHANNELS: &str = wgsl!("common/channels");
 const CELLS: &str = wgsl!("common/cells");
+const COVERED: &str = wgsl!("common/covered");
 const DEPTH: &str = wgsl!("common/depth");
 const FIT: &str = wgsl!("common/fit");
 const FIT_STEP: &str = wgsl!("common/fit_step");
@@ -172,9 +174,15 @@ pub(crate) const TOY: Shader = Shader {
         TINT_GRID,
         TINT_CELLS,
         BETWEEN_TINTS,
+        BEHIND,
         wgsl!("toy"),
     ],
     entry_points: &["vs_toy", "fs_toy"],
+};
+pub(crate) const COVERAGE: Shader = Shader {
+    name: "coverage",
+    parts: &[GLOBALS, BEHIND, COVERED, wgsl!("coverage")],
+    entry_points: &["vs_move", "fs_cover"],
 };
 pub(crate) const COMPOSITE: Shader = Shader {
     name: "composite",
@@ -187,6 +195,7 @@ pub(crate) const COMPOSITE: Shader = Shader {
         BETWEEN_CELLS,
         CELLS,
         CHANNELS,
+        COVERED,
         FULLSCREEN,
         wgsl!("composite"),
     ],
@@ -260,6 +269,7 @@ pub const ALL: &[Shader] = &[
     DETAIL,
     MOTION,
     TOY,
+    COVERAGE,
     COMPOSITE,
     PRESENT,
     MASKS,

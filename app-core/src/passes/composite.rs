@@ -29,6 +29,7 @@ pub(crate) struct CompositeInputs<'a> {
     pub(crate) physical_ambient: &'a wgpu::TextureView,
     pub(crate) visibility: &'a wgpu::TextureView,
     pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) coverage: &'a wgpu::TextureView,
     pub(crate) toy: &'a ToyTargets,
     pub(crate) motion: &'a wgpu::TextureView,
     /// Each pixel's own residual; without it that is what the frame shows.
@@ -85,6 +86,7 @@ impl Composite {
                 (15, view(inputs.motion)),
                 // Not read where there is none.
                 (16, view(inputs.detail.unwrap_or(inputs.plate))),
+                (17, view(inputs.coverage)),
             ],
         );
         encoder.fullscreen(

@@ -6,6 +6,7 @@ pub(crate) mod appearance;
 pub(crate) mod box_filter;
 pub(crate) mod census;
 pub(crate) mod composite;
+pub(crate) mod coverage;
 pub(crate) mod detail;
 pub(crate) mod eligible;
 pub(crate) mod estimate;

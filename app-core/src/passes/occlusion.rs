@@ -3,24 +3,17 @@
 use std::ops::Range;
 
 use glam::{UVec2, Vec4};
-use wgpu::{
-    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
-    DepthStencilState, Face, StoreOp, TextureFormat, VertexFormat,
-};
+use wgpu::{ColorTargetState, ColorWrites, CompareFunction, Face, StoreOp, VertexFormat};
 
+use crate::counting::{COUNT_FORMAT, ORDER_FORMAT, counting, ordered};
 use crate::gpu::Gpu;
 use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS, MAX_RECEIVERS};
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages, nearest_surface};
+use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages};
 use crate::gpu::shaders::OCCLUSION;
 use crate::gpu::texture::{Texture, TextureShape};
 
 use super::toy_mesh::{PoseBuffers, Stream, ToyMesh};
-
-/// Format of what hidden points add up to.
-const FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// Format of the depths that tell light points apart.
-const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 
 /// The pass for a number of receivers.
 pub(crate) struct Occlusion {
@@ -52,7 +45,7 @@ impl OcclusionTargets {
         };
         Self {
             order: texture("occlusion order", ORDER_FORMAT),
-            hidden: texture("occlusion", FORMAT),
+            hidden: texture("occlusion", COUNT_FORMAT),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
         }
     }
@@ -63,7 +56,7 @@ impl Occlusion {
         let module = gpu.module(&OCCLUSION);
         let stream = Stream::new(0, VertexFormat::Float32x3);
         let cover = RenderShape {
-            targets: &[Some(adding())],
+            targets: &[Some(counting())],
             n_samples: 1,
             depth: Some(ordered(CompareFunction::Greater)),
             // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
@@ -78,7 +71,7 @@ impl Occlusion {
         let route = RenderShape {
             targets: &[Some(ColorTargetState {
                 write_mask: ColorWrites::empty(),
-                ..FORMAT.into()
+                ..COUNT_FORMAT.into()
             })],
             depth: Some(ordered(CompareFunction::Always)),
             culled: None,
@@ -144,31 +137,6 @@ fn bind(
     }
 }
 
-/// A target that adds up what is drawn.
-fn adding() -> ColorTargetState {
-    let sum = BlendComponent {
-        src_factor: BlendFactor::One,
-        dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
-    };
-    ColorTargetState {
-        format: FORMAT,
-        blend: Some(BlendState {
-            color: sum,
-            alpha: sum,
-        }),
-        write_mask: ColorWrites::ALL,
-    }
-}
-
-fn ordered(compare: CompareFunction) -> DepthStencilState {
-    DepthStencilState {
-        format: ORDER_FORMAT,
-        depth_compare: Some(compare),
-        ..nearest_surface()
-    }
-}
-
 fn light_points_uniform(points: &[Vec4], n_points: u32, texel_px: [f32; 2]) -> LightPoints {
     let mut uniform = LightPoints {
         points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
@@ -193,13 +161,9 @@ pub(crate) struct Caster<'a> {
 impl Caster<'_> {
     /// What to draw of it, of which only triangles that face the light are seen.
     fn triangles(&self, n_points: usize) -> Range<u32> {
-        let ranges = &self.toy.shadow_ranges;
         // The first receiver's space is the pose's own.
         let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
-        if self.points.iter().take(n_points).any(is_within) {
-            ranges.both_sides.clone()
-        } else {
-            ranges.facing.clone()
-        }
+        let is_any = self.points.iter().take(n_points).any(is_within);
+        self.toy.shadow_ranges.seen_from(is_any)
     }
 }

@@ -91,6 +91,7 @@ pub(super) const PASSES: &[PlannedPass] = &[
     frame("self_shadow"),
     frame("motion"),
     frame("toy"),
+    frame("coverage"),
     frame("composite"),
     frame("present"),
 ];

@@ -33,6 +33,18 @@ pub struct ShadowRanges {
     pub both_sides: Range<u32>,
 }
 
+impl ShadowRanges {
+    /// What to draw from a point, of which only triangles that face it are seen.
+    #[must_use]
+    pub fn seen_from(&self, is_within_toy: bool) -> Range<u32> {
+        if is_within_toy {
+            self.both_sides.clone()
+        } else {
+            self.facing.clone()
+        }
+    }
+}
+
 impl ShadowIndices {
     /// Of the triangles `indices`, three corners each, of surfaces that are laid out one after the other.
     pub(super) fn new(surfaces: &[Surface], geometries: &[Geometry], indices: &[u32]) -> Self {

@@ -132,7 +132,10 @@ fn receiver_equations(
         let value = frame / before.gain[channel];
         let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
-        let mut columns = vec![plate * sample.ambient, plate * (1.0 - sample.ambient)];
+        let mut columns = vec![
+            plate * sample.ambient,
+            plate * sample.ambient * (1.0 - sample.ambient),
+        ];
         columns.extend((0..region.lights.len()).map(|i| {
             let visible = before.levels[i][channel] * sample.visibility[i] - sample.ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total

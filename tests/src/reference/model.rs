@@ -190,7 +190,7 @@ impl Solution {
 
     /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
     ///
-    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce (1 - A) + sum f level V.
+    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V.
     #[must_use]
     pub fn receiver_model(
         &self,
@@ -200,7 +200,7 @@ impl Solution {
         visibility: DVec4,
     ) -> DVec3 {
         let bounce = self.receivers[point.receiver].bounce;
-        let mut kept = DVec3::splat(ambient) + bounce * (1.0 - ambient);
+        let mut kept = DVec3::splat(ambient) + bounce * ambient * (1.0 - ambient);
         for (i, level) in self.levels.iter().enumerate() {
             kept += self.light_share(region, i, point) * (*level * visibility[i] - ambient);
         }

@@ -205,6 +205,8 @@ pub(crate) const SHARED_CONSTANTS: &[(&str, usize)] = &[
     ("MAX_CELLS", layout::MAX_CELLS),
     ("N_COLUMNS", layout::N_COLUMNS),
     ("MAX_TILES", layout::MAX_TILES),
+    ("N_POSITIONS", layout::N_POSITIONS),
+    ("COVERED_CODES", layout::COVERED_CODES),
     ("TINT_SIDE", layout::TINT_SIDE),
     ("TINT_CELLS", layout::TINT_CELLS),
     ("TINT_PYRAMID", layout::TINT_PYRAMID),

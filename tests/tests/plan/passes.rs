@@ -60,6 +60,7 @@ fn what_belongs_to_the_place_is_not_on_the_frame_path() {
             "self_shadow",
             "motion",
             "toy",
+            "coverage",
             "composite",
             "present"
         ]

@@ -30,7 +30,7 @@ fn visibility(at: UVec2) -> DVec4 {
 /// A frame of a place whose plate is `plate`, with `residual` on it, and a toy in the middle.
 fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (Region, Solution, Pictures) {
     let (region, solution) = (region(SIZE, two_bulbs()), truth(2));
-    let ambient = 0.9;
+    let ambient = 0.95;
     let frame = Raster::from_fn(SIZE, |at| {
         let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
         let model = solution.receiver_model(&region, point, ambient, visibility(at));

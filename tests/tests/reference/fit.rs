@@ -42,8 +42,11 @@ fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
     (0..N_SAMPLES).map(sample).collect()
 }
 
-/// Largest difference of gain, bounce and shares.
-fn difference(a: &Solution, b: &Solution) -> f64 {
+/// Most of a bounce that a point sees: A (1 - A) where half of the sky is hidden.
+const MOST_BOUNCED: f64 = 0.25;
+
+/// Largest difference of gain, shares, and bounce times `weight`.
+fn difference(a: &Solution, b: &Solution, weight: f64) -> f64 {
     let (of_a, of_b) = (&a.receivers[0], &b.receivers[0]);
     let shares = of_a
         .shares
@@ -52,7 +55,7 @@ fn difference(a: &Solution, b: &Solution) -> f64 {
         .map(|(a, b)| (a - b).abs().max_element());
     let rest = [
         (a.gain - b.gain).abs().max_element(),
-        (of_a.bounce - of_b.bounce).abs().max_element(),
+        weight * (of_a.bounce - of_b.bounce).abs().max_element(),
     ];
     shares.chain(rest).fold(0.0, f64::max)
 }
@@ -64,7 +67,7 @@ fn known_light_is_recovered() {
         let samples = samples(&region, &truth(n_lights));
         // The falloff of the plate is linearised, so this takes steps; each one halves the error and more.
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &without_priors(), 40);
-        let error = difference(&fitted, &truth(n_lights));
+        let error = difference(&fitted, &truth(n_lights), 1.0);
         assert!(error < 1e-6, "{n_lights} lights: off by {error:e}, {fitted:?}");
     }
 }
@@ -76,8 +79,8 @@ fn priors_and_few_steps_cost_little() {
         let region = place(n_lights);
         let samples = samples(&region, &truth(n_lights));
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &constants, 5);
-        let error = difference(&fitted, &truth(n_lights));
-        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 2e-4.
+        let error = difference(&fitted, &truth(n_lights), MOST_BOUNCED);
+        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 3.5e-4.
         assert!(error < 1e-3, "{n_lights} lights: off by {error:e}");
     }
 }

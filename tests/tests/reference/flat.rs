@@ -74,7 +74,7 @@ pub(crate) fn start(n_lights: usize) -> Solution {
         gain: DVec3::ONE,
         levels: vec![DVec3::ONE; n_lights],
         receivers: vec![ReceiverSolution {
-            bounce: DVec3::splat(0.2),
+            bounce: DVec3::splat(0.27),
             shares: vec![DVec3::splat(share); n_lights],
             contrast: DVec3::ZERO,
         }],

@@ -8,6 +8,7 @@ mod appearance;
 mod behind;
 mod casters;
 mod composite;
+mod coverage;
 mod detail;
 mod device;
 mod errors;

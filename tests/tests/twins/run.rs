@@ -37,6 +37,8 @@ pub(crate) struct Run {
     pub(crate) object_received: Raster<DVec4>,
     pub(crate) shown_visibility: Raster<DVec4>,
     pub(crate) shown_ambient: Raster<f64>,
+    /// How much of each pixel the shown toy covers.
+    pub(crate) coverage: Raster<f64>,
     pub(crate) solution: Solution,
     /// Filled residuals on each receiver, their certainty, and where their cells lie.
     pub(crate) residuals: Vec<Raster<DVec4>>,
@@ -99,6 +101,7 @@ impl Run {
             object_received: map(Map::ObjectReceived)?,
             shown_visibility: map(Map::Visibility)?,
             shown_ambient: visible(map(Map::Ambient)?),
+            coverage: visible(map(Map::Coverage)?),
             solution: solution(&fit, stand.setup.lights.len()),
             residuals: residuals.iter().map(|(_, residual)| raster(residual)).collect(),
             grids: residuals.iter().map(|(grid, _)| PlaneGrid::from(grid)).collect(),
