@@ -16,7 +16,7 @@ pub enum Preset {
     /// The default.
     #[default]
     Balanced,
-    /// As `balanced`, with finer outlines and less noise in the shadow: for pictures rather than for a live view.
+    /// As `balanced`, with a finer picture of the toy and less noise in the shadow: for pictures rather than for a live view.
     Best,
 }
 
