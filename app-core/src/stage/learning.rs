@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::{Learned, Stage, Worked, is_same_image};
+use super::worked::Worked;
+use super::{Learned, Stage, is_same_image};
 use crate::capture::Capture;
 use crate::exposure::match_frame;
 use crate::frame::{FrameInput, Warning};
