@@ -26,7 +26,6 @@
 @group(1) @binding(15) var motion: texture_2d<f32>;
 // Each pixel's own residual, in plates.
 @group(1) @binding(16) var detail: texture_2d<f32>;
-
 // COVERED_POSITION for each position that the shown toy covers.
 @group(1) @binding(17) var covered: texture_2d<f32>;
 
@@ -44,7 +43,6 @@ const RESIDUAL_HALF: f32 = 0.5;
 // listed, and from which nothing else counts: what the camera saw stays.
 const UNKNOWN_NONE: f32 = 0.15;
 const UNKNOWN_ALL: f32 = 0.3;
-
 // Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own colour.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;

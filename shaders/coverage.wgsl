@@ -1,7 +1,8 @@
 // How much of each pixel the posed toy covers, counted over many positions in one pass.
 //
 // Each instance draws the mesh moved so that the pixel's centre sees its position; the target adds up. As in `occlusion`
-// each position has a depth of its own, above those before it, so that triangles that overlap do not count twice. Where any
+// each position has a depth of its own, above those before it, so that triangles that overlap do not count twice; rounding
+// of z / w is far from a step of 16 bits, in which depths are 1986 steps apart. Where any
 // triangle covers a position the toy does: no depth of the scene is asked for but that of the receivers.
 // The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
 //

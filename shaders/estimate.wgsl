@@ -1,7 +1,8 @@
 // The plate, with an estimate where no plate shows the place.
 //
 // At first the estimate is smooth, so that the fit can find the shadow in it. Then a pixel that shows the receiver tells
-// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into, stays smooth.
+// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into,
+// stays smooth.
 // Reads: plate, frame, evidence, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate. Twin: reference/estimate.rs.
 

@@ -66,7 +66,9 @@ fn receiver_prior(column: u32, channel: u32) -> f32 {
   var total = 1.0;
   for (var i = 0u; i < step.n_columns - 2u; i++) { total += solution.receivers[0].share[i][channel] * (of_first(i) - 1.0); }
   // A light behind the first receiver tells nothing there.
-  if irradiance(0u, column - 2u) == 0.0 { return select(0.0, PRIOR_SHARE / f32(step.n_columns - 2u), irradiance(step.receiver, column - 2u) > 0.0); }
+  if irradiance(0u, column - 2u) == 0.0 {
+    return select(0.0, PRIOR_SHARE / f32(step.n_columns - 2u), irradiance(step.receiver, column - 2u) > 0.0);
+  }
   return solution.receivers[0].share[column - 2u][channel] * of_first(column - 2u) / total;
 }
 

@@ -17,5 +17,6 @@ fn vs_physical(@location(0) physical_in_stage: vec3f, @location(1) in_stage: vec
 
 @fragment
 fn fs_motion(in: Surface) -> @location(0) vec4f {
+  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
   return vec4f(moved(region_px(in.shown_clip), region_px(in.physical_clip)));
 }

@@ -33,6 +33,7 @@ struct ObjectTexel {
 @fragment
 fn fs_describe(in: Surface) -> ObjectTexel {
   let base = vec4f(base_color(in.uv, in.color), 1.0);
+  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
   let normal = unit_normal(in.normal);
   return ObjectTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in.in_stage));
 }

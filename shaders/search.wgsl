@@ -7,8 +7,8 @@
 // Reads: warp of each light, mask 3c and the sets that occur in it, frame, plate. Writes: term (ratio to the plate, or
 // colour), and the texel's label, 0 where nothing was found; taps taken.
 // Twin: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a ring, the
-// closest wins, early exit), 4.6 (no sample until all masks agree), 2019, section 5.7 (each receiver by itself) and 3.4 with its ratio the right way up: shadow over
-// light at the sample.
+// closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio stands the right way up here: shadow
+// over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
 
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 @group(1) @binding(1) var eligible: texture_2d<u32>;

@@ -18,6 +18,9 @@
 // Every how many pixels, along each side, one is taken: so few in all that no sum overflows.
 @group(1) @binding(8) var<uniform> stride_px: u32;
 
+// More than this would be clipped in the photograph, whatever the paint; of that many pixels sums hold no more.
+const MOST_EXPECTED: f32 = 3.0;
+
 // The point seen at a pixel: on its ray, at its depth. The plane of the first receiver is y = 0 of the stage.
 fn seen_in_stage(at: vec2f, depth: f32) -> vec3f {
   let depth_m = globals.clip_from_stage[3].z / depth;
@@ -41,7 +44,7 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
   for (var channel = 0u; channel < 3u; channel++) {
     atomicAdd(&sums[first + channel], u32(shown[channel] * TINT_UNIT));
-    atomicAdd(&sums[first + 3u + channel], u32(min(expected[channel], 1.0) * TINT_UNIT));
+    atomicAdd(&sums[first + 3u + channel], u32(min(expected[channel], MOST_EXPECTED) * TINT_UNIT));
   }
   atomicAdd(&sums[first + 6u], 1u);
 }

@@ -6,7 +6,8 @@
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
 // Reads: both poses, materials, the toy's own colours and the light they were seen under, the physical toy, the fit, depth
-// maps from the lights, tints. Writes: linear radiance, premultiplied; the resolve makes alpha the coverage.
+// maps from the lights, tints. Writes: linear radiance, premultiplied, alpha what the samples meet;
+// where it shows what the camera did not see there.
 
 @group(1) @binding(0) var appearance: texture_2d<f32>;
 @group(1) @binding(1) var object_depth: texture_depth_2d;

@@ -117,7 +117,7 @@ impl Capture {
             .write_buffer(&self.globals, 0, bytemuck::bytes_of(globals));
     }
 
-    /// What the frame may tell, but for the first fits.
+    /// What the frame may tell of the receivers, but for the first fits: these need the real shadow.
     pub(crate) fn evidence(&self) -> &Texture {
         self.withheld.as_ref().unwrap_or(&self.evident)
     }

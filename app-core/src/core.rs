@@ -237,7 +237,8 @@ impl Core {
     }
 
     /// Keeps the real shadow from what follows, so that how well it is rebuilt can be measured on photographs that have no
-    /// truth: of the first frame it tells the fits, and nothing else; of later ones nothing. The physical pose is then made
+    /// truth: of the first frame it tells the fits and, where no plate shows the place, a smooth estimate of that, in which
+    /// shadow counts little; of later ones nothing. The physical pose is then made
     /// like any other, and its photograph is its truth.
     ///
     /// Until another scene is set. A measuring aid for the presets of the model; `paper` and `flat` stay as they are.

@@ -84,7 +84,7 @@ pub enum Warning {
     /// The real shadow does not tell how strong some lights are, since theirs falls together with that of others, or where the
     /// camera does not see it.
     LightsNotTold {
-        /// Their places among the lights in use.
+        /// Their places in the scene's list.
         lights: Vec<usize>,
     },
     /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
@@ -139,12 +139,12 @@ impl fmt::Display for Warning {
             ),
             Self::LightsNotTold { lights } => write!(
                 f,
-                "the real shadow does not tell how strong {} is: it is taken to be a light like the others",
+                "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
                 lights
                     .iter()
                     .map(|light| format!("light {light}"))
                     .collect::<Vec<_>>()
-                    .join(" or ")
+                    .join(" and ")
             ),
             Self::NothingToSample => f.write_str(
                 "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",

@@ -11,6 +11,7 @@ use crate::view::{Place, View, columns};
 pub(crate) const SAME_CAMERA: f64 = 1e-6;
 /// Places along each side of the region where it is checked that a plate shows them.
 const N_COVERED: u32 = 17;
+
 /// The plates that a view's plate is made of.
 pub(crate) struct PlateChoice {
     /// Places in the scene's list.

@@ -10,6 +10,8 @@ use crate::scene::{Light, Receiver, Scene};
 /// What is used of a scene.
 pub(crate) struct Usable {
     pub(crate) lights: Vec<Light>,
+    /// Their places in the scene's list.
+    pub(crate) light_indices: Vec<usize>,
     pub(crate) receivers: Vec<Receiver>,
     /// What is left out.
     pub(crate) warnings: Vec<Warning>,
@@ -28,11 +30,12 @@ pub(crate) fn usable(scene: &Scene) -> Usable {
         .iter()
         .map(|receiver| receiver.world_from_plane.inverse())
         .collect();
-    let mut lights = Vec::new();
+    let (mut lights, mut light_indices) = (Vec::new(), Vec::new());
     for (index, light) in scene.lights.iter().enumerate() {
         let is_above = |plane_from_world: &DMat4| light_in_plane(light, plane_from_world).y > 0.0;
         if planes_from_world.iter().any(is_above) {
             lights.push(*light);
+            light_indices.push(index);
         } else {
             warnings.push(Warning::LightBelowReceiver { light: index });
         }
@@ -45,6 +48,7 @@ pub(crate) fn usable(scene: &Scene) -> Usable {
     }
     Usable {
         lights,
+        light_indices,
         receivers: used.to_vec(),
         warnings,
     }

@@ -13,7 +13,8 @@ use crate::unknown::{Unknown, unknowns};
 /// Energy of the lights' columns over that of the plate, below which too little real shadow was seen to tell the shares:
 /// at 0.006 a share was off by 0.1, at 0.024 and above by less than 0.01.
 const FAINT_CONTRAST: f32 = 0.01;
-/// How far a light's strength must be told by what was seen.
+/// How far a light's strength must be told by what was seen. Two lights in one place have 0.5, ones
+/// whose shadows differ more than 0.99.
 const LEAST_RESOLUTION: f64 = 0.75;
 
 impl Core {
@@ -53,15 +54,15 @@ impl Core {
 
     /// Lights whose strength is assumed more than seen.
     fn read_lights_not_told(&self) -> Result<Vec<usize>, CoreError> {
-        let Some(model) = self.model() else {
+        let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
             return Ok(Vec::new());
         };
         let sums = self.gpu.read_buffer(&model.knowledge.fit_sums)?;
         let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
         let told = light_resolution(&sums, model.capture.plan.lights.len());
-        let lights = told.iter().enumerate();
+        let lights = stage.light_indices.iter().zip(told);
         Ok(lights
-            .filter_map(|(light, told)| (*told < LEAST_RESOLUTION).then_some(light))
+            .filter_map(|(light, told)| (told < LEAST_RESOLUTION).then_some(*light))
             .collect())
     }
 

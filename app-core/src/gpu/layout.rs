@@ -16,7 +16,7 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
 /// Weight of the fit's priors against the energy of its first column.
 pub const PRIOR_WEIGHT: f32 = 1e-4;
-/// Most light points of one occlusion pass, of which each adds some of the codes that eight bits have.
+/// Most light points of one occlusion pass: each adds three codes, and 255 is the last.
 pub const MAX_LIGHT_POINTS: usize = 64;
 
 /// Positions within a pixel that the toy's coverage is counted over. RMS error of the area that a straight edge of any
@@ -27,10 +27,10 @@ pub const COVERED_CODES: usize = 7;
 
 /// Cells of a grid of tints along each side.
 pub const TINT_SIDE: usize = 16;
-/// Cells of a grid of tints, and of all levels of its pyramid: 16, 8, 4, 2 and 1 along each side.
+/// Cells of a grid of tints.
 pub const TINT_CELLS: usize = TINT_SIDE * TINT_SIDE * TINT_SIDE;
-#[allow(missing_docs, reason = "documented with the cells of one level")]
-pub const TINT_PYRAMID: usize = 4096 + 512 + 64 + 8 + 1;
+/// Cells of all levels of its pyramid: 16, 8, 4, 2 and 1 along each side, a geometric series.
+pub const TINT_PYRAMID: usize = (8 * TINT_CELLS - 1) / 7;
 /// Sums of a cell of tints.
 pub const N_TINT_SUMS: usize = 7;
 

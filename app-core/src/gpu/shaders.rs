@@ -57,7 +57,14 @@ pub(crate) const SELF_SHADOW: Shader = Shader {
 };
 pub(crate) const OBJECT: Shader = Shader {
     name: "object",
-    parts: &[GLOBALS, TOY_LIGHT, SELF_SHADOW_MAPS, MATERIAL, wgsl!("object")],
+    parts: &[
+        GLOBALS,
+        TOY_LIGHT,
+        SELF_SHADOW_MAPS,
+        MATERIAL,
+        BEHIND,
+        wgsl!("object"),
+    ],
     entry_points: &["vs_project", "fs_describe"],
 };
 pub(crate) const EVIDENCE: Shader = Shader {
@@ -146,7 +153,7 @@ pub(crate) const TINT_FILL: Shader = Shader {
 };
 pub(crate) const MOTION: Shader = Shader {
     name: "motion",
-    parts: &[GLOBALS, MOVED, wgsl!("motion")],
+    parts: &[GLOBALS, MOVED, BEHIND, wgsl!("motion")],
     entry_points: &["vs_physical", "fs_motion"],
 };
 pub(crate) const WITHHOLD: Shader = Shader {

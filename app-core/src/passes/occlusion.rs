@@ -98,7 +98,7 @@ impl Occlusion {
         caster: &Caster<'_>,
         targets: &OcclusionTargets,
     ) {
-        let n_points = u32::try_from(caster.points.len()).unwrap_or(0) / self.n_receivers;
+        let n_points = u32::try_from(caster.points.len()).unwrap_or(0) / self.n_receivers.max(1);
         let uniform = light_points_uniform(caster.points, n_points, targets.texel_px);
         let points = gpu.uniform("light points", &uniform);
         let groups = |pipeline: &wgpu::RenderPipeline| {

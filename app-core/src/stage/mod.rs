@@ -39,6 +39,8 @@ pub(crate) struct Stage {
     scene: Scene,
     preset: Preset,
     lights: Vec<Light>,
+    /// Their places in the scene's list.
+    pub(crate) light_indices: Vec<usize>,
     receivers: Vec<Receiver>,
     stage_from_object: DMat4,
     physical_bounds: Bounds,
@@ -96,6 +98,7 @@ impl Stage {
             known_rects: Vec::new(),
             standing_warnings: usable.warnings,
             lights: usable.lights,
+            light_indices: usable.light_indices,
             receivers: usable.receivers,
             output: Texture::target(gpu, "output", output),
             preset,
@@ -109,8 +112,10 @@ impl Stage {
 
     /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
     pub(crate) fn withhold_shadow(&mut self) {
-        self.is_shadow_withheld = matches!(self.preset.method(), Method::Model(_));
-        self.learned = None;
+        if matches!(self.preset.method(), Method::Model(_)) {
+            self.is_shadow_withheld = true;
+            self.learned = None;
+        }
     }
 
     /// The scene that is staged.

@@ -42,10 +42,14 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
         materials.push(Material::DEFAULT);
     }
     let draws = lay_out(&surfaces, &geometries);
+    let shadow_indices = ShadowIndices::new(&surfaces, &geometries, &draws.indices);
+    if shadow_indices.indices.is_empty() {
+        return Err(ToyProblem::NoTriangles.at("meshes"));
+    }
     Ok(Toy {
         file: file.to_owned(),
         rig,
-        shadow_indices: ShadowIndices::new(&surfaces, &geometries, &draws.indices),
+        shadow_indices,
         geometries,
         surfaces,
         draws,

@@ -36,6 +36,11 @@ pub(super) struct MorphTarget {
 }
 
 impl MorphTarget {
+    /// Whether it moves any vertex.
+    pub(super) fn moves(&self) -> bool {
+        self.positions.is_some()
+    }
+
     /// What it adds to a vertex's position.
     pub(super) fn offset(&self, vertex: usize) -> Vec3 {
         self.positions

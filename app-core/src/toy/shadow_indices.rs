@@ -8,7 +8,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::geometry::Geometry;
+use glam::Vec3;
+
+use super::geometry::{Geometry, MorphTarget};
 use super::surface::Surface;
 
 /// Triangles of welded corners.
@@ -53,7 +55,10 @@ impl ShadowIndices {
         let welded = corners.map(|corners: &[u32; 3]| corners.map(|corner| first_alike[corner as usize]));
         // Without area they hide nothing.
         let triangles: Vec<_> = welded.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-        let mut pieces = Pieces::of(&triangles, first_alike.len());
+        let places = surfaces
+            .iter()
+            .flat_map(|surface| &geometries[surface.geometry].positions);
+        let mut pieces = Pieces::of(&triangles, &places.copied().collect::<Vec<_>>());
         let (closed, open): (Vec<_>, Vec<_>) = triangles
             .into_iter()
             .partition(|[corner, ..]| pieces.is_closed(*corner));
@@ -78,10 +83,11 @@ impl ShadowIndices {
 
 /// For each vertex of the toy the first that is where it is in every pose.
 fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
+    let movements = movements(geometries);
     let mut firsts = HashMap::new();
     let keys = surfaces.iter().flat_map(|surface| {
-        let geometry = &geometries[surface.geometry];
-        (0..geometry.positions.len()).map(move |vertex| movement(surface, geometry, vertex))
+        let of_geometry = movements[surface.geometry].iter();
+        of_geometry.map(move |movement| (surface.node, surface.skin, *movement))
     });
     (0..)
         .zip(keys)
@@ -89,17 +95,38 @@ fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
         .collect()
 }
 
-/// All that decides where a vertex goes, bit by bit.
-fn movement(surface: &Surface, geometry: &Geometry, vertex: usize) -> Vec<u32> {
-    let number = |index: usize| u32::try_from(index).unwrap_or(u32::MAX);
-    let mut key = vec![
-        number(surface.node),
-        surface.skin.map_or(u32::MAX, number),
-        number(geometry.targets.len()),
-    ];
-    let offsets = geometry.targets.iter().map(|target| target.offset(vertex));
-    let points = offsets.chain([geometry.positions[vertex]]);
-    key.extend(points.flat_map(|point| point.to_array().map(f32::to_bits)));
+/// For each vertex of each geometry a number that it shares with those that always move alike, drawn by the same node.
+fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
+    let mut known = HashMap::new();
+    let mut number = |key: Vec<u32>| {
+        let next = known.len();
+        *known.entry(key).or_insert(next)
+    };
+    geometries
+        .iter()
+        .map(|geometry| {
+            // Most of a file's targets may move nothing.
+            let targets = (0..).zip(&geometry.targets);
+            let moving: Vec<_> = targets.filter(|(_, target)| target.moves()).collect();
+            (0..geometry.positions.len())
+                .map(|vertex| number(movement(geometry, &moving, vertex)))
+                .collect()
+        })
+        .collect()
+}
+
+/// All that decides where a vertex goes in its node, bit by bit.
+fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) -> Vec<u32> {
+    let bits = |point: Vec3| point.to_array().map(f32::to_bits);
+    let mut key = bits(geometry.positions[vertex]).to_vec();
+    for (index, target) in moving {
+        let offset = target.offset(vertex);
+        if offset != Vec3::ZERO {
+            key.push(*index);
+            key.extend(bits(offset));
+        }
+    }
+    key.push(u32::MAX);
     let influences = geometry.influences.iter().flat_map(|all| all.of(vertex));
     key.extend(influences.flat_map(|(joint, weight)| [u32::from(joint), weight.to_bits()]));
     key
@@ -109,15 +136,16 @@ fn movement(surface: &Surface, geometry: &Geometry, vertex: usize) -> Vec<u32> {
 struct Pieces {
     /// For each vertex one nearer to the piece's root, which is its own.
     parents: Vec<u32>,
-    /// For each root, whether its piece has an edge that is not met from both sides alike.
+    /// For each root, whether its piece has an edge that is not met from both sides alike, or its inside without.
     is_open: Vec<bool>,
 }
 
 impl Pieces {
-    fn of(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
+    /// `places` are those of all vertices, each in its node.
+    fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
         let mut pieces = Self {
-            parents: (0..).take(n_vertices).collect(),
-            is_open: vec![false; n_vertices],
+            parents: (0..).take(places.len()).collect(),
+            is_open: vec![false; places.len()],
         };
         // How often an edge is passed upwards, less how often downwards.
         let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
@@ -131,7 +159,20 @@ impl Pieces {
             let root = pieces.root(corner);
             pieces.is_open[root as usize] = true;
         }
+        for (root, volume) in pieces.volumes(triangles, places) {
+            pieces.is_open[root as usize] |= volume <= 0.0;
+        }
         pieces
+    }
+
+    /// Six times the volume of each piece, by its root: negative where its faces look inwards.
+    fn volumes(&mut self, triangles: &[[u32; 3]], places: &[Vec3]) -> HashMap<u32, f64> {
+        let mut volumes = HashMap::new();
+        for corners in triangles {
+            let [a, b, c] = corners.map(|corner| places[corner as usize].as_dvec3());
+            *volumes.entry(self.root(corners[0])).or_default() += a.dot(b.cross(c));
+        }
+        volumes
     }
 
     fn is_closed(&mut self, corner: u32) -> bool {

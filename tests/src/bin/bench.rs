@@ -73,12 +73,12 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let out = args.out.clone().unwrap_or_else(results);
     let result = out.join(CSV_FILE);
     make_folder(&out)?;
-    // A result in the folder means that all sessions were measured.
-    remove_file(&result)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
     if args.withheld {
         return rebuild_all(folders, &mut core, args, &out);
     }
+    // A result in the folder means that all sessions were measured.
+    remove_file(&result)?;
     let mut rows = Vec::new();
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());

@@ -12,6 +12,8 @@ use super::{ConstantError, shader_constant};
 pub struct TintConstants {
     /// Linear value above which a channel may be clipped.
     pub brightest: f64,
+    /// Linear value up to which what is expected counts.
+    pub most_expected: f64,
     /// Linear value from which on a channel carries evidence.
     pub darkest: f64,
     /// Pixels from which on a cell counts in full.
@@ -26,6 +28,7 @@ impl TintConstants {
     pub fn from_shader() -> Result<Self, ConstantError> {
         Ok(Self {
             brightest: shader_constant("tint", "BRIGHTEST_EVIDENCE")?,
+            most_expected: shader_constant("tint", "MOST_EXPECTED")?,
             darkest: shader_constant("tint_fill", "DARKEST_EVIDENCE")?,
             full_pixels: shader_constant("tint_fill", "FULL_PIXELS")?,
         })
@@ -122,7 +125,7 @@ fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>, constants: &TintConstan
     for paint in seen {
         // As if each pixel also showed what is too dark to tell, just as expected.
         shown += paint.shown + constants.darkest;
-        expected += paint.expected.min(DVec3::ONE) + constants.darkest;
+        expected += paint.expected.min(DVec3::splat(constants.most_expected)) + constants.darkest;
         n_pixels += 1.0;
     }
     if n_pixels == 0.0 {

@@ -97,6 +97,10 @@ fn references() -> Vec<Refusal> {
             let indices = glb.u16s("SCALAR", &[0, 1, 1]);
             glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
         }),
+        changed("no area", &["meshes", "no triangles"], |glb| {
+            let positions = glb.floats("VEC3", &[1.0; 9]);
+            glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
+        }),
         changed("cycle", &["nodes[1].children", "cycle"], |glb| {
             glb.push("nodes", json!({ "children": [2] }));
             glb.push("nodes", json!({ "children": [1] }));

@@ -58,6 +58,14 @@ fn a_closed_piece_is_drawn_from_one_side_and_an_open_one_from_both() {
 }
 
 #[test]
+fn a_piece_whose_faces_look_inwards_counts_as_open() {
+    let inwards = FACES.map(|[a, b, c]| [a, c, b]);
+    let toy = faceted(&inwards);
+    let ranges = &toy.shadow_indices().ranges;
+    assert_eq!((ranges.all.clone(), ranges.facing.clone()), (0..15, 0..30));
+}
+
+#[test]
 fn what_lacks_a_face_or_has_one_turned_around_is_open() {
     let [a, b, c] = FACES[3];
     for faces in [&FACES[..3], &[FACES[0], FACES[1], FACES[2], [a, c, b]]] {
