@@ -16,16 +16,9 @@ const WORKGROUP: u32 = 256u;
 const N_LEVELS: u32 = 5u;
 // Pixels in a cell from which on it counts in full.
 const FULL_PIXELS: f32 = 16.0;
-// What was known before weighs at most as much as this many frames.
-const MOST_KEPT: f32 = 8.0;
 
 fn summed(first: u32) -> vec3f {
   return vec3f(f32(sums[first]), f32(sums[first + 1u]), f32(sums[first + 2u]));
-}
-
-// The tint times its certainty.
-fn recall(known: vec4f) -> vec4f {
-  return known / max(known.a, 1.0);
 }
 
 // Adds what a cell was seen to be to what was known of it.
@@ -37,7 +30,7 @@ fn remember(slot: u32) -> vec4f {
   let tint = (summed(first) + dark) / (summed(first + 3u) + dark);
   let certainty = min(1.0, n_pixels / FULL_PIXELS);
   let known = kept[slot] + vec4f(tint, 1.0) * certainty;
-  kept[slot] = known * min(1.0, MOST_KEPT / max(known.a, MOST_KEPT));
+  kept[slot] = to_keep(known);
   return recall(known);
 }
 

@@ -1,18 +1,17 @@
 //! What is made of one view of the real toy and its real shadow, and how the knowledge of the place grows by it.
 
-use glam::UVec2;
 use wgpu::TextureFormat;
 
+use crate::counting::CountingTargets;
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{Globals, PlateViews, Subject};
-use crate::gpu::texture::{Texture, TextureShape};
+use crate::gpu::texture::Texture;
 use crate::knowledge::Knowledge;
 use crate::learner::Learner;
 use crate::lighting::{Lighting, Visibilities};
 use crate::passes::appearance::{APPEARANCE_FORMAT, AppearanceInputs, AppearanceOutputs, LIT_FORMAT};
 use crate::passes::composite::PICTURE_FORMAT;
-use crate::passes::coverage::CoverageTargets;
 use crate::passes::detail::DETAIL_FORMAT;
 use crate::passes::estimate::Fineness;
 use crate::passes::evidence::EVIDENCE_FORMAT;
@@ -55,7 +54,7 @@ pub(crate) struct Capture {
     pub(crate) shown_self_shadow: SelfShadowMaps,
     pub(crate) motion: MotionTargets,
     pub(crate) toy: ToyTargets,
-    pub(crate) coverage: CoverageTargets,
+    pub(crate) coverage: CountingTargets,
     /// Each pixel's own residual, cleared of noise.
     pub(crate) detail: Option<Texture>,
     pub(crate) picture: Texture,
@@ -66,7 +65,7 @@ impl Capture {
     /// Allocates what `plan` asks for. `light_points` has the points of each of its lights, receiver by receiver.
     pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<glam::Vec4>>) -> Self {
         let region_px = plan.region.size_px;
-        let target = |label, format| texture(gpu, label, region_px, (format, 1));
+        let target = |label, format| Texture::plain_target(gpu, label, region_px, format);
         Self {
             known: *globals,
             globals: gpu.uniform("globals", globals),
@@ -91,7 +90,7 @@ impl Capture {
             shown_self_shadow: SelfShadowMaps::new(gpu, &plan.self_shadow),
             motion: MotionTargets::new(gpu, region_px),
             toy: ToyTargets::new(gpu, region_px, plan.n_toy_draws),
-            coverage: CoverageTargets::new(gpu, region_px),
+            coverage: CountingTargets::new(gpu, "coverage", region_px),
             detail: plan.is_noise_removed.then(|| target("detail", DETAIL_FORMAT)),
             picture: target("composite", PICTURE_FORMAT),
             lighting: Lighting::new(gpu, &plan, light_points),
@@ -102,11 +101,11 @@ impl Capture {
     /// Follows the camera: the same textures show another part of another picture.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
         if plan.is_plate_estimated && self.estimated.is_none() {
-            self.estimated = Some(texture(
+            self.estimated = Some(Texture::plain_target(
                 gpu,
                 "estimated plate",
                 plan.region.size_px,
-                (PLATE_FORMAT, 1),
+                PLATE_FORMAT,
             ));
         }
         self.physical.injected = None;
@@ -292,16 +291,4 @@ pub(crate) struct Pictures<'a> {
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) plates: &'a wgpu::TextureView,
     pub(crate) plate_views: &'a PlateViews,
-}
-
-fn texture(gpu: &Gpu, label: &str, size_px: UVec2, (format, n_samples): (TextureFormat, u32)) -> Texture {
-    Texture::target(
-        gpu,
-        label,
-        TextureShape {
-            size_px: size_px.to_array(),
-            format,
-            n_samples,
-        },
-    )
 }

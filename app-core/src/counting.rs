@@ -3,17 +3,43 @@
 //! Blending adds up. Each instance has a depth of its own, above those before it, and what is not above what is there is
 //! rejected: so triangles of one instance that overlap count once.
 
+use glam::UVec2;
 use wgpu::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
-    DepthStencilState, TextureFormat,
+    DepthStencilState, StoreOp, TextureFormat,
 };
 
+use crate::gpu::Gpu;
+use crate::gpu::encoder::{Encoder, cleared};
 use crate::gpu::pipeline::nearest_surface;
+use crate::gpu::texture::Texture;
 
 /// Format of the count, in whole codes.
-pub(crate) const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
+const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Format of the depths that tell instances apart.
-pub(crate) const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
+const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
+
+/// What is counted, and in which order.
+pub(crate) struct CountingTargets {
+    /// Which instance was drawn last; never leaves the chip.
+    order: Texture,
+    pub(crate) count: Texture,
+}
+
+impl CountingTargets {
+    pub(crate) fn new(gpu: &Gpu, label: &str, size_px: UVec2) -> Self {
+        Self {
+            order: Texture::plain_target(gpu, &format!("{label} order"), size_px, ORDER_FORMAT),
+            count: Texture::plain_target(gpu, label, size_px, COUNT_FORMAT),
+        }
+    }
+
+    /// Begins a pass that counts from nothing.
+    pub(crate) fn render<'a>(&self, encoder: &'a mut Encoder, pass: &'static str) -> wgpu::RenderPass<'a> {
+        let colors = [Some(cleared(&self.count.view))];
+        encoder.render(pass, &colors, Some(&self.order.view), StoreOp::Discard)
+    }
+}
 
 /// The target that adds up what is drawn.
 pub(crate) fn counting() -> ColorTargetState {
@@ -29,6 +55,14 @@ pub(crate) fn counting() -> ColorTargetState {
             alpha: sum,
         }),
         write_mask: ColorWrites::ALL,
+    }
+}
+
+/// A target that leaves what was counted.
+pub(crate) fn not_counting() -> ColorTargetState {
+    ColorTargetState {
+        write_mask: ColorWrites::empty(),
+        ..COUNT_FORMAT.into()
     }
 }
 

@@ -63,14 +63,12 @@ pub(crate) fn match_frame(
         (within.origin_px + within.size_px).as_dvec2(),
     );
     let is_outside = |one: &&Shared| one.px.cmplt(min).any() || one.px.cmpge(max).any();
-    let pairs = |shared: &mut dyn Iterator<Item = &Shared>| -> Vec<(DVec3, DVec3)> {
-        shared.map(|one| (one.there, one.here)).collect()
-    };
-    let outside = pairs(&mut shared.iter().filter(is_outside));
+    let pair = |one: &Shared| (one.there, one.here);
+    let outside: Vec<_> = shared.iter().filter(is_outside).map(pair).collect();
     if outside.len() >= FEWEST_COMPARED {
         gain_of(&outside)
     } else {
-        gain_of(&pairs(&mut shared.iter()))
+        gain_of(&shared.iter().map(pair).collect::<Vec<_>>())
     }
 }
 

@@ -5,7 +5,7 @@ use wgpu::TextureFormat;
 
 use crate::gpu::Gpu;
 use crate::gpu::encoder::Encoder;
-use crate::gpu::texture::{Texture, TextureShape};
+use crate::gpu::texture::Texture;
 use crate::light_points::ambient_directions;
 use crate::passes::occlusion::{Caster, OcclusionTargets};
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
@@ -25,17 +25,10 @@ pub(crate) struct Visibilities {
 
 impl Visibilities {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label, size_px: glam::UVec2, format| {
-            let shape = TextureShape {
-                size_px: size_px.to_array(),
-                format,
-                n_samples: 1,
-            };
-            Texture::target(gpu, label, shape)
-        };
+        let region_px = plan.region.size_px;
         Self {
-            lights: target("visibility", plan.region.size_px, plan.visibility_format),
-            ambient: target("ambient", plan.ambient_px, AMBIENT_FORMAT),
+            lights: Texture::plain_target(gpu, "visibility", region_px, plan.visibility_format),
+            ambient: Texture::plain_target(gpu, "ambient", plan.ambient_px, AMBIENT_FORMAT),
             injected: None,
         }
     }

@@ -125,7 +125,7 @@ impl Model {
 
     /// Parts of pixels, from the count that `coverage` made.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let mut map = read_texture(gpu, &self.capture.coverage.covered.raw)?;
+        let mut map = read_texture(gpu, &self.capture.coverage.count.raw)?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
         map.texels.iter_mut().for_each(|texel| texel[0] /= all);

@@ -149,7 +149,7 @@ impl Passes {
             visibility: &capture.shown.lights.view,
             ambient: &capture.shown.ambient.view,
             toy: &capture.toy,
-            coverage: &capture.coverage.covered.view,
+            coverage: &capture.coverage.count.view,
             detail: capture.detail.as_ref().map(|detail| &detail.view),
             motion: &capture.motion.moved.view,
         };

@@ -42,13 +42,7 @@ impl Pool {
         pictures: &[&wgpu::TextureView],
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(
-            &layout(GROUP_GLOBALS),
-            &[
-                (0, on.globals.as_entire_binding()),
-                (1, on.solution.as_entire_binding()),
-            ],
-        );
+        let shared = gpu.bind_buffers(&layout(GROUP_GLOBALS), &[on.globals, on.solution]);
         let buffers = [on.grids, &on.cells.cells, &on.cells.kept].map(wgpu::Buffer::as_entire_binding);
         let resources = buffers
             .into_iter()

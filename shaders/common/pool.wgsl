@@ -12,8 +12,6 @@
 const N_POINTS: u32 = 8u;
 // Share of a cell's points that must be evidence for the cell to count in full.
 const FULL_SHARE: f32 = 0.25;
-// What was known before weighs at most as much as this many frames.
-const MOST_KEPT: f32 = 8.0;
 
 // Nothing reaches a receiver whose cells have no extent.
 fn is_cell(receiver: u32, cell: vec2u) -> bool {
@@ -35,6 +33,6 @@ fn remember(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
   let index = cell.y * grid.size.x + cell.x;
   let slot = receiver * MAX_CELLS + index;
   let known = kept[slot] + vec4f(value, 1.0) * certainty;
-  kept[slot] = known * min(1.0, MOST_KEPT / max(known.a, MOST_KEPT));
-  cells[grid.first_cell + index] = known / max(known.a, 1.0);
+  kept[slot] = to_keep(known);
+  cells[grid.first_cell + index] = recall(known);
 }

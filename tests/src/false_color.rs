@@ -266,7 +266,7 @@ fn code(value: f32) -> u8 {
 }
 
 /// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
-fn srgb_from_linear(linear: f32) -> f32 {
+pub(crate) fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 {
         12.92 * linear
     } else {

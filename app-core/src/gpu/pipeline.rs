@@ -131,6 +131,16 @@ impl Gpu {
         })
     }
 
+    /// Binds buffers to the binding numbers from 0 on, such as the globals and the fit.
+    pub(crate) fn bind_buffers(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        buffers: &[&wgpu::Buffer],
+    ) -> wgpu::BindGroup {
+        let resources = buffers.iter().map(|buffer| buffer.as_entire_binding());
+        self.bind(layout, &(0..).zip(resources).collect::<Vec<_>>())
+    }
+
     pub(crate) fn linear_sampler(&self) -> wgpu::Sampler {
         self.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("linear"),

@@ -38,6 +38,7 @@ const FLATTEN: &str = wgsl!("common/flatten");
 const FULLSCREEN: &str = wgsl!("common/fullscreen");
 const GRID: &str = wgsl!("common/grid");
 const HIDDEN: &str = wgsl!("common/hidden");
+const KNOWN: &str = wgsl!("common/known");
 const MATERIAL: &str = wgsl!("common/material");
 const MODEL: &str = wgsl!("common/model");
 const MOVED: &str = wgsl!("common/moved");
@@ -99,7 +100,7 @@ pub(crate) const FIT_SOLVE: Shader = Shader {
 };
 pub(crate) const RESIDUAL: Shader = Shader {
     name: "residual",
-    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, POOL, wgsl!("residual")],
+    parts: &[GLOBALS, FIT, MODEL, PIXEL, GRID, KNOWN, POOL, wgsl!("residual")],
     entry_points: &["cs_pool"],
 };
 pub(crate) const PLATE: Shader = Shader {
@@ -109,7 +110,7 @@ pub(crate) const PLATE: Shader = Shader {
 };
 pub(crate) const LIT: Shader = Shader {
     name: "lit",
-    parts: &[GLOBALS, FIT, MODEL, CHANNELS, GRID, POOL, wgsl!("lit")],
+    parts: &[GLOBALS, FIT, MODEL, CHANNELS, GRID, KNOWN, POOL, wgsl!("lit")],
     entry_points: &["cs_pool"],
 };
 pub(crate) const ESTIMATE: Shader = Shader {
@@ -148,7 +149,7 @@ pub(crate) const TINT: Shader = Shader {
 };
 pub(crate) const TINT_FILL: Shader = Shader {
     name: "tint_fill",
-    parts: &[PIXEL, TINT_CELLS, BETWEEN_TINTS, wgsl!("tint_fill")],
+    parts: &[PIXEL, KNOWN, TINT_CELLS, BETWEEN_TINTS, wgsl!("tint_fill")],
     entry_points: &["cs_fill"],
 };
 pub(crate) const MOTION: Shader = Shader {

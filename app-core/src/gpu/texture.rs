@@ -34,6 +34,21 @@ impl Texture {
         Self { raw, view }
     }
 
+    /// A target of one sample a texel.
+    pub(crate) fn plain_target(
+        gpu: &Gpu,
+        label: &str,
+        size_px: glam::UVec2,
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        let shape = TextureShape {
+            size_px: size_px.to_array(),
+            format,
+            n_samples: 1,
+        };
+        Self::target(gpu, label, shape)
+    }
+
     /// A picture to read from, sRGB-encoded.
     pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: [u32; 2]) -> Self {
         Self::layers(gpu, label, size_px, 1, wgpu::TextureViewDimension::D2)

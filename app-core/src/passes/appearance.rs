@@ -68,13 +68,7 @@ impl Appearance {
         outputs: &AppearanceOutputs<'_>,
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(
-            &layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
-        );
+        let shared = gpu.bind_buffers(&layout(GROUP_GLOBALS), &[inputs.globals, inputs.solution]);
         let own = gpu.bind(
             &layout(GROUP_PASS),
             &[

@@ -57,13 +57,7 @@ impl Composite {
         picture: &wgpu::TextureView,
     ) {
         let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(
-            &layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
-        );
+        let shared = gpu.bind_buffers(&layout(GROUP_GLOBALS), &[inputs.globals, inputs.solution]);
         let [toy_0, toy_1, toy_2, toy_3] = inputs.toy.views();
         let own = gpu.bind(
             &layout(GROUP_PASS),

@@ -40,12 +40,9 @@ impl Detail {
         inputs: &DetailInputs<'_>,
         target: &wgpu::TextureView,
     ) {
-        let shared = gpu.bind(
+        let shared = gpu.bind_buffers(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
+            &[inputs.globals, inputs.solution],
         );
         let own = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_PASS),

@@ -58,12 +58,9 @@ impl Estimate {
             Fineness::Smooth => &self.smooth,
             Fineness::Full => &self.last,
         };
-        let shared = gpu.bind(
+        let shared = gpu.bind_buffers(
             &pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
+            &[inputs.globals, inputs.solution],
         );
         let own = gpu.bind(
             &pipeline.get_bind_group_layout(GROUP_PASS),

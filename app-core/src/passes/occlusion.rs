@@ -3,15 +3,14 @@
 use std::ops::Range;
 
 use glam::{UVec2, Vec4};
-use wgpu::{ColorTargetState, ColorWrites, CompareFunction, Face, StoreOp, VertexFormat};
+use wgpu::{CompareFunction, Face, VertexFormat};
 
-use crate::counting::{COUNT_FORMAT, ORDER_FORMAT, counting, ordered};
+use crate::counting::{CountingTargets, counting, not_counting, ordered};
 use crate::gpu::Gpu;
-use crate::gpu::encoder::{Encoder, cleared};
+use crate::gpu::encoder::Encoder;
 use crate::gpu::layout::{LightPoints, MAX_LIGHT_POINTS, MAX_RECEIVERS};
 use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, RenderShape, Stages};
 use crate::gpu::shaders::OCCLUSION;
-use crate::gpu::texture::{Texture, TextureShape};
 
 use super::toy_mesh::{PoseBuffers, Stream, ToyMesh};
 
@@ -25,9 +24,8 @@ pub(crate) struct Occlusion {
 
 /// Targets for maps of one size.
 pub(crate) struct OcclusionTargets {
-    /// Which point was drawn last; never leaves the chip.
-    order: Texture,
-    pub(crate) hidden: Texture,
+    /// What hidden points add up to.
+    pub(crate) hidden: CountingTargets,
     /// Size of a texel in the region.
     texel_px: [f32; 2],
 }
@@ -35,17 +33,8 @@ pub(crate) struct OcclusionTargets {
 impl OcclusionTargets {
     /// For maps of `size_px` texels over a region of `region_px` pixels.
     pub(crate) fn new(gpu: &Gpu, size_px: UVec2, region_px: UVec2) -> Self {
-        let texture = |label, format| {
-            let shape = TextureShape {
-                size_px: size_px.to_array(),
-                format,
-                n_samples: 1,
-            };
-            Texture::target(gpu, label, shape)
-        };
         Self {
-            order: texture("occlusion order", ORDER_FORMAT),
-            hidden: texture("occlusion", COUNT_FORMAT),
+            hidden: CountingTargets::new(gpu, "occlusion", size_px),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
         }
     }
@@ -69,10 +58,7 @@ impl Occlusion {
             buffers: &[stream.layout()],
         };
         let route = RenderShape {
-            targets: &[Some(ColorTargetState {
-                write_mask: ColorWrites::empty(),
-                ..COUNT_FORMAT.into()
-            })],
+            targets: &[Some(not_counting())],
             depth: Some(ordered(CompareFunction::Always)),
             culled: None,
             ..cover
@@ -110,9 +96,7 @@ impl Occlusion {
         let cover = groups(&self.cover);
         let route = self.route.as_ref().map(|pipeline| (pipeline, groups(pipeline)));
         let triangles = caster.triangles(n_points as usize);
-        let colors = [Some(cleared(&targets.hidden.view))];
-        let order = Some(&targets.order.view);
-        let mut render = encoder.render(OCCLUSION.name, &colors, order, StoreOp::Discard);
+        let mut render = targets.hidden.render(encoder, OCCLUSION.name);
         caster.toy.bind_positions(&mut render, &caster.pose.positions);
         for receiver in 0..self.n_receivers {
             if let Some((pipeline, groups)) = &route {

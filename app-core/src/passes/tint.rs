@@ -112,12 +112,9 @@ impl Tint {
     /// Adds what a frame shows of the toy to what is known of its paint.
     pub(crate) fn encode(&self, gpu: &Gpu, encoder: &mut Encoder, inputs: &TintInputs<'_>, tints: &Tints) {
         encoder.raw.clear_buffer(&tints.sums, 0, None);
-        let shared = gpu.bind(
+        let shared = gpu.bind_buffers(
             &self.add.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
+            &[inputs.globals, inputs.solution],
         );
         let stride_px = inputs.plan.fit_stride_px;
         let stride = gpu.uniform("tint stride", &stride_px);

@@ -127,12 +127,9 @@ impl Toy {
         inputs: &ToyInputs<'_>,
         targets: &ToyTargets,
     ) {
-        let shared = gpu.bind(
+        let shared = gpu.bind_buffers(
             &self.pipeline.get_bind_group_layout(GROUP_GLOBALS),
-            &[
-                (0, inputs.globals.as_entire_binding()),
-                (1, inputs.solution.as_entire_binding()),
-            ],
+            &[inputs.globals, inputs.solution],
         );
         let self_shadow = inputs.self_shadow.bind(gpu, &self.pipeline);
         let materials = toy.material_groups(gpu, &self.pipeline);

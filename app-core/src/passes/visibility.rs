@@ -57,7 +57,7 @@ impl Visibility {
     ) {
         let own = gpu.bind(
             &self.pipeline.get_bind_group_layout(GROUP_PASS),
-            &[(0, view(&occlusion.hidden.view))],
+            &[(0, view(&occlusion.hidden.count.view))],
         );
         let mut target = cleared(visibility);
         if self.channel > 0 {

@@ -12,6 +12,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use glam::Vec4;
 
+use crate::false_color::srgb_from_linear;
 use crate::replay::ReplayError;
 
 use super::table::aligned;
@@ -125,10 +126,13 @@ impl Withheld {
             let [left, top] = self.region.origin_px.to_array().map(|px| px as usize);
             let first = 4 * ((top + index / width) * photograph.width_px as usize + left + index % width);
             let lit = Vec4::from(self.plate.texels[index]) * self.gain;
-            for channel in 0..3 {
+            let lit_codes = lit
+                .to_array()
+                .map(|linear| 255.0 * srgb_from_linear(linear.clamp(0.0, 1.0)));
+            for (channel, lit) in lit_codes.into_iter().take(3).enumerate() {
                 let shown = f64::from(photograph.rgba8[first + channel]);
                 errors.made += (f64::from(picture.rgba8[first + channel]) - shown).powi(2);
-                errors.unshadowed += (code(lit[channel]) - shown).powi(2);
+                errors.unshadowed += (f64::from(lit) - shown).powi(2);
             }
             errors.n_pixels += 1;
         }
@@ -150,17 +154,6 @@ impl Errors {
         };
         [rmse(self.made), rmse(self.unshadowed), self.n_pixels.to_string()]
     }
-}
-
-/// The 8-bit code of a linear value. Source: IEC 61966-2-1.
-fn code(linear: f32) -> f64 {
-    let linear = f64::from(linear.clamp(0.0, 1.0));
-    255.0
-        * if linear <= 0.003_130_8 {
-            12.92 * linear
-        } else {
-            1.055 * linear.powf(1.0 / 2.4) - 0.055
-        }
 }
 
 /// What was made again, in columns.
