@@ -11,39 +11,66 @@
 pub mod core;
 pub mod frame;
 pub mod gpu;
-pub mod grids;
-pub mod inject;
-pub mod light_points;
-pub mod light_tiles;
-pub mod maps;
-pub mod outline;
-pub mod plan;
 pub mod preset;
-pub mod region;
-pub mod resolution;
 pub mod scene;
 pub mod session;
 pub mod toy;
-pub mod unknown;
-pub mod view;
 
-mod capture;
-mod clip_reach;
-mod counting;
-mod exposure;
-mod knowledge;
-mod learner;
-mod lighting;
+mod baseline;
+mod geometry;
+mod model;
 mod passes;
-mod pipeline;
-mod plate_store;
+mod plan;
 mod plates;
-mod pool;
-mod published;
+mod readback;
 mod stage;
-mod standing;
-mod window;
-mod work;
 
 pub use crate::core::{Core, CoreError};
 pub use wgpu;
+
+/// What only the project's own tests and harness use. It changes without notice.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::baseline::plan::BaselinePlan;
+    pub use crate::baseline::planned as planned_by_baseline;
+    pub use crate::baseline::uniform::Baseline as BaselineUniform;
+    pub use crate::geometry::anchored::AnchoredReceiver;
+    pub use crate::geometry::bounds::{Bounds, Sphere};
+    pub use crate::geometry::color::linear_from_srgb;
+    pub use crate::geometry::light_points::{ambient_directions, light_in_plane, light_points};
+    pub use crate::geometry::outline::Outline;
+    pub use crate::geometry::reach::Reach;
+    pub use crate::geometry::rect::{PixelRect, PlaneRect};
+    pub use crate::geometry::scene_layout::SceneLayout;
+    pub use crate::geometry::shadow_atlas::ShadowAtlas;
+    pub use crate::geometry::view::View;
+    pub use crate::gpu::context::phone_limits;
+    pub use crate::gpu::device::Kind;
+    pub use crate::gpu::shader::{Part, Shader};
+    pub use crate::gpu::shared::{Member, Mirror, NumberKind};
+    pub use crate::model::diagnostics::conditioning::light_conditioning;
+    pub use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS, outliers};
+    pub use crate::model::lighting::self_shadow::SelfShadow;
+    pub use crate::model::plan::{LightPlan, Plan};
+    pub use crate::model::planned as planned_by_model;
+    pub use crate::model::state::grids::{Grid, Grids, MAX_CELLS, grids_over, holds};
+    pub use crate::model::state::solution::{Fit, N_COLUMNS, N_FIT_SUMS, ReceiverFit};
+    pub use crate::model::state::tints::{TINT_SIDE, TintGrid, TintMap};
+    pub use crate::passes::globals::{Globals, globals};
+    pub use crate::passes::plate::{PlateView, PlateViews};
+    pub use crate::plan::{Change, LeftOut, SceneFacts};
+    pub use crate::readback::inject::InjectedVisibility;
+    pub use crate::readback::{FloatMap, Map};
+
+    /// Every shader there is.
+    pub fn shaders() -> impl Iterator<Item = &'static Shader> {
+        let rooms = [
+            crate::model::lighting::SHADERS,
+            crate::model::capture::SHADERS,
+            crate::model::frame::SHADERS,
+            crate::passes::SHADERS,
+            crate::baseline::SHADERS,
+        ];
+        rooms.into_iter().flatten().copied()
+    }
+}

@@ -35,23 +35,23 @@ impl Preset {
         }
     }
 
-    /// How the preset makes a picture.
+    /// How the preset makes a picture, and what it spends.
     #[must_use]
-    pub fn method(self) -> Method {
+    pub fn settings(self) -> Settings {
         match self {
-            Self::Flat => Method::Published(PublishedSettings {
+            Self::Flat => Settings::Baseline(BaselineSettings {
                 constant_ratio: Some(0.40),
-                ..PUBLISHED
+                ..BASELINE
             }),
-            Self::Paper => Method::Published(PUBLISHED),
-            Self::Balanced => Method::Model(BALANCED),
-            Self::Best => Method::Model(BEST),
+            Self::Paper => Settings::Baseline(BASELINE),
+            Self::Balanced => Settings::Model(BALANCED),
+            Self::Best => Settings::Model(BEST),
         }
     }
 }
 
 /// What `balanced` spends.
-pub const BALANCED: Settings = Settings {
+pub const BALANCED: ModelSettings = ModelSettings {
     n_light_points: 64,
     n_ambient_directions: 64,
     ambient_divisor: 4,
@@ -63,7 +63,7 @@ pub const BALANCED: Settings = Settings {
 };
 
 /// What `best` spends.
-pub const BEST: Settings = Settings {
+pub const BEST: ModelSettings = ModelSettings {
     ambient_divisor: 2,
     n_toy_draws: 4,
     self_shadow_tile_px: 512,
@@ -82,7 +82,7 @@ pub const BEST: Settings = Settings {
 /// - kernel of PCSS round on the receiver, slanted with the light, slanted but for the search of blockers: 2.47, 2.35, 2.27
 ///   on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there: 2.54;
 /// - `flat`, ratio 0.35, 0.40, 0.50: 5.50, 4.38, 9.18.
-pub const PUBLISHED: PublishedSettings = PublishedSettings {
+pub const BASELINE: BaselineSettings = BaselineSettings {
     constant_ratio: None,
     eligible_margin_px: 4,
     ring_step_px: 2.0,
@@ -97,16 +97,16 @@ pub const PUBLISHED: PublishedSettings = PublishedSettings {
 /// The two ways to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Method {
+pub enum Settings {
     /// The additive model of the receiver: see the architecture.
-    Model(Settings),
+    Model(ModelSettings),
     /// The published method, or its simplest stand-in.
-    Published(PublishedSettings),
+    Baseline(BaselineSettings),
 }
 
 /// What the model spends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
+pub struct ModelSettings {
     /// Points over each light, a multiple of 16 up to 64, of a light whose penumbra is wider than a pixel.
     pub n_light_points: usize,
     /// Directions of ambient light, a multiple of 16 up to 64.
@@ -130,7 +130,7 @@ pub struct Settings {
 
 /// The constants that the papers leave open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PublishedSettings {
+pub struct BaselineSettings {
     /// Shadow over plate where no light reaches, for shadows of constant strength, each light's the same; without it the
     /// real shadow is sampled.
     pub constant_ratio: Option<f32>,

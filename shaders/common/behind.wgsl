@@ -8,7 +8,7 @@ fn is_behind_receiver(region_px: vec2f, inverse_depth: f32) -> bool {
   for (var k = 0u; k < globals.n_receivers; k++) {
     let p = globals.receivers[k].plane_from_region_px * vec3f(region_px, 1.0);
     if p.z * (1.0 - ON_RECEIVER) <= inverse_depth { continue; }
-    if all(abs(p.xy) <= p.z * globals.receivers[k].half_extent_m) { return true; }
+    if is_within(p.z * globals.receivers[k].rect, p.xy) { return true; }
   }
   return false;
 }

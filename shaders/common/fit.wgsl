@@ -6,7 +6,7 @@ struct ReceiverFit {
   // Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
   bounce: vec4f,
   // Each light's share of the plate's radiance at the reference point.
-  share: array<vec4f, MAX_LIGHTS>,
+  direct_fraction: array<vec4f, MAX_LIGHTS>,
   // Energy of the light columns over that of the plate: how much real shadow the fit has seen.
   contrast: vec4f,
 }
@@ -15,7 +15,7 @@ struct Fit {
   // Frame over plate where nothing changed: the exposure between the two.
   gain: vec4f,
   // Each light's power over that when the plate was taken.
-  level: array<vec4f, MAX_LIGHTS>,
+  intensity: array<vec4f, MAX_LIGHTS>,
   receivers: array<ReceiverFit, MAX_RECEIVERS>,
   // Radiance of the toy over its base colour and the gain: constant, vertical gradient, and a factor per light's cosine.
   toy: array<vec4f, N_COLUMNS>,

@@ -2,7 +2,7 @@
 
 const SUBJECT_RECEIVER: u32 = 0u;
 const SUBJECT_TOY: u32 = 1u;
-const SUBJECT_LEVELS: u32 = 2u;
+const SUBJECT_INTENSITIES: u32 = 2u;
 
 struct FitStep {
   // 0 in the first step: there is no solution yet, all weights are 1.

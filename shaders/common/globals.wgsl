@@ -8,7 +8,7 @@ const MAX_LIGHTS: u32 = 4u;
 const MAX_RECEIVERS: u32 = 4u;
 
 struct ReceiverPlane {
-  plane_from_stage: mat4x4f,
+  plane_from_anchor: mat4x4f,
   // Homography: (x, z, w) of the plane's point seen at (u, v, 1); w is 1 / depth, negative behind the camera.
   plane_from_region_px: mat3x3f,
   // Homography: clip (x, y, w) of the plane's point (x, z, 1); w is the depth in metres.
@@ -17,18 +17,20 @@ struct ReceiverPlane {
   lights: array<vec4f, MAX_LIGHTS>,
   // Where the lights' shares are stated: nearest to the toy.
   reference_in_plane: vec2f,
-  half_extent_m: vec2f,
+  _pad: vec2f,
+  // Where the receiver ends: least x and z, then most.
+  rect: vec4f,
 }
 
 struct Globals {
   // Clip space of the region; depth is reversed: 1 at the near plane, 0 at infinity.
-  clip_from_stage: mat4x4f,
+  clip_from_anchor: mat4x4f,
   receivers: array<ReceiverPlane, MAX_RECEIVERS>,
   // As those of the receivers, in stage space.
   lights: array<vec4f, MAX_LIGHTS>,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,
-  camera_in_stage: vec3f,
+  camera_in_anchor: vec3f,
   n_lights: u32,
   region_size_px: vec2f,
   // Top left corner of the region in the camera image.
@@ -49,6 +51,10 @@ struct ReceiverPoint {
 
 const NO_RECEIVER: ReceiverPoint = ReceiverPoint(MAX_RECEIVERS, vec2f(0.0));
 
+fn is_within(rect: vec4f, in_plane: vec2f) -> bool {
+  return all(in_plane >= rect.xy) && all(in_plane <= rect.zw);
+}
+
 // The nearest receiver seen at a pixel, from whichever side.
 fn surface_point(region_px: vec2f) -> ReceiverPoint {
   var nearest = NO_RECEIVER;
@@ -57,7 +63,7 @@ fn surface_point(region_px: vec2f) -> ReceiverPoint {
     let p = globals.receivers[k].plane_from_region_px * vec3f(region_px, 1.0);
     if p.z <= inverse_depth { continue; }
     let in_plane = p.xy / p.z;
-    if all(abs(in_plane) <= globals.receivers[k].half_extent_m) {
+    if is_within(globals.receivers[k].rect, in_plane) {
       nearest = ReceiverPoint(k, in_plane);
       inverse_depth = p.z;
     }

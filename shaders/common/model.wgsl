@@ -13,7 +13,7 @@
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
   var total = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
-    total += fit.receivers[point.receiver].share[i].rgb * (falloff(i, point) - 1.0);
+    total += fit.receivers[point.receiver].direct_fraction[i].rgb * (falloff(i, point) - 1.0);
   }
   return total;
 }
@@ -25,30 +25,30 @@ fn bounced(ambient: f32) -> f32 {
 
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
-  var ambient_share = vec3f(1.0);
-  for (var i = 0u; i < globals.n_lights; i++) { ambient_share -= fit.receivers[point.receiver].share[i].rgb; }
-  return ambient * ambient_share / total + fit.receivers[point.receiver].bounce.rgb * bounced(ambient);
+  var ambient_fraction = vec3f(1.0);
+  for (var i = 0u; i < globals.n_lights; i++) { ambient_fraction -= fit.receivers[point.receiver].direct_fraction[i].rgb; }
+  return ambient * ambient_fraction / total + fit.receivers[point.receiver].bounce.rgb * bounced(ambient);
 }
 
 // Light `i`'s share of the plate's radiance at a point, where the plate's falloff is `total`.
 fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
-  return fit.receivers[point.receiver].share[i].rgb * falloff(i, point) / total;
+  return fit.receivers[point.receiver].direct_fraction[i].rgb * falloff(i, point) / total;
 }
 
 fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {
   return ambient_part(point, ambient, plate_falloff(point));
 }
 
-fn light_share(i: u32, point: ReceiverPoint) -> vec3f {
+fn light_fraction(i: u32, point: ReceiverPoint) -> vec3f {
   return light_part(i, point, plate_falloff(point));
 }
 
 // `visibility` holds up to four lights, light 0 in x.
 fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
   let total = plate_falloff(point);
-  var kept = ambient_part(point, ambient, total);
+  var ratio = ambient_part(point, ambient, total);
   for (var i = 0u; i < globals.n_lights; i++) {
-    kept += light_part(i, point, total) * fit.level[i].rgb * visibility[i];
+    ratio += light_part(i, point, total) * fit.intensity[i].rgb * visibility[i];
   }
-  return kept;
+  return ratio;
 }

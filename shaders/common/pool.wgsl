@@ -6,7 +6,7 @@
 // Cells of values times their certainty, all levels of the pyramids; pooling writes the finest.
 @group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
 // What was known before: sums of values times certainty, and of certainties. Those of the finest levels alone.
-@group(1) @binding(2) var<storage, read_write> kept: array<vec4f>;
+@group(1) @binding(2) var<storage, read_write> accumulated: array<vec4f>;
 
 // Points of a cell along each side.
 const N_POINTS: u32 = 8u;
@@ -27,12 +27,12 @@ fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
 }
 
 // Adds a cell's value, of which `n_points` points are evidence, to what was known.
-fn remember(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
+fn accumulate(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
   let grid = grids.grids[receiver];
   let certainty = min(1.0, n_points / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
   let index = cell.y * grid.size.x + cell.x;
   let slot = receiver * MAX_CELLS + index;
-  let known = kept[slot] + vec4f(value, 1.0) * certainty;
-  kept[slot] = to_keep(known);
-  cells[grid.first_cell + index] = recall(known);
+  let sum = accumulated[slot] + vec4f(value, 1.0) * certainty;
+  accumulated[slot] = capped(sum);
+  cells[grid.first_cell + index] = mean_of(sum);
 }

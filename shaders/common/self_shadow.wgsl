@@ -9,7 +9,7 @@ const MAX_TILES: u32 = 64u;
 
 struct SelfShadow {
   // Clip space of the atlas, one tile each; depth is reversed, 0 where there is nothing.
-  atlas_from_stage: array<mat4x4f, MAX_TILES>,
+  atlas_from_anchor: array<mat4x4f, MAX_TILES>,
   // Per light: its first tile, its number of tiles, 0 for one that casts nothing on the toy, and the width of a texel in
   // metres at w = 1.
   first_tile: vec4u,
@@ -25,17 +25,17 @@ struct SelfShadow {
 const FILTER_REACH_TEXELS: f32 = 1.41421356;
 
 // In [0, 1]; `cosine` is that of `normal` to the light.
-fn self_visibility(i: u32, in_stage: vec3f, normal: vec3f, cosine: f32) -> f32 {
+fn self_visibility(i: u32, in_anchor: vec3f, normal: vec3f, cosine: f32) -> f32 {
   let n_tiles = self_shadow.n_tiles[i];
   if n_tiles == 0u { return 1.0; }
   let first = self_shadow.first_tile[i];
-  let w = (self_shadow.atlas_from_stage[first] * vec4f(in_stage, 1.0)).w;
+  let w = (self_shadow.atlas_from_anchor[first] * vec4f(in_anchor, 1.0)).w;
   // Over the texel's reach a plane rises by reach sin / cos towards the light, and this lifts by offset / cos.
   let sine = sqrt(saturate(1.0 - cosine * cosine));
-  let lifted = in_stage + FILTER_REACH_TEXELS * self_shadow.texel_m[i] * w * sine * normal;
+  let lifted = in_anchor + FILTER_REACH_TEXELS * self_shadow.texel_m[i] * w * sine * normal;
   var sum = 0.0;
   for (var tile = first; tile < first + n_tiles; tile++) {
-    let clip = self_shadow.atlas_from_stage[tile] * vec4f(lifted, 1.0);
+    let clip = self_shadow.atlas_from_anchor[tile] * vec4f(lifted, 1.0);
     let at = clip.xyz / clip.w;
     sum += textureSampleCompareLevel(self_depth, nearer, at.xy * vec2f(0.5, -0.5) + 0.5, at.z);
   }
@@ -43,11 +43,11 @@ fn self_visibility(i: u32, in_stage: vec3f, normal: vec3f, cosine: f32) -> f32 {
 }
 
 // Each light's cosine times its visibility: what it gives to a surface.
-fn light_received(normal: vec3f, in_stage: vec3f) -> vec4f {
+fn light_received(normal: vec3f, in_anchor: vec3f) -> vec4f {
   var received = vec4f(0.0);
   for (var i = 0u; i < globals.n_lights; i++) {
-    let cosine = light_cosine(i, normal, in_stage);
-    if cosine > 0.0 { received[i] = cosine * self_visibility(i, in_stage, normal, cosine); }
+    let cosine = light_cosine(i, normal, in_anchor);
+    if cosine > 0.0 { received[i] = cosine * self_visibility(i, in_anchor, normal, cosine); }
   }
   return received;
 }

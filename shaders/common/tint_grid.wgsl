@@ -3,7 +3,7 @@
 
 struct TintGrid {
   // Lowest corner of the grids, which are cubes.
-  corner_in_stage: vec3f,
+  corner_in_anchor: vec3f,
   cell_m: f32,
   n_materials: u32,
   _pad_0: u32,
@@ -16,6 +16,6 @@ fn tint_grid_of(material: u32) -> u32 {
 }
 
 // In cells of the finest level, the centre of the first at (.5, .5, .5).
-fn tint_place(in_stage: vec3f) -> vec3f {
-  return (in_stage - tint_grid.corner_in_stage) / tint_grid.cell_m;
+fn tint_place(in_anchor: vec3f) -> vec3f {
+  return (in_anchor - tint_grid.corner_in_anchor) / tint_grid.cell_m;
 }

@@ -1,9 +1,9 @@
 // How the toy's surface is lit: radiance over base colour, for a unit normal in stage space.
 
 // Cosine of the normal to light `i`, 0 where the surface is turned away.
-fn light_cosine(i: u32, normal: vec3f, in_stage: vec3f) -> f32 {
+fn light_cosine(i: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
   let light = globals.lights[i];
-  let to_light = light.xyz - in_stage * light.w;
+  let to_light = light.xyz - in_anchor * light.w;
   let distance_squared = dot(to_light, to_light);
   if distance_squared == 0.0 { return 1.0; }
   return max(dot(normal, to_light) * inverseSqrt(distance_squared), 0.0);

@@ -3,6 +3,6 @@
 
 fn toy_radiance_over_base(normal: vec3f, received: vec4f) -> vec3f {
   var sum = fit.toy[0].rgb + fit.toy[1].rgb * normal.y;
-  for (var i = 0u; i < globals.n_lights; i++) { sum += fit.toy[2u + i].rgb * fit.level[i].rgb * received[i]; }
+  for (var i = 0u; i < globals.n_lights; i++) { sum += fit.toy[2u + i].rgb * fit.intensity[i].rgb * received[i]; }
   return max(sum, vec3f(0.0));
 }

@@ -8,11 +8,9 @@ use std::ops::Range;
 use std::time::Instant;
 
 use app_core::core::{Core, CoreError};
-use app_core::frame::FrameInput;
-use app_core::gpu::PassTime;
-use app_core::inject::InjectedVisibility;
-use app_core::maps::Map;
-use app_core::plan::Path;
+use app_core::frame::{FrameInput, PassTime, Path};
+use app_core::internals::InjectedVisibility;
+use app_core::internals::Map;
 use app_core::preset::Preset;
 use app_core::session::Capture;
 
@@ -141,21 +139,22 @@ fn times(core: &mut Core, inputs: &[FrameInput], n_repeats: usize) -> Result<Tim
     let Some(first) = inputs.first() else {
         return Ok(Times::default());
     };
+    core.time_passes(true)?;
     let (mut cpu, mut steady, mut capture) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..n_repeats {
         core.frame(first)?;
         // Nothing is injected: only what was learned is learned again.
         core.inject_visibility(&InjectedVisibility::default())?;
         core.frame(first)?;
-        capture.extend(device_ms(&core.take_pass_times()?, Path::Capture));
+        capture.extend(device_ms(&core.read_pass_times()?, Path::Capture));
         for input in inputs {
             // A camera that moves makes the core learn again: that is not the frame's own time.
             core.frame(input)?;
-            core.take_pass_times()?;
+            core.read_pass_times()?;
             let start = Instant::now();
             core.frame(input)?;
             cpu.push(start.elapsed().as_secs_f64() * 1e3);
-            steady.push(core.take_pass_times()?);
+            steady.push(core.read_pass_times()?);
         }
     }
     let names = steady.first().map(|times| times.iter().map(|time| time.pass));

@@ -1,7 +1,7 @@
 //! Numbers as colours: the error against the truth, and the maps between input and picture.
 
-use app_core::maps::{FloatMap, Map};
-use app_core::region::PixelRect;
+use app_core::internals::PixelRect;
+use app_core::internals::{FloatMap, Map};
 use app_core::scene::Image;
 use serde::Serialize;
 
@@ -96,19 +96,19 @@ const fn shown(
 pub fn describe(map: Map) -> Option<Shown> {
     let light = Some(("hidden", "in full sight", GRAY));
     let (name, title, caption, legend) = match map {
-        Map::Evidence => (
-            "evidence",
-            "Evidence",
+        Map::Validity => (
+            "validity",
+            "Validity",
             "Blue: the frame shows the table alone. Orange: it shows one surface of the toy. Neither: mixed, not used.",
             None,
         ),
-        Map::ObjectBase => (
-            "object",
+        Map::GbufferBase => (
+            "gbuffer",
             "Toy as modelled",
             "Base colour of the real toy's model where the camera sees it; its outline must fit the camera frame.",
             None,
         ),
-        Map::ObjectReceived => (
+        Map::GbufferReceived => (
             "received",
             "Light on the toy",
             "What each point of the real toy receives of each light, its own shadow on itself included; three lights as \
@@ -151,7 +151,7 @@ pub fn describe(map: Map) -> Option<Shown> {
             "What the model of light and shadow leaves unexplained, as a fraction of the plate.",
             Some(("\u{2212}0.1: darker than modelled", "+0.1: brighter", SIGNED_RAMP)),
         ),
-        Map::Share => (
+        Map::DirectFraction => (
             "share",
             "Share of the lights (f)",
             "How much of the table's light comes from the listed lights, for red, green and blue; the rest is ambient.",
@@ -231,11 +231,11 @@ pub fn picture(map: Map, values: &FloatMap, region: PixelRect, size_px: [u32; 2]
 
 fn color_of(map: Map, [r, g, b, a]: [f32; 4], is_colored: bool) -> [u8; 4] {
     match map {
-        Map::ObjectBase | Map::Appearance if a == 0.0 => NOTHING,
-        Map::ObjectBase | Map::Appearance => {
+        Map::GbufferBase | Map::Appearance if a == 0.0 => NOTHING,
+        Map::GbufferBase | Map::Appearance => {
             opaque([r, g, b].map(|value| code(255.0 * srgb_from_linear(value))))
         }
-        Map::Evidence => two_sets(r, g, RECEIVER, TOY),
+        Map::Validity => two_sets(r, g, RECEIVER, TOY),
         Map::Eligible => two_sets(g, r, RECEIVER, TOY),
         Map::SearchTaps if r == 0.0 => NOTHING,
         Map::SearchTaps => opaque(color_at(TAPS_RAMP, r.max(1.0).ln() / TAPS_END.ln())),

@@ -5,7 +5,7 @@ pub(crate) mod pictures;
 use std::ops::Range;
 use std::path::Path;
 
-use app_core::maps::Map;
+use app_core::internals::Map;
 use app_core::session::{GroundTruth, Session};
 use serde::Serialize;
 

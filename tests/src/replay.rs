@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
-use app_core::maps::Map;
+use app_core::internals::Map;
+use app_core::internals::PixelRect;
 use app_core::preset::Preset;
-use app_core::region::PixelRect;
 use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError, Truth};
 use thiserror::Error;
@@ -114,6 +114,7 @@ pub fn replay(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
+    core.time_passes(true)?;
     let frames = frames_of(session, options)?;
     let out = options.out.as_deref();
     let folders: Vec<String> = options
@@ -294,7 +295,7 @@ fn run_frame(
     let cpu = start.elapsed();
     let picture = core.read_picture().map_err(failed)?;
     let wall = start.elapsed();
-    let times = core.take_pass_times().map_err(failed)?;
+    let times = core.read_pass_times().map_err(failed)?;
     let warnings = frame.warnings.iter().map(ToString::to_string);
     let entry = FrameEntry {
         index,

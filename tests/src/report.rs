@@ -1,10 +1,8 @@
 //! What a replay found out, as it stands in `report.json`. The order of the fields is the order in the file.
 
-use app_core::frame::FrameReport;
-use app_core::gpu::PassTime;
-use app_core::gpu::layout::{Fit, MAX_LIGHTS};
-use app_core::plan::{LeftOut, Path};
-use app_core::region::PixelRect;
+use app_core::frame::{FrameReport, LeftOut, PassRun, PassTime, Path, PixelRect};
+use app_core::internals::Fit;
+use app_core::scene::MAX_LIGHTS;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
@@ -106,7 +104,9 @@ pub struct PassEntry {
     pub path: &'static str,
     /// Its name.
     pub name: &'static str,
-    /// Its device time; none where the device cannot tell.
+    /// How often it ran.
+    pub n_runs: u32,
+    /// Its device time over all its runs; none where the device cannot tell.
     pub gpu_ms: Option<f64>,
 }
 
@@ -127,7 +127,7 @@ pub struct FitEntry {
     /// Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
     pub bounce: [f32; 3],
     /// Each light's share of the plate's radiance at the reference point.
-    pub share: Vec<[f32; 3]>,
+    pub direct_fraction: Vec<[f32; 3]>,
 }
 
 impl FrameEntry {
@@ -180,11 +180,14 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
 
 /// The passes of a frame with the times that can be told to be theirs.
 pub(crate) fn pass_entries(report: &FrameReport, times: &[PassTime]) -> Vec<PassEntry> {
-    let entry = |&(path, name): &(Path, &'static str)| {
-        let time = times.iter().find(|time| (time.path, time.pass) == (path, name));
+    let entry = |run: &PassRun| {
+        let time = times
+            .iter()
+            .find(|time| (time.path, time.pass) == (run.path, run.pass));
         PassEntry {
-            path: path.name(),
-            name,
+            path: run.path.name(),
+            name: run.pass,
+            n_runs: run.n_runs,
             gpu_ms: time.map(|time| time.gpu_ms),
         }
     };
@@ -197,11 +200,11 @@ impl FitEntry {
         Self {
             gain: rgb(fit.gain),
             bounce: rgb(fit.receivers[0].bounce),
-            share: fit.receivers[0]
-                .share
+            direct_fraction: fit.receivers[0]
+                .direct_fraction
                 .iter()
                 .take(n_lights.min(MAX_LIGHTS))
-                .map(|share| rgb(*share))
+                .map(|direct_fraction| rgb(*direct_fraction))
                 .collect(),
         }
     }

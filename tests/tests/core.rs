@@ -4,13 +4,14 @@
 
 use std::sync::Arc;
 
-use app_core::frame::FrameInput;
+use app_core::frame::{FrameInput, Path};
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::scene::{Image, PoseTime, Scene};
+use app_core::scene::{Image, Light, Pose, Scene};
 use app_core::session::{Capture, Session};
 use app_core::wgpu::{Instance, InstanceDescriptor};
 use app_core::{Core, CoreError};
+use glam::{DMat4, DVec3};
 use harness::files::Folder;
 
 const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
@@ -67,6 +68,57 @@ fn pictures_that_do_not_fit_are_refused() {
     assert!(core.frame(&input).unwrap().region.is_some());
 }
 
+/// What a tracker or an app may hand over by mistake is refused by name, and costs nothing that was learned.
+#[test]
+fn values_that_cannot_be_are_refused_by_name() {
+    let (session, mut core) = (session(), core());
+    let scene = session.scene().clone();
+    let good = FrameInput::from(&session.frame(0).unwrap());
+    let spoiled = |field: &str, spoil: &dyn Fn(&mut FrameInput)| {
+        let mut input = good.clone();
+        spoil(&mut input);
+        (field.to_owned(), input)
+    };
+    let dark = Light::Sphere {
+        position_in_world: DVec3::ONE,
+        radius_m: -1.0,
+    };
+    let cases = [
+        spoiled("camera.world_from_camera", &|input| {
+            input.camera.world_from_camera.w_axis.x = f64::NAN;
+        }),
+        spoiled("camera.world_from_camera", &|input| {
+            input.camera.world_from_camera *= DMat4::from_scale(DVec3::splat(2.0));
+        }),
+        spoiled("camera.intrinsics.fx_px", &|input| {
+            input.camera.intrinsics.fx_px = 0.0
+        }),
+        spoiled("world_from_object", &|input| {
+            input.world_from_object = DMat4::ZERO
+        }),
+        spoiled("exposure", &|input| input.exposure = f64::INFINITY),
+        spoiled("lights[0].radius_m", &|input| input.lights = Some([dark].into())),
+    ];
+    core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    let expected = picture_of(&mut core, &good);
+    for (field, input) in cases {
+        let refused = core.frame(&input).unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("{field}: ")), "{field}: {refused}");
+    }
+    let report = core.frame(&good).unwrap();
+    assert!(report.ran.iter().all(|run| run.path == Path::Frame), "{report:?}");
+    assert!(core.read_picture().unwrap().rgba8 == expected);
+
+    let mut tilted = scene;
+    tilted.receivers[0].world_from_plane.x_axis.y = 0.5;
+    let refused = core.set_scene(tilted, Preset::Balanced).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("receivers[0].world_from_plane: "),
+        "{refused}"
+    );
+    assert!(core.frame(&good).is_ok(), "the scene before is gone");
+}
+
 #[test]
 fn a_failed_pose_leaves_nothing_half_learned() {
     let (session, mut core) = (session(), core());
@@ -75,9 +127,9 @@ fn a_failed_pose_leaves_nothing_half_learned() {
     let expected = picture_of(&mut core, &input);
 
     core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
-    let shown_pose = PoseTime {
+    let shown_pose = Pose::Clip {
+        clip: input.shown_pose.clip().unwrap(),
         time_secs: f64::NAN,
-        ..input.shown_pose
     };
     assert!(matches!(
         core.frame(&FrameInput {
@@ -94,18 +146,14 @@ fn the_pose_as_authored_is_a_pose_like_any_other() {
     let (session, mut core) = (session(), core());
     let input = FrameInput::from(&session.frame(0).unwrap());
     let posed = Scene {
-        physical_pose: input.shown_pose,
+        physical_pose: input.shown_pose.clone(),
         ..session.scene().clone()
     };
     core.set_scene(posed, Preset::Balanced).unwrap();
-    let authored = PoseTime {
-        clip: None,
-        time_secs: 0.0,
-    };
     assert!(core.frame(&input).unwrap().region.is_none());
     assert!(
         core.frame(&FrameInput {
-            shown_pose: authored,
+            shown_pose: Pose::Authored,
             ..input
         })
         .unwrap()
@@ -133,7 +181,7 @@ fn the_toys_colours_are_those_of_the_latest_picture() {
         ..first.clone()
     };
     let at_rest = FrameInput {
-        shown_pose: session.scene().physical_pose,
+        shown_pose: session.scene().physical_pose.clone(),
         ..second.clone()
     };
 

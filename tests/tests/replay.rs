@@ -67,7 +67,7 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
     assert_eq!(json["frames"][1]["passes"][0]["path"], "frame");
     assert_eq!(json["frames"][IDENTITY_FRAME]["scores"]["frame"]["rmse"], 0.0);
     assert_eq!(
-        json["fit"]["share"].as_array().unwrap().len(),
+        json["fit"]["direct_fraction"].as_array().unwrap().len(),
         session.scene().lights.len()
     );
     let [first, .., last] = [0, 1, 2, 3, 4].map(|index| report.frames[index].scores.unwrap().shadow.rmse);

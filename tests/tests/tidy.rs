@@ -5,18 +5,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use app_core::gpu::shaders::ALL;
-use app_core::plan::{Plan, PublishedPlan, SceneFacts};
-use app_core::preset::{Method, Preset, Settings};
-use app_core::region::PixelRect;
-use glam::UVec2;
+use app_core::internals::shaders;
 
-/// Passes whose code is in the module of another: the pass, and that module.
-const SECOND_STEPS: &[(&str, &str)] = &[("fit_solve", "fit"), ("tint_fill", "tint")];
-/// Passes that draw meshes or copy rather than compute: they have no twin.
-const DRAWING_PASSES: &[&str] = &["coverage", "masks", "motion", "object", "present", "toy", "warp"];
-/// Modules among the passes that are none.
-const NO_PASSES: &[&str] = &["mod", "toy_mesh"];
+/// Passes that draw meshes or copy rather than compute: they have no CPU reference.
+const DRAWING_PASSES: &[&str] = &[
+    "coverage",
+    "masks",
+    "moved_mask",
+    "gbuffer",
+    "present",
+    "toy",
+    "warp",
+];
 /// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
 const BANNED_IN_CORE: &[&str] = &["std::time", "std::fs", "std::net", "target_os", "target_vendor"];
 const MAX_RUST_LINES: usize = 500;
@@ -97,66 +97,32 @@ fn pass_files() -> Vec<Source> {
         .collect()
 }
 
-fn planned_passes() -> Vec<&'static str> {
-    let region = PixelRect {
-        origin_px: UVec2::ZERO,
-        size_px: UVec2::splat(100),
-    };
-    let facts = SceneFacts {
-        region,
-        penumbra_px: vec![10.0; 4],
-        n_receivers: 2,
-        is_plate_complete: false,
-    };
-    let passes = |preset: &Preset| match preset.method() {
-        Method::Model(settings) => {
-            let settings = Settings {
-                is_shadow_withheld: true,
-                ..settings
-            };
-            Plan::new(&facts, &settings).passes
-        }
-        Method::Published(settings) => PublishedPlan::new(&facts, &settings).passes,
-        other => panic!("{other:?} has no plan here"),
-    };
-    Preset::ALL
-        .iter()
-        .flat_map(passes)
-        .map(|pass| pass.name)
-        .collect()
-}
-
 #[test]
 fn a_pass_has_one_name_everywhere() {
     let files = pass_files();
     let mut stems: Vec<&str> = files.iter().map(Source::stem).collect();
-    let mut names: Vec<&str> = ALL.iter().map(|shader| shader.name).collect();
+    let mut names: Vec<&str> = shaders().map(|shader| shader.name).collect();
     stems.sort_unstable();
     names.sort_unstable();
-    assert_eq!(stems, names, "files in shaders/ and the registry");
+    assert_eq!(stems, names, "files in shaders/ and the lists of passes");
+    let modules = sources("app-core/src", "rs");
+    for name in names {
+        let n_modules = modules.iter().filter(|file| file.stem() == name).count();
+        assert_eq!(n_modules, 1, "modules named {name}");
+    }
+}
 
-    let mut planned = planned_passes();
-    planned.sort_unstable();
-    planned.dedup();
-    assert_eq!(planned, names, "the plans' passes and the registry");
-
-    let module_of = |name: &str| {
-        SECOND_STEPS
-            .iter()
-            .find(|(pass, _)| *pass == name)
-            .map(|(_, module)| *module)
-    };
-    let mut expected: Vec<&str> = names.iter().map(|name| module_of(name).unwrap_or(name)).collect();
-    expected.extend(NO_PASSES);
-    expected.sort_unstable();
-    expected.dedup();
-    let modules = sources("app-core/src/passes", "rs");
-    let mut modules: Vec<&str> = modules.iter().map(Source::stem).collect();
-    modules.sort_unstable();
-    assert_eq!(
-        modules, expected,
-        "modules in app-core/src/passes and the registry"
-    );
+#[test]
+fn only_the_gpu_layer_creates_on_the_device() {
+    let outside = sources("app-core/src", "rs")
+        .into_iter()
+        .filter(|file| !file.path.starts_with("app-core/src/gpu"))
+        .collect();
+    assert_none(wrong_files(
+        outside,
+        "creates past the count in gpu/device.rs",
+        |file| file.text.contains(".create_"),
+    ));
 }
 
 #[test]
@@ -164,15 +130,12 @@ fn every_shader_file_is_joined_into_a_shader_and_its_own_under_its_name() {
     assert_none(wrong_files(
         sources("shaders", "wgsl"),
         "is in no shader of the registry",
-        |file| !ALL.iter().any(|shader| shader.source().contains(&file.text)),
+        |file| !shaders().any(|shader| shader.source().contains(&file.text)),
     ));
     assert_none(wrong_files(
         pass_files(),
         "is not in the shader of its name",
-        |file| {
-            ALL.iter()
-                .any(|shader| shader.name == file.stem() && !shader.source().contains(&file.text))
-        },
+        |file| shaders().any(|shader| shader.name == file.stem() && !shader.source().contains(&file.text)),
     ));
 }
 
@@ -202,24 +165,36 @@ fn shaders_say_what_they_are_and_what_they_read_and_write() {
 }
 
 #[test]
-fn every_twin_that_a_shader_names_exists() {
-    let twins = |file: &Source| -> Vec<String> {
+fn every_cpu_reference_that_a_shader_names_exists() {
+    let references = |file: &Source| -> Vec<String> {
         let heads = file.text.lines().filter(|line| line.starts_with("//"));
-        let named = heads.filter_map(|line| Some(line.split_once("Twin: ")?.1.to_owned()));
+        let named = heads.filter_map(|line| Some(line.split_once("CPU reference: ")?.1.to_owned()));
         // "reference/….rs", whatever follows.
         named
-            .map(|twin| twin.split_inclusive(".rs").next().unwrap_or_default().to_owned())
+            .map(|reference| {
+                reference
+                    .split_inclusive(".rs")
+                    .next()
+                    .unwrap_or_default()
+                    .to_owned()
+            })
             .collect()
     };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     assert_none(wrong_files(
         pass_files(),
-        "names a twin that is not there",
-        |file| twins(file).iter().any(|twin| !folder.join(twin).is_file()),
+        "names a CPU reference that is not there",
+        |file| {
+            references(file)
+                .iter()
+                .any(|reference| !folder.join(reference).is_file())
+        },
     ));
-    assert_none(wrong_files(pass_files(), "computes and has no twin", |file| {
-        twins(file).is_empty() != DRAWING_PASSES.contains(&file.stem())
-    }));
+    assert_none(wrong_files(
+        pass_files(),
+        "computes and has no CPU reference",
+        |file| references(file).is_empty() != DRAWING_PASSES.contains(&file.stem()),
+    ));
 }
 
 #[test]

@@ -11,12 +11,15 @@ mod refusals;
 #[path = "toy/shadow.rs"]
 mod shadow;
 
-use app_core::toy::{PosedMesh, Toy, ToyError, ToyWarning, Wrap};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+use app_core::toy::{NodePose, Pose, PosedMesh, Toy, ToyError, ToyWarning, Trs, Wrap};
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use serde_json::json;
 
 use builder::{Glb, skinned, triangle};
-use poses::{Case, cases};
+use poses::{Case, cases, turning};
 
 const FILE: &str = "bad.glb";
 
@@ -35,16 +38,19 @@ fn vertices_stand_where_the_closed_form_says() {
     for case in &cases() {
         let toy =
             Toy::from_glb(FILE, &case.glb.bytes()).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        let moment = case
+        let pose = case
             .moment
-            .map(|(clip, secs)| (toy.find_clip(clip).unwrap(), secs));
+            .map_or(Pose::Authored, |(clip, time_secs)| Pose::Clip {
+                clip: toy.find_clip(clip).unwrap(),
+                time_secs,
+            });
         assert_eq!(toy.indices(), case.indices, "{}", case.name);
         for anchor_from_object in &anchors {
-            toy.pose(moment, anchor_from_object, &mut posed).unwrap();
+            toy.pose(&pose, anchor_from_object, &mut posed).unwrap();
             check_vertices(case, anchor_from_object, &posed);
         }
         check_winding(case, &posed);
-        let bounds = toy.bounds_of_pose(moment).unwrap();
+        let bounds = toy.bounds_of_pose(&pose).unwrap();
         let points = || case.expected.iter().map(|(point, _)| Vec3::from_array(*point));
         let (min, max) = (
             points().reduce(Vec3::min).unwrap(),
@@ -185,7 +191,11 @@ fn clips_are_found_and_times_brought_into_them() {
     assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(2.0, 1.0, 0.0)));
 
     let still = Toy::from_glb("still.glb", &triangle().bytes()).unwrap();
-    let error = still.pose(Some((run, 0.0)), &DMat4::IDENTITY, &mut PosedMesh::default());
+    let moment = Pose::Clip {
+        clip: run,
+        time_secs: 0.0,
+    };
+    let error = still.pose(&moment, &DMat4::IDENTITY, &mut PosedMesh::default());
     assert!(matches!(
         error,
         Err(ToyError::ForeignClip {
@@ -195,8 +205,68 @@ fn clips_are_found_and_times_brought_into_them() {
         })
     ));
     let far = DMat4::from_scale(DVec3::splat(1e39));
-    let error = still.pose(None, &far, &mut PosedMesh::default());
+    let error = still.pose(&Pose::Authored, &far, &mut PosedMesh::default());
     assert!(matches!(error, Err(ToyError::PoseOverflow { vertex: 1, .. })));
+}
+
+/// A clip's moment and the same transforms given by name are one pose.
+#[test]
+fn a_pose_can_be_given_by_its_nodes() {
+    let toy = Toy::from_glb(FILE, &turning().bytes()).unwrap();
+    let moment = |time_secs| Pose::Clip {
+        clip: toy.find_clip("move").unwrap(),
+        time_secs,
+    };
+    let arm = toy.find_node("arm").unwrap();
+    let authored = toy.authored_transform(arm).unwrap().unwrap();
+    let turned = Trs {
+        // Of any length.
+        rotation: DQuat::from_rotation_z(FRAC_PI_2) * 3.0,
+        ..authored
+    };
+    let by_node = |trs| {
+        let parent_from_node = vec![(arm, trs)];
+        Pose::Nodes(Arc::new(NodePose {
+            parent_from_node,
+            ..NodePose::default()
+        }))
+    };
+    let posed = |pose: &Pose| {
+        let mut posed = PosedMesh::default();
+        toy.pose(pose, &DMat4::IDENTITY, &mut posed).map(|()| posed)
+    };
+    let (by_clip, by_name) = (posed(&moment(1.0)).unwrap(), posed(&by_node(turned)).unwrap());
+    for (a, b) in by_clip.positions.iter().zip(&by_name.positions) {
+        assert!((a - b).length() < TOLERANCE, "{a} and {b}");
+    }
+    assert_ne!(by_name, posed(&Pose::Authored).unwrap());
+    assert_eq!(
+        posed(&by_node(authored)).unwrap(),
+        posed(&Pose::Authored).unwrap()
+    );
+
+    let refused = |trs| posed(&by_node(trs)).unwrap_err().to_string();
+    let nowhere = Trs {
+        translation: DVec3::NAN,
+        ..authored
+    };
+    let unturned = Trs {
+        rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0),
+        ..authored
+    };
+    assert!(refused(nowhere).contains("not finite"));
+    assert!(refused(unturned).contains("no length"));
+    let weights = Pose::Nodes(Arc::new(NodePose {
+        morph_weights: vec![(arm, vec![0.5])],
+        ..NodePose::default()
+    }));
+    assert!(posed(&weights).unwrap_err().to_string().contains("morph weights"));
+    assert!(
+        toy.find_node("leg")
+            .unwrap_err()
+            .to_string()
+            .contains("\"leg\"; it has arm")
+    );
 }
 
 #[test]

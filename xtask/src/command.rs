@@ -7,10 +7,17 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-/// A command as one would type it.
+/// Characters of a command that are shown; a list of files may take many more.
+const N_SHOWN: usize = 160;
+
+/// A command as one would type it, without most of a long list.
 pub(crate) fn line(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
-    words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
+    let line = words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(N_SHOWN) {
+        Some((end, _)) => format!("{} …", &line[..end]),
+        None => line,
+    }
 }
 
 /// Runs a command, its output shown.

@@ -2,6 +2,7 @@
 //! and names what is missing.
 
 mod command;
+mod format;
 mod harness;
 mod phone;
 mod test;
@@ -43,6 +44,8 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Format every source file
+    Fmt,
     /// Check everything that must hold before a change is taken
     Test,
     /// The iPhone shell
@@ -87,6 +90,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Bless { args } => return harness::run(&toolchain, "bless", &args),
+        Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,
         Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
         Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,

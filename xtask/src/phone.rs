@@ -94,6 +94,9 @@ fn package(toolchain: &Toolchain, phone: &Phone) -> Result<()> {
         );
     }
     command::run(&mut phone.build(toolchain)?)?;
+    if phone.is_android() {
+        return Ok(());
+    }
     let folder = toolchain.root.join(phone.package);
     command::run(Command::new("xcodegen").arg("generate").current_dir(&folder))?;
     println!(

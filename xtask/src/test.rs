@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 
 use crate::command;
+use crate::format;
 use crate::phone::{ANDROID, IOS};
 use crate::toolchain::Toolchain;
 use crate::vulkan;
@@ -17,14 +18,14 @@ pub(crate) fn run(toolchain: &Toolchain) -> Result<()> {
         toolchain.ensure_target(phone.target)?;
     }
     let mut times = Vec::new();
-    for (name, mut command) in steps(toolchain) {
+    for (name, mut command) in steps(toolchain)? {
         times.push(format!("{name} {}", seconds(run_step(name, &mut command)?)));
     }
     println!("==> all passed: {}", times.join(", "));
     Ok(())
 }
 
-fn steps(toolchain: &Toolchain) -> Vec<(&'static str, Command)> {
+fn steps(toolchain: &Toolchain) -> Result<Vec<(&'static str, Command)>> {
     let step = |subcommand: &str, args: &[&str]| {
         let mut command = toolchain.cargo(subcommand);
         command.args(args);
@@ -32,8 +33,8 @@ fn steps(toolchain: &Toolchain) -> Vec<(&'static str, Command)> {
     };
     let mut doc = step("doc", &["--locked", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
-    vec![
-        ("format", step("fmt", &["--all", "--check"])),
+    Ok(vec![
+        ("format", format::rustfmt(toolchain, &["--check"])?),
         (
             "lints",
             step(
@@ -49,7 +50,7 @@ fn steps(toolchain: &Toolchain) -> Vec<(&'static str, Command)> {
             "tests",
             step("test", &["--locked", "--workspace", "--no-fail-fast"]),
         ),
-    ]
+    ])
 }
 
 fn run_step(name: &str, command: &mut Command) -> Result<Duration> {

@@ -16,6 +16,8 @@ const COMPONENTS: [&str; 2] = ["clippy", "rustfmt"];
 pub(crate) struct Toolchain {
     /// Top of the repository.
     pub(crate) root: PathBuf,
+    /// Of the language, as the workspace has it.
+    pub(crate) edition: String,
     /// The pinned version; none without rustup, which alone can switch.
     version: Option<String>,
 }
@@ -27,7 +29,8 @@ impl Toolchain {
             .parent()
             .context("xtask lies in no folder")?
             .to_owned();
-        let version = pinned_version(&root.join("Cargo.toml"))?;
+        let manifest = root.join("Cargo.toml");
+        let (version, edition) = (pinned(&manifest, "rust-version")?, pinned(&manifest, "edition")?);
         if command::find("rustup").is_none() {
             let cargo =
                 command::output("cargo", &["--version"]).context("neither rustup nor cargo runs here")?;
@@ -35,7 +38,11 @@ impl Toolchain {
                 "no rustup here: going on with {}; the project's own is {version}",
                 cargo.trim()
             );
-            return Ok(Self { root, version: None });
+            return Ok(Self {
+                root,
+                edition,
+                version: None,
+            });
         }
         let list = ["component", "list", "--installed", "--toolchain", &version];
         let installed = command::output("rustup", &list).unwrap_or_default();
@@ -47,6 +54,7 @@ impl Toolchain {
         }
         Ok(Self {
             root,
+            edition,
             version: Some(version),
         })
     }
@@ -63,18 +71,24 @@ impl Toolchain {
         command::run(Command::new("rustup").args(["target", "add", "--toolchain", version, target]))
     }
 
+    /// A program of the toolchain.
+    pub(crate) fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        if let Some(version) = &self.version {
+            command.env("RUSTUP_TOOLCHAIN", version);
+        }
+        command
+    }
+
     /// `cargo SUBCOMMAND` for this workspace, wherever the caller stands.
     pub(crate) fn cargo(&self, subcommand: &str) -> Command {
-        let mut cargo = Command::new("cargo");
+        let mut cargo = self.command("cargo");
         cargo
             .arg(subcommand)
             .arg("--manifest-path")
             .arg(self.root.join("Cargo.toml"));
         // What the cargo that runs us says about itself must not reach another version.
         cargo.env_remove("CARGO");
-        if let Some(version) = &self.version {
-            cargo.env("RUSTUP_TOOLCHAIN", version);
-        }
         if env::var_os("XDG_RUNTIME_DIR").is_none() {
             // Without a desktop, Mesa's choice among its devices only prints an error of its own.
             cargo.env("NODEVICE_SELECT", "1");
@@ -92,11 +106,12 @@ fn lists(list: &str, name: &str) -> bool {
     })
 }
 
-fn pinned_version(manifest: &Path) -> Result<String> {
+/// What the workspace's manifest says of `key`.
+fn pinned(manifest: &Path, key: &str) -> Result<String> {
     let text = fs::read_to_string(manifest).with_context(|| manifest.display().to_string())?;
     let value = text
         .lines()
-        .find_map(|line| line.strip_prefix("rust-version")?.trim_start().strip_prefix('='));
-    let version = value.with_context(|| format!("{}: no rust-version", manifest.display()))?;
-    Ok(version.trim().trim_matches('"').to_owned())
+        .find_map(|line| line.strip_prefix(key)?.trim_start().strip_prefix('='));
+    let value = value.with_context(|| format!("{}: no {key}", manifest.display()))?;
+    Ok(value.trim().trim_matches('"').to_owned())
 }

@@ -1,8 +1,17 @@
 //! The device: asked for with the limits of a phone, whatever the machine could offer.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::fmt;
+use std::pin::pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
+
+use super::bindings::{BindingCache, Layout, Resource, Slot};
+use super::device::{Device, Kind};
+use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, PipelineCache};
+use super::samplers::Samplers;
+use super::uniforms::Uniforms;
 
 /// Which graphics adapter to use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,6 +49,12 @@ pub enum GpuError {
         /// What the driver said first.
         reason: String,
     },
+    /// The surface cannot be drawn on.
+    #[error("drawing on the surface: {reason}")]
+    Surface {
+        /// What the driver said.
+        reason: String,
+    },
     /// The device was lost, or a read-back failed.
     #[error("reading back from the device: {reason}")]
     ReadBack {
@@ -48,16 +63,17 @@ pub enum GpuError {
     },
 }
 
-/// Device and queue, and what is known of them.
-#[derive(Debug)]
+/// Device and queue, and everything that is made once a device.
 pub struct Gpu {
-    pub(crate) adapter: wgpu::Adapter,
-    pub(crate) device: wgpu::Device,
+    pub(crate) device: Device,
     pub(crate) queue: wgpu::Queue,
+    /// None for a device that somebody else opened.
+    pub(crate) adapter: Option<wgpu::Adapter>,
+    pub(crate) uniforms: Uniforms,
+    pub(crate) samplers: Samplers,
+    pipelines: PipelineCache,
+    bindings: BindingCache,
     info: wgpu::AdapterInfo,
-    has_timestamps: bool,
-    /// The first thing the device refused since it was last asked.
-    refused: Arc<Mutex<Option<String>>>,
 }
 
 /// The limits that every phone we aim at has; tests run under them too.
@@ -75,53 +91,99 @@ impl Gpu {
     ///
     /// # Errors
     /// When there is no adapter, or it falls short of the limits of a phone.
-    pub async fn open(
+    pub(crate) async fn open(
         instance: &wgpu::Instance,
         choice: &AdapterChoice,
         surface: Option<&wgpu::Surface<'static>>,
     ) -> Result<Self, GpuError> {
         let adapter = find_adapter(instance, choice, surface).await?;
-        let info = adapter.get_info();
-        let has_timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let required_features = if has_timestamps {
-            wgpu::Features::TIMESTAMP_QUERY
-        } else {
-            wgpu::Features::empty()
-        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("app-core"),
-            required_features,
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: phone_limits(),
             ..Default::default()
         };
-        let (device, queue) = adapter
-            .request_device(&descriptor)
-            .await
-            .map_err(|e| GpuError::NoDevice {
-                adapter: info.name.clone(),
-                reason: e.to_string(),
-            })?;
-        // Without a handler a picture too large for the device's memory would end the program.
-        let refused = Arc::new(Mutex::new(None));
-        let first = Arc::clone(&refused);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert_with(|| error.to_string());
-        }));
+        let (device, queue) =
+            adapter
+                .request_device(&descriptor)
+                .await
+                .map_err(|error| GpuError::NoDevice {
+                    adapter: adapter.get_info().name,
+                    reason: error.to_string(),
+                })?;
+        // What comes outside of `guarded`, such as the loss of the device: without a handler it would end the program.
+        device.on_uncaptured_error(Arc::new(|_: wgpu::Error| ()));
+        Self::new(device, queue, Some(adapter))
+    }
+
+    /// Works on a device that somebody else opened.
+    ///
+    /// # Errors
+    /// When it falls short of the limits of a phone.
+    pub(crate) fn adopt(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        if !phone_limits().check_limits(&device.limits()) {
+            return Err(GpuError::NoDevice {
+                adapter: device.adapter_info().name,
+                reason: format!("it was opened with less than {:?}", phone_limits()),
+            });
+        }
+        Self::new(device, queue, None)
+    }
+
+    fn new(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        adapter: Option<wgpu::Adapter>,
+    ) -> Result<Self, GpuError> {
+        let info = device.adapter_info();
+        let device = Device::new(device);
+        let (uniforms, samplers) = guarded(&device.raw, || (Uniforms::new(&device), Samplers::new(&device)))?;
         Ok(Self {
-            refused,
+            pipelines: PipelineCache::default(),
+            bindings: BindingCache::default(),
+            info,
+            uniforms,
+            samplers,
             adapter,
             device,
             queue,
-            info,
-            has_timestamps,
         })
     }
 
-    /// Fails once for what the device refused since the last call.
-    pub(crate) fn check(&self) -> Result<(), GpuError> {
-        let first = self.refused.lock().unwrap_or_else(PoisonError::into_inner).take();
-        first.map_or(Ok(()), |reason| Err(GpuError::Refused { reason }))
+    /// Does `work` on the device, and fails where the device refused any of it.
+    pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+        guarded(&self.device.raw, work)
+    }
+
+    /// Objects that the device was asked to make so far, by kind.
+    pub(crate) fn n_created(&self) -> [u64; Kind::ALL.len()] {
+        self.device.n_created()
+    }
+
+    /// The render pipeline of `spec`, compiled at the first call.
+    pub(crate) fn draw(&self, spec: &DrawSpec) -> Draw {
+        self.pipelines.draw((&self.device, &self.bindings), spec)
+    }
+
+    /// The compute pipeline of `spec`, compiled at the first call.
+    pub(crate) fn compute(&self, spec: &ComputeSpec) -> Compute {
+        self.pipelines.compute((&self.device, &self.bindings), spec)
+    }
+
+    /// The layout of a group of `slots`.
+    pub(crate) fn layout(&self, slots: &'static [Slot]) -> Layout {
+        self.bindings.layout(&self.device, slots)
+    }
+
+    /// The group that holds `resources`, in the order of the layout's slots: the one from before if there was one.
+    pub(crate) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> wgpu::BindGroup {
+        let on = (&self.device, &self.uniforms);
+        self.bindings.group(on, layout, resources)
+    }
+
+    /// Lets go of all groups, and so of what nothing but them holds: for when textures were replaced by larger ones.
+    pub(crate) fn release_groups(&self) {
+        self.bindings.release_groups();
     }
 
     /// Name of the adapter and of its driver, for reports.
@@ -135,11 +197,42 @@ impl Gpu {
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
+}
 
-    /// Whether passes can be timed on the device itself.
-    #[must_use]
-    pub fn has_timestamps(&self) -> bool {
-        self.has_timestamps
+impl fmt::Debug for Gpu {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Gpu({})", self.adapter_name())
+    }
+}
+
+/// Collects what a device refuses of `work` on this thread, whoever else handles its errors.
+fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+    let filters = [
+        wgpu::ErrorFilter::Internal,
+        wgpu::ErrorFilter::OutOfMemory,
+        wgpu::ErrorFilter::Validation,
+    ];
+    let mut scopes = filters.map(|filter| Some(device.push_error_scope(filter)));
+    let done = work();
+    let mut refused = None;
+    for scope in scopes.iter_mut().rev() {
+        let error = scope.take().and_then(|scope| ready(scope.pop()).flatten());
+        refused = refused.or(error);
+    }
+    match refused {
+        Some(error) => Err(GpuError::Refused {
+            reason: error.to_string(),
+        }),
+        None => Ok(done),
+    }
+}
+
+/// What a future has at once; off the web an error scope always does.
+fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
+    let mut context = Context::from_waker(Waker::noop());
+    match pin!(future).poll(&mut context) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
     }
 }
 

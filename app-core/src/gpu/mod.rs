@@ -1,12 +1,21 @@
-//! The thin layer over wgpu: device, shaders, mirrored structs, pipelines, encoding with time stamps.
+//! The thin layer over wgpu: the device and what is made once on it, textures and buffers, recording with what ran, read-back.
+//!
+//! Everything that is created on the device is created here, and counted.
 
+pub(crate) mod bindings;
+pub(crate) mod buffer;
 pub(crate) mod context;
-pub(crate) mod encoder;
-pub mod layout;
+pub(crate) mod device;
+pub(crate) mod pass_run;
 pub(crate) mod pipeline;
 pub(crate) mod readback;
-pub mod shaders;
+pub(crate) mod recorder;
+pub(crate) mod samplers;
+pub(crate) mod shader;
+pub(crate) mod shared;
+pub(crate) mod surface;
 pub(crate) mod texture;
+pub(crate) mod timer;
+pub(crate) mod uniforms;
 
-pub use context::{AdapterChoice, Gpu, GpuError, phone_limits};
-pub use encoder::PassTime;
+pub use context::{AdapterChoice, Gpu, GpuError};

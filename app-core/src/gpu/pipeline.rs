@@ -1,179 +1,229 @@
-//! Pipelines: each from one shader of the registry, with its layout taken from the shader.
+//! Pipelines: made once a device, whatever scene or view asks for them.
 
-use super::Gpu;
-use super::shaders::Shader;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Mutex, PoisonError};
 
-/// Group of what all passes share: the globals, and the fit where a pass uses it.
-pub(crate) const GROUP_GLOBALS: u32 = 0;
-/// Group of a pass's own inputs and outputs.
-pub(crate) const GROUP_PASS: u32 = 1;
-/// Group of what changes from draw to draw.
-pub(crate) const GROUP_DRAW: u32 = 2;
+use wgpu::{ColorTargetState, DepthStencilState, Face, VertexAttribute, VertexFormat, VertexStepMode};
 
-/// Colour targets, multisampling, depth, blending and culling of a render pipeline.
-pub(crate) struct RenderShape<'a> {
-    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
+use super::bindings::{BindingCache, Layout, N_GROUPS, Slot};
+use super::device::Device;
+use super::shader::Shader;
+
+/// Slots of each group; empty where a shader has no such group.
+pub(crate) type Groups = [&'static [Slot]; N_GROUPS];
+
+/// A vertex stream of one attribute: its shader location and format.
+pub(crate) type Stream = (u32, VertexFormat);
+
+/// All that a render pipeline depends on.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DrawSpec {
+    pub(crate) shader: &'static Shader,
+    pub(crate) vertex: &'static str,
+    pub(crate) fragment: &'static str,
+    pub(crate) groups: Groups,
+    /// One a vertex buffer, in the order of its slots.
+    pub(crate) streams: &'static [Stream],
+    pub(crate) targets: Vec<ColorTargetState>,
     pub(crate) n_samples: u32,
-    pub(crate) depth: Option<wgpu::DepthStencilState>,
+    pub(crate) depth: Option<DepthStencilState>,
     /// Which side of a triangle is not drawn.
-    pub(crate) culled: Option<wgpu::Face>,
-    pub(crate) constants: &'a [(&'a str, f64)],
+    pub(crate) culled: Option<Face>,
+    /// Values of `override` constants.
+    pub(crate) constants: Vec<(&'static str, u32)>,
 }
 
-/// Entry points and vertex streams of a render pipeline.
-pub(crate) struct Stages<'a> {
-    pub(crate) vertex: &'a str,
-    pub(crate) fragment: &'a str,
-    pub(crate) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-}
-
-impl Gpu {
-    pub(crate) fn module(&self, shader: &Shader) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(shader.name),
-            source: wgpu::ShaderSource::Wgsl(shader.source().into()),
-        })
-    }
-
-    pub(crate) fn render_pipeline(
-        &self,
-        shader: &Shader,
-        module: &wgpu::ShaderModule,
-        stages: &Stages<'_>,
-        shape: &RenderShape<'_>,
-    ) -> wgpu::RenderPipeline {
-        let options = wgpu::PipelineCompilationOptions {
-            constants: shape.constants,
-            ..Default::default()
-        };
-        self.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(shader.name),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module,
-                    entry_point: Some(stages.vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: stages.buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    cull_mode: shape.culled,
-                    ..Default::default()
-                },
-                depth_stencil: shape.depth.clone(),
-                multisample: wgpu::MultisampleState {
-                    count: shape.n_samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module,
-                    entry_point: Some(stages.fragment),
-                    compilation_options: options,
-                    targets: shape.targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-    }
-
-    /// A pipeline that runs a fragment shader over a whole target.
-    pub(crate) fn fullscreen_pipeline(
-        &self,
-        shader: &Shader,
-        fragment: &str,
-        format: wgpu::TextureFormat,
-        constants: &[(&str, f64)],
-    ) -> wgpu::RenderPipeline {
-        let stages = Stages {
+impl DrawSpec {
+    /// A fragment shader over a whole target.
+    pub(crate) fn fullscreen(
+        shader: &'static Shader,
+        fragment: &'static str,
+        groups: Groups,
+        targets: &[wgpu::TextureFormat],
+    ) -> Self {
+        Self {
+            shader,
             vertex: "vs_fullscreen",
             fragment,
-            buffers: &[],
-        };
-        let shape = RenderShape {
-            targets: &[Some(format.into())],
+            groups,
+            streams: &[],
+            targets: targets.iter().map(|format| (*format).into()).collect(),
             n_samples: 1,
             depth: None,
             culled: None,
-            constants,
-        };
-        self.render_pipeline(shader, &self.module(shader), &stages, &shape)
-    }
-
-    pub(crate) fn compute_pipeline(&self, shader: &Shader, entry_point: &str) -> wgpu::ComputePipeline {
-        self.device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(shader.name),
-                layout: None,
-                module: &self.module(shader),
-                entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            })
-    }
-
-    /// Binds resources in order to the given binding numbers.
-    pub(crate) fn bind(
-        &self,
-        layout: &wgpu::BindGroupLayout,
-        resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> wgpu::BindGroup {
-        let entries: Vec<_> = resources
-            .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry {
-                binding: *binding,
-                resource: resource.clone(),
-            })
-            .collect();
-        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout,
-            entries: &entries,
-        })
-    }
-
-    /// Binds buffers to the binding numbers from 0 on, such as the globals and the fit.
-    pub(crate) fn bind_buffers(
-        &self,
-        layout: &wgpu::BindGroupLayout,
-        buffers: &[&wgpu::Buffer],
-    ) -> wgpu::BindGroup {
-        let resources = buffers.iter().map(|buffer| buffer.as_entire_binding());
-        self.bind(layout, &(0..).zip(resources).collect::<Vec<_>>())
-    }
-
-    pub(crate) fn linear_sampler(&self) -> wgpu::Sampler {
-        self.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("linear"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        })
-    }
-
-    /// A buffer filled with `contents`.
-    pub(crate) fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        use wgpu::util::DeviceExt;
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-        })
-    }
-
-    /// A uniform buffer of one struct.
-    pub(crate) fn uniform<T: bytemuck::Pod>(&self, label: &str, value: &T) -> wgpu::Buffer {
-        self.buffer(label, bytemuck::bytes_of(value), wgpu::BufferUsages::UNIFORM)
+            constants: Vec::new(),
+        }
     }
 }
 
-/// A view as a binding.
-pub(crate) fn view(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
-    wgpu::BindingResource::TextureView(view)
+/// All that a compute pipeline depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ComputeSpec {
+    pub(crate) shader: &'static Shader,
+    pub(crate) entry_point: &'static str,
+    pub(crate) groups: Groups,
+}
+
+/// A pipeline, and the layouts of its groups.
+#[derive(Clone, Debug)]
+pub(crate) struct Pipeline<T> {
+    /// The pass's name.
+    pub(crate) name: &'static str,
+    pub(crate) raw: T,
+    pub(crate) layouts: [Option<Layout>; N_GROUPS],
+}
+
+/// A render pipeline.
+pub(crate) type Draw = Pipeline<wgpu::RenderPipeline>;
+/// A compute pipeline.
+pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
+
+/// Everything that was compiled on a device.
+#[derive(Default)]
+pub(crate) struct PipelineCache {
+    modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
+    draws: Mutex<HashMap<DrawSpec, Draw>>,
+    computes: Mutex<HashMap<ComputeSpec, Compute>>,
+}
+
+impl PipelineCache {
+    /// The render pipeline of `spec`, compiled at the first call.
+    pub(crate) fn draw(&self, on: (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
+        cached(&self.draws, spec, || self.compile_draw(on, spec))
+    }
+
+    /// The compute pipeline of `spec`, compiled at the first call.
+    pub(crate) fn compute(&self, on: (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
+        cached(&self.computes, spec, || self.compile_compute(on, spec))
+    }
+
+    fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
+        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+        let module = self.module(device, spec.shader);
+        let constants: Vec<(&str, f64)> = spec
+            .constants
+            .iter()
+            .map(|(name, value)| (*name, f64::from(*value)))
+            .collect();
+        let attributes: Vec<[VertexAttribute; 1]> = spec.streams.iter().map(attribute).collect();
+        let buffers: Vec<_> = attributes.iter().map(|stream| Some(buffer(stream))).collect();
+        let targets: Vec<_> = spec.targets.iter().cloned().map(Some).collect();
+        let raw = device.render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(spec.shader.name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(spec.vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: spec.culled,
+                ..Default::default()
+            },
+            depth_stencil: spec.depth.clone(),
+            multisample: wgpu::MultisampleState {
+                count: spec.n_samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(spec.fragment),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..Default::default()
+                },
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Pipeline {
+            name: spec.shader.name,
+            raw,
+            layouts,
+        }
+    }
+
+    fn compile_compute(&self, (device, bindings): (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
+        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+        let raw = device.compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(spec.shader.name),
+            layout: Some(&layout),
+            module: &self.module(device, spec.shader),
+            entry_point: Some(spec.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Pipeline {
+            name: spec.shader.name,
+            raw,
+            layouts,
+        }
+    }
+
+    fn module(&self, device: &Device, shader: &Shader) -> wgpu::ShaderModule {
+        cached(&self.modules, &shader.name, || {
+            device.module(wgpu::ShaderModuleDescriptor {
+                label: Some(shader.name),
+                source: wgpu::ShaderSource::Wgsl(shader.source().into()),
+            })
+        })
+    }
+}
+
+fn pipeline_layout(
+    (device, bindings): (&Device, &BindingCache),
+    shader: &Shader,
+    groups: Groups,
+) -> ([Option<Layout>; N_GROUPS], wgpu::PipelineLayout) {
+    let layouts = groups.map(|slots| (!slots.is_empty()).then(|| bindings.layout(device, slots)));
+    let raw = layouts
+        .each_ref()
+        .map(|layout| layout.as_ref().map(|layout| &layout.raw));
+    let n_groups = raw.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    let layout = device.pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(shader.name),
+        bind_group_layouts: &raw[..n_groups],
+        immediate_size: 0,
+    });
+    (layouts, layout)
+}
+
+/// The value under `key`, made outside the lock where there is none: compiling takes its time.
+fn cached<K: Clone + Eq + Hash, V: Clone>(
+    cache: &Mutex<HashMap<K, V>>,
+    key: &K,
+    make: impl FnOnce() -> V,
+) -> V {
+    let locked = || cache.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(value) = locked().get(key) {
+        return value.clone();
+    }
+    let made = make();
+    locked().entry(key.clone()).or_insert(made).clone()
+}
+
+fn attribute(&(shader_location, format): &Stream) -> [VertexAttribute; 1] {
+    [VertexAttribute {
+        format,
+        offset: 0,
+        shader_location,
+    }]
+}
+
+fn buffer(attributes: &[VertexAttribute; 1]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: attributes[0].format.size(),
+        step_mode: VertexStepMode::Vertex,
+        attributes,
+    }
 }
 
 /// Reversed depth that keeps the nearest surface.
-pub(crate) fn nearest_surface() -> wgpu::DepthStencilState {
-    wgpu::DepthStencilState {
+pub(crate) fn nearest_surface() -> DepthStencilState {
+    DepthStencilState {
         format: wgpu::TextureFormat::Depth32Float,
         depth_write_enabled: Some(true),
         depth_compare: Some(wgpu::CompareFunction::Greater),

@@ -1,6 +1,6 @@
 //! Reading back what the device made: blocking, for replay and tests.
 
-use super::{Gpu, GpuError};
+use super::context::{Gpu, GpuError};
 
 /// Fills the read-back before the copy, so that a copy that never ran cannot look like black.
 const POISON: u8 = 0xa5;
@@ -9,9 +9,7 @@ impl Gpu {
     /// Waits for the device and returns the bytes of a buffer that can be copied from.
     pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
         let staging = self.staging(buffer.size());
-        let mut encoder = self
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self.device.encoder();
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
         self.queue.submit([encoder.finish()]);
         self.map(&staging)
@@ -24,9 +22,7 @@ impl Gpu {
         let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let n_rows = texture.height() * texture.depth_or_array_layers();
         let staging = self.staging(u64::from(padded_bytes) * u64::from(n_rows));
-        let mut encoder = self
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self.device.encoder();
         encoder.copy_texture_to_buffer(
             texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -46,7 +42,7 @@ impl Gpu {
     }
 
     fn staging(&self, size: u64) -> wgpu::Buffer {
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+        let staging = self.device.buffer(&wgpu::BufferDescriptor {
             label: Some("read-back"),
             size,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -67,6 +63,7 @@ impl Gpu {
             let _ = sender.send(result);
         });
         self.device
+            .raw
             .poll(wgpu::PollType::wait_indefinitely())
             .map_err(|e| failed(e.to_string()))?;
         receiver

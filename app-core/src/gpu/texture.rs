@@ -1,7 +1,9 @@
-//! Textures of our own: created from plans, filled from pictures.
+//! Textures of our own: drawn to by passes, or filled with pictures.
 
-use super::Gpu;
-use super::encoder::Encoder;
+use glam::UVec2;
+use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
+
+use super::context::Gpu;
 
 /// A texture with its whole view.
 #[derive(Debug)]
@@ -12,99 +14,80 @@ pub(crate) struct Texture {
 
 /// What a texture is to be.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TextureShape {
-    pub(crate) size_px: [u32; 2],
-    pub(crate) format: wgpu::TextureFormat,
-    pub(crate) n_samples: u32,
+struct Shape {
+    size_px: UVec2,
+    n_layers: u32,
+    format: TextureFormat,
+    n_samples: u32,
+    usage: TextureUsages,
 }
 
 impl Texture {
-    /// A texture that passes draw to and read from; a multisampled one is drawn to and resolved only.
-    pub(crate) fn target(gpu: &Gpu, label: &str, shape: TextureShape) -> Self {
-        let usage = if shape.n_samples > 1 {
-            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TRANSIENT_ATTACHMENT
-        } else {
-            wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST
-        };
-        let raw = create_raw(gpu, label, (shape, 1), usage);
-        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { raw, view }
+    /// A texture that passes draw to and read from.
+    pub(crate) fn target(gpu: &Gpu, label: &str, size_px: UVec2, format: TextureFormat) -> Self {
+        let usage = TextureUsages::RENDER_ATTACHMENT
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC
+            | TextureUsages::COPY_DST;
+        Self::new(gpu, label, Shape::of(size_px, format, usage))
     }
 
-    /// A target of one sample a texel.
-    pub(crate) fn plain_target(
+    /// A texture of several samples that never leaves the chip: it is drawn to and resolved, or forgotten.
+    pub(crate) fn samples(
         gpu: &Gpu,
         label: &str,
-        size_px: glam::UVec2,
-        format: wgpu::TextureFormat,
+        size_px: UVec2,
+        (format, n_samples): (TextureFormat, u32),
     ) -> Self {
-        let shape = TextureShape {
-            size_px: size_px.to_array(),
-            format,
-            n_samples: 1,
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TRANSIENT_ATTACHMENT;
+        let shape = Shape {
+            n_samples,
+            ..Shape::of(size_px, format, usage)
         };
-        Self::target(gpu, label, shape)
+        Self::new(gpu, label, shape)
     }
 
     /// A picture to read from, sRGB-encoded.
-    pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: [u32; 2]) -> Self {
-        Self::layers(gpu, label, size_px, 1, wgpu::TextureViewDimension::D2)
-    }
-
-    /// An array of pictures to read from, sRGB-encoded.
-    pub(crate) fn pictures(gpu: &Gpu, label: &str, size_px: [u32; 2], n_pictures: u32) -> Self {
-        Self::layers(
+    pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: UVec2) -> Self {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        Self::new(
             gpu,
             label,
-            size_px,
-            n_pictures,
-            wgpu::TextureViewDimension::D2Array,
+            Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage),
         )
     }
 
-    fn layers(
-        gpu: &Gpu,
-        label: &str,
-        size_px: [u32; 2],
-        n_layers: u32,
-        dimension: wgpu::TextureViewDimension,
-    ) -> Self {
-        let shape = TextureShape {
-            size_px,
-            format: wgpu::TextureFormat::Rgba8UnormSrgb,
-            n_samples: 1,
+    /// An array of pictures to read from, sRGB-encoded.
+    pub(crate) fn pictures(gpu: &Gpu, label: &str, size_px: UVec2, n_layers: u32) -> Self {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let shape = Shape {
+            n_layers,
+            ..Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage)
         };
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let raw = create_raw(gpu, label, (shape, n_layers), usage);
-        let view = raw.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(dimension),
-            ..Default::default()
-        });
-        Self { raw, view }
+        let raw = shape.make(gpu, label);
+        Self {
+            view: view_of(gpu, &raw, (TextureViewDimension::D2Array, 0, n_layers)),
+            raw,
+        }
     }
 
-    /// Encodes a copy of all of `from`, of the same size and format.
-    pub(crate) fn encode_copy(&self, encoder: &mut Encoder, from: &Self) {
-        encoder.raw.copy_texture_to_texture(
-            from.raw.as_image_copy(),
-            self.raw.as_image_copy(),
-            self.raw.size(),
-        );
+    fn new(gpu: &Gpu, label: &str, shape: Shape) -> Self {
+        let raw = shape.make(gpu, label);
+        Self {
+            view: view_of(gpu, &raw, (TextureViewDimension::D2, 0, 1)),
+            raw,
+        }
     }
 
-    fn bytes_per_texel(&self) -> Option<u32> {
-        self.raw.format().block_copy_size(None)
-    }
-
-    /// The codes of an sRGB texture, not decoded.
-    pub(crate) fn codes(&self) -> wgpu::TextureView {
-        self.raw.create_view(&wgpu::TextureViewDescriptor {
-            format: Some(wgpu::TextureFormat::Rgba8Unorm),
-            ..Default::default()
-        })
+    /// A view of the codes of an sRGB texture, not decoded.
+    pub(crate) fn codes(&self, gpu: &Gpu) -> wgpu::TextureView {
+        gpu.device.view(
+            &self.raw,
+            &wgpu::TextureViewDescriptor {
+                format: Some(TextureFormat::Rgba8Unorm),
+                ..Default::default()
+            },
+        )
     }
 
     /// Fills the whole texture with rows of texels, nothing between them.
@@ -116,12 +99,13 @@ impl Texture {
     pub(crate) fn write_layer(&self, gpu: &Gpu, layer: u32, texels: &[u8]) {
         let mut destination = self.raw.as_image_copy();
         destination.origin.z = layer;
+        let texel_bytes = self.raw.format().block_copy_size(None);
         gpu.queue.write_texture(
             destination,
             texels,
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: self.bytes_per_texel().map(|bytes| bytes * self.raw.width()),
+                bytes_per_row: texel_bytes.map(|bytes| bytes * self.raw.width()),
                 rows_per_image: None,
             },
             wgpu::Extent3d {
@@ -144,53 +128,98 @@ pub(crate) struct TextureLayers {
 
 impl TextureLayers {
     /// `n_layers` textures that passes draw to and read from.
-    pub(crate) fn targets(gpu: &Gpu, label: &str, shape: TextureShape, n_layers: u32) -> Self {
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC;
-        let raw = create_raw(gpu, label, (shape, n_layers), usage);
-        let layer = |index| {
-            raw.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
+    pub(crate) fn targets(
+        gpu: &Gpu,
+        label: &str,
+        (size_px, n_layers): (UVec2, u32),
+        format: TextureFormat,
+    ) -> Self {
+        let usage =
+            TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let shape = Shape {
+            n_layers,
+            ..Shape::of(size_px, format, usage)
         };
+        let raw = shape.make(gpu, label);
         Self {
-            view: raw.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..Default::default()
-            }),
-            layers: (0..n_layers).map(layer).collect(),
+            view: view_of(gpu, &raw, (TextureViewDimension::D2Array, 0, n_layers)),
+            layers: (0..n_layers)
+                .map(|layer| view_of(gpu, &raw, (TextureViewDimension::D2, layer, 1)))
+                .collect(),
             raw,
         }
     }
 }
 
-fn create_raw(
+impl Shape {
+    fn of(size_px: UVec2, format: TextureFormat, usage: TextureUsages) -> Self {
+        Self {
+            size_px,
+            n_layers: 1,
+            format,
+            n_samples: 1,
+            usage,
+        }
+    }
+
+    fn make(self, gpu: &Gpu, label: &str) -> wgpu::Texture {
+        // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
+        let view_formats: &[_] = match (self.format, self.n_samples) {
+            (TextureFormat::Rgba8UnormSrgb, 1) => &[TextureFormat::Rgba8Unorm],
+            _ => &[],
+        };
+        gpu.device.texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d {
+                width: self.size_px.x,
+                height: self.size_px.y,
+                depth_or_array_layers: self.n_layers,
+            },
+            mip_level_count: 1,
+            sample_count: self.n_samples,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.format,
+            usage: self.usage,
+            view_formats,
+        })
+    }
+}
+
+/// The view of `n_layers` layers from `first` on.
+fn view_of(
     gpu: &Gpu,
-    label: &str,
-    (shape, n_layers): (TextureShape, u32),
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
-    let view_formats: &[_] = match (shape.format, shape.n_samples) {
-        (wgpu::TextureFormat::Rgba8UnormSrgb, 1) => &[wgpu::TextureFormat::Rgba8Unorm],
-        _ => &[],
-    };
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d {
-            width: shape.size_px[0],
-            height: shape.size_px[1],
-            depth_or_array_layers: n_layers,
+    texture: &wgpu::Texture,
+    (dimension, first, n_layers): (TextureViewDimension, u32, u32),
+) -> wgpu::TextureView {
+    gpu.device.view(
+        texture,
+        &wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            base_array_layer: first,
+            array_layer_count: Some(n_layers),
+            ..Default::default()
         },
-        mip_level_count: 1,
-        sample_count: shape.n_samples,
-        dimension: wgpu::TextureDimension::D2,
-        format: shape.format,
-        usage,
-        view_formats,
+    )
+}
+
+/// The narrowest format of half floats that has so many channels, of up to four.
+#[must_use]
+pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
+    match n_channels {
+        0 | 1 => TextureFormat::R16Float,
+        2 => TextureFormat::Rg16Float,
+        _ => TextureFormat::Rgba16Float,
+    }
+}
+
+/// A sampler that filters a picture, and what it shows beyond its border.
+pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode; 2]) -> wgpu::Sampler {
+    gpu.device.sampler(&wgpu::SamplerDescriptor {
+        label: Some(label),
+        address_mode_u: modes[0],
+        address_mode_v: modes[1],
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
     })
 }

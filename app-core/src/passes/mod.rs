@@ -1,33 +1,24 @@
-//! The passes, one a module, each under the one name that its shader, label and time stamp have.
+//! Passes that several paths run, and what passes share, each pass under the one name that its shader, label and time stamp
+//! have.
 //!
 //! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
 
-pub(crate) mod appearance;
-pub(crate) mod box_filter;
-pub(crate) mod census;
-pub(crate) mod composite;
-pub(crate) mod coverage;
-pub(crate) mod detail;
-pub(crate) mod eligible;
-pub(crate) mod estimate;
-pub(crate) mod evidence;
-pub(crate) mod fill;
-pub(crate) mod fit;
-pub(crate) mod lit;
-pub(crate) mod masks;
-pub(crate) mod motion;
-pub(crate) mod object;
-pub(crate) mod occlusion;
-pub(crate) mod pcss;
+pub(crate) mod counting;
+pub(crate) mod globals;
+pub(crate) mod list;
+pub(crate) mod parts;
+pub(crate) mod pictures;
 pub(crate) mod plate;
 pub(crate) mod present;
-pub(crate) mod residual;
-pub(crate) mod retarget;
-pub(crate) mod search;
-pub(crate) mod self_shadow;
-pub(crate) mod tint;
-pub(crate) mod toy;
 pub(crate) mod toy_mesh;
-pub(crate) mod visibility;
-pub(crate) mod warp;
-pub(crate) mod withhold;
+
+use crate::gpu::shader::Shader;
+use crate::passes::list::WarmUp;
+
+/// The shaders of the passes that several paths run.
+pub(crate) const SHADERS: &[&Shader] = &[&plate::SHADER, &present::SHADER];
+/// Compiles those that both methods run.
+pub(crate) const WARM_UPS: &[WarmUp] = &[
+    ("plate", |gpu| drop(plate::Pass::new(gpu))),
+    ("present", |gpu| drop(present::Pass::new(gpu))),
+];

@@ -2,43 +2,85 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::Gpu;
-use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::PlateViews;
-use crate::gpu::pipeline::{GROUP_GLOBALS, GROUP_PASS, view};
-use crate::gpu::shaders::PLATE;
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::shared::{Mat3Columns, shared_struct};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::FULLSCREEN;
+use crate::scene::MAX_RECEIVERS;
 
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FULLSCREEN,
+    &part!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]),
+]);
+const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
 /// Format of a plate: finer than codes, since gains have been applied; alpha tells a photographed pixel.
 pub(crate) const PLATE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Plates that a view's plate is made of.
+pub(crate) const MAX_PLATES: usize = 4;
 
-pub(crate) struct Plate {
-    pipeline: wgpu::RenderPipeline,
+shared_struct! {
+    /// A plate as the shader has it.
+    pub struct PlateView {
+        pub plate_px_from_plane: [Mat3Columns; MAX_RECEIVERS],
+        pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
+        pub gain: [f32; 4],
+    }
 }
 
-impl Plate {
+shared_struct! {
+    /// The plates that a view's plate is made of.
+    pub struct PlateViews {
+        pub plates: [PlateView; MAX_PLATES],
+        pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
+        pub n_plates: u32,
+        pub is_same_view: u32,
+        pub _pad: [u32; 2],
+    }
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) views: &'a wgpu::Buffer,
+    /// An array of pictures, in the order of `views`.
+    pub(crate) plates: &'a wgpu::TextureView,
+}
+
+impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
         Self {
-            pipeline: gpu.fullscreen_pipeline(&PLATE, "fs_choose", PLATE_FORMAT, &[]),
+            draw: gpu.draw(&DrawSpec::fullscreen(
+                &SHADER,
+                "fs_choose",
+                groups,
+                &[PLATE_FORMAT],
+            )),
         }
     }
 
-    /// `plates` is an array of pictures, in the order of `views`.
     pub(crate) fn encode(
         &self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
-        globals: &wgpu::Buffer,
-        (views, plates): (&PlateViews, &wgpu::TextureView),
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
         target: &wgpu::TextureView,
     ) {
-        let layout = |group| self.pipeline.get_bind_group_layout(group);
-        let shared = gpu.bind(&layout(GROUP_GLOBALS), &[(0, globals.as_entire_binding())]);
-        let uniform = gpu.uniform("plate views", views);
-        let own = gpu.bind(
-            &layout(GROUP_PASS),
-            &[(0, uniform.as_entire_binding()), (1, view(plates))],
-        );
-        let groups = [(GROUP_GLOBALS, &shared), (GROUP_PASS, &own)];
-        encoder.fullscreen(PLATE.name, &self.pipeline, &groups, target);
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(
+                &self.draw,
+                GROUP_PASS,
+                &[inputs.views.into(), inputs.plates.into()],
+            ),
+        ];
+        recorder.fullscreen(&self.draw, &groups, &[target]);
     }
 }

@@ -2,47 +2,65 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::Gpu;
-use crate::gpu::encoder::Encoder;
-use crate::gpu::layout::Placement;
-use crate::gpu::pipeline::{GROUP_PASS, view};
-use crate::gpu::shaders::PRESENT;
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::shared::shared_struct;
+use crate::passes::parts::FULLSCREEN;
 
-pub(crate) struct Present {
-    pipeline: wgpu::RenderPipeline,
+pub(crate) const SHADER: Shader = Shader::new(&[&FULLSCREEN, &part!("passes/present", structs: [Placement])]);
+const SLOTS: &[Slot] = &[Slot::per_use::<Placement>(), Slot::Texture, Slot::Texture];
+/// Format of the region's picture.
+pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Format of the finished picture: codes, as a screen takes them.
+pub(crate) const OUTPUT_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+shared_struct! {
+    /// Where the region lies.
+    pub(crate) struct Placement {
+        pub origin_px: [u32; 2],
+        pub size_px: [u32; 2],
+    }
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
 }
 
 /// Views of sRGB textures as plain codes.
-pub(crate) struct PresentInputs<'a> {
+pub(crate) struct Inputs<'a> {
     pub(crate) frame_codes: &'a wgpu::TextureView,
     pub(crate) region_codes: &'a wgpu::TextureView,
     pub(crate) placement: Placement,
 }
 
-impl Present {
-    /// For a target of `format`, which takes codes as they are.
-    pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [&[][..], SLOTS, &[], &[]];
         Self {
-            pipeline: gpu.fullscreen_pipeline(&PRESENT, "fs_place", format, &[]),
+            draw: gpu.draw(&DrawSpec::fullscreen(
+                &SHADER,
+                "fs_place",
+                groups,
+                &[OUTPUT_FORMAT],
+            )),
         }
     }
 
     pub(crate) fn encode(
         &self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
-        inputs: &PresentInputs<'_>,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
         target: &wgpu::TextureView,
     ) {
-        let placement = gpu.uniform("placement", &inputs.placement);
-        let own = gpu.bind(
-            &self.pipeline.get_bind_group_layout(GROUP_PASS),
-            &[
-                (0, placement.as_entire_binding()),
-                (1, view(inputs.frame_codes)),
-                (2, view(inputs.region_codes)),
-            ],
-        );
-        encoder.fullscreen(PRESENT.name, &self.pipeline, &[(GROUP_PASS, &own)], target);
+        let resources = [
+            Resource::PerUse,
+            inputs.frame_codes.into(),
+            inputs.region_codes.into(),
+        ];
+        let own = recorder.bind_with(&self.draw, GROUP_PASS, &inputs.placement, &resources);
+        recorder.fullscreen(&self.draw, &[own], &[target]);
     }
 }

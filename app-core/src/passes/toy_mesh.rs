@@ -2,14 +2,40 @@
 
 use std::ops::Range;
 
-use wgpu::{BufferUsages, VertexAttribute, VertexFormat, VertexStepMode};
+use glam::UVec2;
+use wgpu::{BufferUsages, VertexFormat};
 
-use crate::gpu::Gpu;
-use crate::gpu::layout::Material;
-use crate::gpu::pipeline::{GROUP_DRAW, view};
-use crate::gpu::texture::Texture;
-use crate::light_tiles::Sphere;
+use crate::geometry::bounds::Sphere;
+use crate::gpu::bindings::{GROUP_DRAW, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Pipeline, Stream};
+use crate::gpu::recorder::{Group, Recorder, Render};
+use crate::gpu::shader::{Part, part};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::{Texture, picture_sampler};
 use crate::toy::{PosedMesh, ShadowRanges, Toy, Wrap};
+
+/// The WGSL of the group of a material.
+pub(crate) const MATERIAL: Part = part!("common/material", structs: [Material]);
+/// What the group holds.
+pub(crate) const MATERIAL_GROUP: &[Slot] = &[Slot::uniform::<Material>(), Slot::Filtered, Slot::Sampler];
+/// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
+pub(crate) const LOOK_STREAMS: [Stream; 4] = [
+    (2, VertexFormat::Float32x2),
+    (3, VertexFormat::Float32x4),
+    (0, VertexFormat::Float32x3),
+    (1, VertexFormat::Float32x3),
+];
+
+shared_struct! {
+    /// A material as the shaders have it.
+    pub(crate) struct Material {
+        pub base_color_linear: [f32; 4],
+        pub index: u32,
+        pub _pad_0: u32,
+        pub _pad_1: [u32; 2],
+    }
+}
 
 /// The texture of a material that has none.
 const WHITE: [u8; 4] = [255; 4];
@@ -42,20 +68,19 @@ impl PoseBuffers {
     /// Replaces the pose by another of the same toy.
     pub(crate) fn write(&mut self, gpu: &Gpu, mesh: &PosedMesh) {
         self.around = Sphere::around(&mesh.positions);
-        gpu.queue
-            .write_buffer(&self.positions, 0, bytemuck::cast_slice(&mesh.positions));
-        gpu.queue
-            .write_buffer(&self.normals, 0, bytemuck::cast_slice(&mesh.normals));
+        gpu.write(&self.positions, &mesh.positions);
+        gpu.write(&self.normals, &mesh.normals);
     }
 }
 
 /// A run of indices with one material.
-struct Part {
+struct Run {
     indices: Range<u32>,
     material: usize,
 }
 
-struct MaterialBinding {
+/// A material on the device.
+struct MaterialBuffers {
     uniform: wgpu::Buffer,
     texture: Texture,
     sampler: wgpu::Sampler,
@@ -68,8 +93,8 @@ pub(crate) struct ToyMesh {
     pub(crate) shadow_ranges: ShadowRanges,
     uvs: wgpu::Buffer,
     colors: wgpu::Buffer,
-    parts: Vec<Part>,
-    materials: Vec<MaterialBinding>,
+    runs: Vec<Run>,
+    materials: Vec<MaterialBuffers>,
     /// The pose the real toy was made in.
     pub(crate) physical: PoseBuffers,
     /// The pose to be shown.
@@ -96,10 +121,10 @@ impl ToyMesh {
                 bytemuck::cast_slice(toy.colors_linear().unwrap_or(&vec![[1.0; 4]; toy.n_vertices()])),
                 BufferUsages::VERTEX,
             ),
-            parts: toy
+            runs: toy
                 .parts()
                 .iter()
-                .map(|part| Part {
+                .map(|part| Run {
                     indices: part.indices.clone(),
                     material: part.material,
                 })
@@ -108,7 +133,7 @@ impl ToyMesh {
                 .materials()
                 .iter()
                 .enumerate()
-                .map(|(index, material)| MaterialBinding::new(gpu, toy, index, material))
+                .map(|(index, material)| MaterialBuffers::new(gpu, toy, index, material))
                 .collect(),
             physical: PoseBuffers::new(gpu, physical),
             shown: PoseBuffers::new(gpu, physical),
@@ -119,22 +144,17 @@ impl ToyMesh {
         self.materials.len()
     }
 
-    /// Group 2 of `pipeline`, one a material.
-    pub(crate) fn material_groups(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline) -> Vec<wgpu::BindGroup> {
-        let layout = pipeline.get_bind_group_layout(GROUP_DRAW);
-        self.materials
-            .iter()
-            .map(|material| {
-                gpu.bind(
-                    &layout,
-                    &[
-                        (0, material.uniform.as_entire_binding()),
-                        (1, view(&material.texture.view)),
-                        (2, wgpu::BindingResource::Sampler(&material.sampler)),
-                    ],
-                )
-            })
-            .collect()
+    /// Group [`GROUP_DRAW`] of a pipeline, one a material.
+    pub(crate) fn bind_materials<T>(&self, recorder: &Recorder<'_>, pipeline: &Pipeline<T>) -> Vec<Group> {
+        let bind = |material: &MaterialBuffers| {
+            let resources = [
+                (&material.uniform).into(),
+                (&material.texture.view).into(),
+                (&material.sampler).into(),
+            ];
+            recorder.bind(pipeline, GROUP_DRAW, &resources)
+        };
+        self.materials.iter().map(bind).collect()
     }
 
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
@@ -155,37 +175,33 @@ impl ToyMesh {
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
-    pub(crate) fn draw_parts(
-        &self,
-        render: &mut wgpu::RenderPass<'_>,
-        streams: &[&PoseBuffers],
-        materials: &[wgpu::BindGroup],
-    ) {
-        render.set_vertex_buffer(0, self.uvs.slice(..));
-        render.set_vertex_buffer(1, self.colors.slice(..));
+    pub(crate) fn draw_parts(&self, render: &mut Render<'_>, streams: &[&PoseBuffers], materials: &[Group]) {
+        render.0.set_vertex_buffer(0, self.uvs.slice(..));
+        render.0.set_vertex_buffer(1, self.colors.slice(..));
         for (slot, pose) in (2..).step_by(2).zip(streams) {
-            render.set_vertex_buffer(slot, pose.positions.slice(..));
-            render.set_vertex_buffer(slot + 1, pose.normals.slice(..));
+            render.0.set_vertex_buffer(slot, pose.positions.slice(..));
+            render.0.set_vertex_buffer(slot + 1, pose.normals.slice(..));
         }
-        render.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for part in &self.parts {
-            render.set_bind_group(GROUP_DRAW, materials.get(part.material), &[]);
-            render.draw_indexed(part.indices.clone(), 0, 0..1);
+        render
+            .0
+            .set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for run in &self.runs {
+            if let Some(material) = materials.get(run.material) {
+                render.set(material);
+                render.0.draw_indexed(run.indices.clone(), 0, 0..1);
+            }
         }
     }
 }
 
-impl MaterialBinding {
+impl MaterialBuffers {
     fn new(gpu: &Gpu, toy: &Toy, index: usize, material: &crate::toy::Material) -> Self {
         let image = material
             .base_color_texture
             .as_ref()
             .and_then(|used| toy.textures().get(used.texture));
-        let texture = Texture::picture(
-            gpu,
-            "base colour",
-            image.map_or([1, 1], |image| [image.width_px, image.height_px]),
-        );
+        let size_px = image.map_or(UVec2::ONE, |image| UVec2::new(image.width_px, image.height_px));
+        let texture = Texture::picture(gpu, "base colour", size_px);
         texture.write(gpu, image.map_or(&WHITE, |image| &image.rgba8_srgb));
         let mode = |wrap: Wrap| match wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,
@@ -196,14 +212,7 @@ impl MaterialBinding {
             .base_color_texture
             .as_ref()
             .map_or([Wrap::Repeat; 2], |used| [used.wrap_u, used.wrap_v]);
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("base colour"),
-            address_mode_u: mode(wrap[0]),
-            address_mode_v: mode(wrap[1]),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
+        let sampler = picture_sampler(gpu, "base colour", wrap.map(mode));
         let uniform = Material {
             base_color_linear: material.base_color_linear,
             index: u32::try_from(index).unwrap_or(u32::MAX),
@@ -215,28 +224,5 @@ impl MaterialBinding {
             texture,
             sampler,
         }
-    }
-}
-
-/// A vertex stream of one attribute.
-pub(crate) struct Stream([VertexAttribute; 1]);
-
-impl Stream {
-    /// `format` at shader location `location`.
-    pub(crate) fn new(location: u32, format: VertexFormat) -> Self {
-        Self([VertexAttribute {
-            format,
-            offset: 0,
-            shader_location: location,
-        }])
-    }
-
-    /// The stream's layout.
-    pub(crate) fn layout(&self) -> Option<wgpu::VertexBufferLayout<'_>> {
-        Some(wgpu::VertexBufferLayout {
-            array_stride: self.0[0].format.size(),
-            step_mode: VertexStepMode::Vertex,
-            attributes: &self.0,
-        })
     }
 }

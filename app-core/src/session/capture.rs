@@ -10,13 +10,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DMat4;
 use serde::Deserialize;
 
-use self::field::{INDEX_FILE, WHOLE_FILE, check_named, frame_field, in_index};
+use self::field::{INDEX_FILE, WHOLE_FILE, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, Header};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::Files;
 use super::picture::{PictureSize, decode_mask, decode_photo};
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
-use crate::scene::{Image, PoseTime, Scene};
+use crate::scene::{Camera, Image, Pose, Scene};
 
 const FORMAT: &str = "shadow-capture";
 const VERSION: u64 = 1;
@@ -39,8 +39,10 @@ pub struct Capture {
 struct Frame {
     time_secs: f64,
     picture: String,
-    world_from_camera: DMat4,
-    shown_pose: PoseTime,
+    camera: Camera,
+    world_from_object: DMat4,
+    exposure: f64,
+    shown_pose: Pose,
     warnings: Vec<SessionWarning>,
     truth: Option<TruthFiles>,
 }
@@ -103,8 +105,10 @@ impl Session for Capture {
         Ok(SessionFrame {
             time_secs: frame.time_secs,
             image: self.frame_picture(&frame.picture, &frame_field(index, ".image"))?,
-            world_from_camera: frame.world_from_camera,
-            shown_pose: frame.shown_pose,
+            camera: frame.camera,
+            world_from_object: frame.world_from_object,
+            exposure: frame.exposure,
+            shown_pose: frame.shown_pose.clone(),
             warnings: frame.warnings.clone(),
         })
     }
@@ -145,14 +149,6 @@ impl PictureStore {
         let bytes = read_named(self.files.as_ref(), path, field, self.size.max_file_bytes())?;
         decode(&bytes, self.size).map_err(|error| SessionError::new(path, field, error))
     }
-}
-
-/// Reads a file that a field of `capture.json` names.
-fn read_named(files: &dyn Files, path: &str, field: &str, max_bytes: u64) -> Result<Vec<u8>, SessionError> {
-    check_named(path, field)?;
-    files
-        .read(path, max_bytes)
-        .map_err(|error| SessionError::new(path, field, error))
 }
 
 /// Looks at format and version first: another version may break every other rule.

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::files::FileError;
+use crate::scene::FieldError;
 use crate::toy::ToyError;
 
 /// A session that cannot be used, or a frame of it.
@@ -67,49 +68,6 @@ pub enum SessionErrorKind {
     NoSuchFrame {
         /// Number of frames.
         n_frames: usize,
-    },
-}
-
-/// Why the value of a field is refused.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FieldError {
-    /// A number that is too small, too large or not a number.
-    #[error("{value} is not from {min} to {max}")]
-    Range {
-        /// The number as written.
-        value: f64,
-        /// Smallest allowed.
-        min: f64,
-        /// Largest allowed.
-        max: f64,
-    },
-    /// A list that needs an entry.
-    #[error("the list is empty, but needs at least one entry")]
-    Empty,
-    /// A field that this kind of entry needs.
-    #[error("missing, but needed for this kind")]
-    Missing,
-    /// A vector without a direction.
-    #[error("the vector is too short to have a direction")]
-    NoDirection,
-    /// A matrix whose last row is not 0 0 0 1.
-    #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
-    NotAffine,
-    /// A matrix that does more than rotate and move.
-    #[error("the matrix is not rigid: its axes must be of length 1 and at right angles")]
-    NotRigid,
-    /// A matrix that stretches or shears.
-    #[error("the matrix scales its axes differently or shears: only one scale for all is allowed")]
-    NotUniform,
-    /// A matrix that turns right hands into left ones.
-    #[error("the matrix mirrors: its axes must be right-handed")]
-    Mirrored,
-    /// Pictures that would take more memory than a session may.
-    #[error("the pictures hold more than {max_pixels} pixels in all")]
-    TooManyPixels {
-        /// Limit for the sum over all pictures.
-        max_pixels: u64,
     },
 }
 

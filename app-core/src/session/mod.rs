@@ -5,7 +5,6 @@
 //! crate opens no file itself.
 
 mod capture;
-mod check;
 mod error;
 mod files;
 mod picture;
@@ -15,11 +14,12 @@ use std::sync::Arc;
 use glam::DMat4;
 use thiserror::Error;
 
-use crate::scene::{Image, PoseTime, Scene};
+use crate::scene::{Camera, Image, Pose, Scene};
 use crate::toy::ToyWarning;
 
+pub use crate::scene::FieldError;
 pub use capture::Capture;
-pub use error::{FieldError, PictureError, SessionError, SessionErrorKind};
+pub use error::{PictureError, SessionError, SessionErrorKind};
 pub use files::{FileError, Files, PathError, check_path};
 
 /// A place with frames taken in it.
@@ -47,10 +47,14 @@ pub struct SessionFrame {
     pub time_secs: f64,
     /// The camera's picture of the real toy. Frames that repeat a picture share it.
     pub image: Arc<Image>,
-    /// Rigid transform of the camera.
-    pub world_from_camera: DMat4,
+    /// The camera that took it.
+    pub camera: Camera,
+    /// Where the real toy stands.
+    pub world_from_object: DMat4,
+    /// Exposure of the picture, relative to that of the session's other frames; 1 where nobody says.
+    pub exposure: f64,
     /// The pose the toy is to be shown in.
-    pub shown_pose: PoseTime,
+    pub shown_pose: Pose,
     /// What was odd, but usable, about this frame.
     pub warnings: Vec<SessionWarning>,
 }

@@ -1,38 +1,40 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
-mod learning;
-mod worked;
+mod footprint;
+pub(crate) mod method;
+mod reuse;
+mod supported;
 
 use std::sync::Arc;
 
+use bytemuck::Zeroable;
 use glam::{DMat4, UVec2};
 
-use crate::capture::Pictures;
-use crate::clip_reach::ClipReach;
-use crate::frame::{FrameInput, FrameReport, Warning};
-use crate::gpu::Gpu;
-use crate::gpu::encoder::Encoder;
-use crate::gpu::texture::{Texture, TextureShape};
-use crate::inject::InjectedVisibility;
-use crate::passes::present::Present;
+use crate::frame::input::FrameInput;
+use crate::frame::report::FrameReport;
+use crate::frame::warning::Warning;
+use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::clip_reach::ClipReach;
+use crate::geometry::rect::PlaneRect;
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::view::View;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::passes::pictures::Pictures;
+use crate::passes::present::{self, OUTPUT_FORMAT, Placement};
 use crate::passes::toy_mesh::ToyMesh;
-use crate::pipeline::encode_present;
-use crate::plan::{Change, LeftOut, Path, runs};
-use crate::plate_store::PlateStore;
-use crate::preset::{Method, Preset};
-use crate::region::{BORDER_PX, Bounds, PlaneRect};
-use crate::scene::{Image, Light, PoseTime, Receiver, Scene};
-use crate::standing::usable;
-use crate::toy::{ClipId, PosedMesh, ToyError};
-use crate::view::{Place, View};
-use crate::work::Work;
+use crate::plan::{Change, LeftOut};
+use crate::plates::store::PlateStore;
+use crate::preset::{Preset, Settings};
+use crate::readback::inject::InjectedVisibility;
+use crate::scene::{Camera, Image, Light, Scene};
+use crate::toy::{PosedMesh, ToyError};
 
-use worked::Worked;
-
-/// The fade at the region's border, and what the toy may reach beyond its region between two moments of a clip.
-const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
-/// Format of the finished picture: codes, as a screen takes them.
-pub(crate) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+use footprint::Footprint;
+use method::Method;
+use supported::usable;
 
 /// A scene on the device.
 pub(crate) struct Stage {
@@ -41,31 +43,32 @@ pub(crate) struct Stage {
     lights: Vec<Light>,
     /// Their places in the scene's list.
     pub(crate) light_indices: Vec<usize>,
-    receivers: Vec<Receiver>,
-    stage_from_object: DMat4,
+    receivers: Vec<AnchoredReceiver>,
+    anchor_from_object: DMat4,
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
     /// What the clip shown last reaches.
     reach: Option<ClipReach>,
     /// Where the latest frame was worked on.
-    known_worked: Option<Arc<Worked>>,
+    cached_footprint: Option<Arc<Footprint>>,
     toy: ToyMesh,
     posed: PosedMesh,
     frame: Texture,
+    frame_codes: wgpu::TextureView,
     frame_image: Option<Arc<Image>>,
     plates: PlateStore,
-    present: Present,
-    learned: Option<Learned>,
+    present: present::Pass,
+    state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
-    known_rects: Vec<PlaneRect>,
+    reached_rects: Vec<PlaneRect>,
     standing_warnings: Vec<Warning>,
     pub(crate) output: Texture,
 }
 
 /// What was learned, and of which camera.
-struct Learned {
-    world_from_camera: DMat4,
-    work: Work,
+struct MethodState {
+    camera: Camera,
+    method: Method,
     /// Its inputs were replaced: learn again.
     is_stale: bool,
     /// The camera picture that was worked on last.
@@ -74,47 +77,47 @@ struct Learned {
 
 impl Stage {
     pub(crate) fn new(gpu: &Gpu, scene: Scene, preset: Preset) -> Result<Self, ToyError> {
-        let stage_from_object = scene.receivers[0].world_from_plane.inverse() * scene.world_from_object;
+        let in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+        let middle_in_object = 0.5 * (in_object.min + in_object.max);
+        let toy_in_world = scene.world_from_object.transform_point3(middle_in_object.as_dvec3());
+        let usable = usable(&scene, toy_in_world);
+        let anchor_from_object = usable.receivers[0].world_from_plane.inverse() * scene.world_from_object;
         let mut posed = PosedMesh::default();
         scene
             .toy
-            .pose(clip_time(&scene.physical_pose), &stage_from_object, &mut posed)?;
-        let size_px = [scene.width_px, scene.height_px];
-        let usable = usable(&scene);
-        let output = TextureShape {
-            size_px,
-            format: OUTPUT_FORMAT,
-            n_samples: 1,
-        };
+            .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
+        let size_px = UVec2::new(scene.width_px, scene.height_px);
+        let frame = Texture::picture(gpu, "frame", size_px);
         Ok(Self {
             physical_bounds: Bounds::around(posed.positions.iter().map(|p| p.as_dvec3())),
             toy: ToyMesh::new(gpu, &scene.toy, &posed),
             posed,
-            frame: Texture::picture(gpu, "frame", size_px),
+            frame_codes: frame.codes(gpu),
+            frame,
             frame_image: None,
-            plates: PlateStore::new(gpu, &scene),
-            present: Present::new(gpu, OUTPUT_FORMAT),
-            learned: None,
-            known_rects: Vec::new(),
+            plates: PlateStore::new(gpu, &scene, &usable.receivers),
+            present: present::Pass::new(gpu),
+            state: None,
+            reached_rects: Vec::new(),
             standing_warnings: usable.warnings,
             lights: usable.lights,
             light_indices: usable.light_indices,
             receivers: usable.receivers,
-            output: Texture::target(gpu, "output", output),
+            output: Texture::target(gpu, "output", size_px, OUTPUT_FORMAT),
             preset,
-            stage_from_object,
+            anchor_from_object,
             scene,
             is_shadow_withheld: false,
             reach: None,
-            known_worked: None,
+            cached_footprint: None,
         })
     }
 
     /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
     pub(crate) fn withhold_shadow(&mut self) {
-        if matches!(self.preset.method(), Method::Model(_)) {
+        if matches!(self.preset.settings(), Settings::Model(_)) {
             self.is_shadow_withheld = true;
-            self.learned = None;
+            self.state = None;
         }
     }
 
@@ -124,96 +127,111 @@ impl Stage {
     }
 
     /// What was learned so far.
-    pub(crate) fn work(&self) -> Option<&Work> {
-        self.learned.as_ref().map(|learned| &learned.work)
+    pub(crate) fn method(&self) -> Option<&Method> {
+        self.state.as_ref().map(|state| &state.method)
     }
 
     /// Drops what was learned, so that the next frame learns anew.
     pub(crate) fn forget(&mut self) {
-        self.learned = None;
+        self.state = None;
     }
 
     /// Replaces visibilities in what follows, where anything was learned.
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
-        if let Some(learned) = &mut self.learned {
-            learned.work.inject(gpu, maps);
-            learned.is_stale = true;
+        if let Some(state) = &mut self.state {
+            state.method.inject(gpu, maps);
+            state.is_stale = true;
         }
     }
 
     /// Encodes one frame into `output`.
     pub(crate) fn encode(
         &mut self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
+        recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
-        self.take_image(gpu, &input.image);
+        self.take_image(recorder.gpu, &input.image);
         let mut report = FrameReport {
             ran: Vec::new(),
             skipped: Vec::new(),
             region: None,
             warnings: self.standing_warnings.clone(),
         };
-        let worked = match self.worked(input)? {
+        let made_by = match self.footprint(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
                 None
             }
-            Ok(worked) => {
-                self.encode_region(gpu, encoder, input, &worked, &mut report)?;
-                self.learned.as_ref()
+            Ok(footprint) => {
+                self.encode_region(recorder, input, &footprint, &mut report)?;
+                self.state.as_ref()
             }
         };
-        let work = worked.map(|learned| &learned.work);
-        let codes = self.frame.codes();
-        encode_present(gpu, encoder, &self.present, (&codes, work), &self.output.view);
-        report.ran.push((Path::Frame, "present"));
+        let method = made_by.map(|state| &state.method);
+        self.encode_present(recorder, method);
         Ok(report)
     }
 
     fn encode_region(
         &mut self,
-        gpu: &Gpu,
-        encoder: &mut Encoder,
+        recorder: &mut Recorder<'_>,
         input: &FrameInput,
-        worked: &Worked,
+        footprint: &Footprint,
         report: &mut FrameReport,
     ) -> Result<(), ToyError> {
         // First, so that a pose that fails leaves nothing half learned.
-        self.scene.toy.pose(
-            clip_time(&input.shown_pose),
-            &self.stage_from_object,
-            &mut self.posed,
-        )?;
+        self.scene
+            .toy
+            .pose(&input.shown_pose, &self.anchor_from_object, &mut self.posed)?;
+        let gpu = recorder.gpu;
         self.toy.shown.write(gpu, &self.posed);
-        let change = self.ensure_learned(gpu, input, worked);
-        if let Some(learned) = &mut self.learned {
-            learned.image = Some(Arc::clone(&input.image));
+        let change = self.update_method(gpu, input, footprint);
+        if let Some(state) = &mut self.state {
+            state.image = Some(Arc::clone(&input.image));
         }
-        let Some(learned) = &self.learned else {
+        let Some(state) = &self.state else {
             return Ok(());
         };
-        let work = &learned.work;
-        let exposed = (change >= Change::Picture && work.model().is_none())
-            .then(|| self.plate_views_at_exposure_of(input, worked));
+        let method = &state.method;
+        if change >= Change::Picture {
+            let views = match method {
+                Method::Model(_) => footprint.plate_views,
+                Method::Baseline(_) => self.plate_views_at_exposure_of(input, footprint),
+            };
+            gpu.write(&self.plates.views, &[views]);
+        }
         let pictures = Pictures {
             frame: &self.frame.view,
             plates: &self.plates.pictures.view,
-            plate_views: exposed.as_ref().unwrap_or(&worked.plate_views),
+            plate_views: &self.plates.views,
         };
-        work.encode(gpu, encoder, &self.toy, &pictures, change);
+        method.encode(recorder, &self.toy, &pictures, change);
         if change < Change::View {
             report.skipped.push(LeftOut {
                 what: "capture path",
-                why: "place, pose and camera are known",
+                why: "scene, pose and camera are known",
             });
         }
-        report.ran.extend(runs(work.passes(), change));
-        report.skipped.extend_from_slice(work.left_out());
-        report.region = Some(work.region());
-        report.warnings.extend(self.plate_warning(worked));
+        report.skipped.extend_from_slice(method.left_out());
+        report.region = Some(method.region());
+        report.warnings.extend(self.plate_warning(footprint));
         Ok(())
+    }
+
+    /// Lays the region over the camera frame, or passes the frame through where nothing was worked on.
+    fn encode_present(&self, recorder: &mut Recorder<'_>, method: Option<&Method>) {
+        let placement = method
+            .map(Method::region)
+            .map_or(Placement::zeroed(), |region| Placement {
+                origin_px: region.origin_px.to_array(),
+                size_px: region.size_px.to_array(),
+            });
+        let inputs = present::Inputs {
+            frame_codes: &self.frame_codes,
+            region_codes: method.map_or(&self.frame_codes, Method::picture),
+            placement,
+        };
+        self.present.encode(recorder, &inputs, &self.output.view);
     }
 
     /// Uploads the camera's picture unless it is the one that is there already.
@@ -225,24 +243,20 @@ impl Stage {
         self.frame_image = Some(Arc::clone(image));
     }
 
-    fn place(&self) -> Place<'_> {
-        Place {
+    fn layout(&self) -> SceneLayout<'_> {
+        SceneLayout {
             receivers: &self.receivers,
             lights: &self.lights,
-            toy_in_stage: self.physical_bounds.centre(),
+            toy_in_anchor: self.physical_bounds.centre(),
         }
     }
 
-    fn view(&self, world_from_camera: &DMat4) -> View {
+    fn view(&self, camera: &Camera) -> View {
         let image_px = UVec2::new(self.scene.width_px, self.scene.height_px);
-        View::new(image_px, self.scene.intrinsics, world_from_camera)
+        View::new(image_px, camera)
     }
 }
 
 fn is_same_image(known: Option<&Arc<Image>>, image: &Arc<Image>) -> bool {
     known.is_some_and(|known| Arc::ptr_eq(known, image))
-}
-
-fn clip_time(pose: &PoseTime) -> Option<(ClipId, f64)> {
-    pose.clip.map(|clip| (clip, pose.time_secs))
 }

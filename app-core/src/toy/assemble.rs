@@ -13,7 +13,7 @@ use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::geometry::{self, Geometry};
 use super::limits::{MAX_INDICES, MAX_VERTICES};
 use super::material::{self, Material, tex_coord};
-use super::rig::{Rig, RigPose};
+use super::rig::{Rig, RigPose, Set};
 use super::shadow_indices::ShadowIndices;
 use super::surface::{Surface, is_mirrored, lay_out};
 use super::{Toy, clip, graph, skin};
@@ -68,7 +68,7 @@ fn read_scene(
     let mut scene = SceneReader {
         source,
         rig,
-        rest: rig.pose(None, DAffine3::IDENTITY),
+        rest: rig.pose(&Set::Authored, DAffine3::IDENTITY),
         meshes: HashMap::new(),
         geometries: Vec::new(),
         surfaces: Vec::new(),

@@ -6,6 +6,7 @@ use super::Toy;
 use super::clip::{Clip, ClipId};
 use super::error::ToyError;
 use super::limits::MAX_BOUNDS_SAMPLES;
+use super::moment::Pose;
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,7 @@ impl Toy {
     ///
     /// # Errors
     /// As [`Toy::pose`].
-    pub fn bounds_of_pose(&self, pose: Option<(ClipId, f64)>) -> Result<Bounds, ToyError> {
+    pub fn bounds_of_pose(&self, pose: &Pose) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         self.include_pose(pose, &mut bounds)?;
         Ok(bounds)
@@ -49,12 +50,13 @@ impl Toy {
     pub fn bounds_over_clip(&self, id: ClipId) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         for time_secs in moments_secs(self.clip(id)?) {
-            self.include_pose(Some((id, time_secs)), &mut bounds)?;
+            let moment = Pose::Clip { clip: id, time_secs };
+            self.include_pose(&moment, &mut bounds)?;
         }
         Ok(bounds)
     }
 
-    fn include_pose(&self, pose: Option<(ClipId, f64)>, bounds: &mut Bounds) -> Result<(), ToyError> {
+    fn include_pose(&self, pose: &Pose, bounds: &mut Bounds) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::IDENTITY)?;
         for surface in &self.surfaces {
             let geometry = &self.geometries[surface.geometry];

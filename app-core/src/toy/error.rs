@@ -38,6 +38,36 @@ pub enum ToyError {
         /// Number of clips, counted from 0.
         n_clips: usize,
     },
+    /// No node has this name.
+    #[error("{file}: node: none is called {name:?}; it has {}", Listed(known))]
+    UnknownNode {
+        /// The file as named by the caller.
+        file: String,
+        /// The name asked for.
+        name: String,
+        /// Every name that would have been found.
+        known: Vec<String>,
+    },
+    /// A [`NodeId`](super::NodeId) of another toy.
+    #[error("{file}: node: number {node} is asked for, but it has {n_nodes} nodes")]
+    ForeignNode {
+        /// The file as named by the caller.
+        file: String,
+        /// The number asked for.
+        node: usize,
+        /// Number of nodes, counted from 0.
+        n_nodes: usize,
+    },
+    /// A transform or a weight that no pose can be made of.
+    #[error("{file}: pose: node {node}: {reason}")]
+    NodePose {
+        /// The file as named by the caller.
+        file: String,
+        /// Number of the node.
+        node: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// A time before the clip, or none at all.
     #[error("{file}: clip time: {time_secs} s is not a time from 0 on")]
     Time {

@@ -13,6 +13,8 @@ use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES};
 /// Every node of the file, in the scene or not: a joint may stand outside of it.
 pub(super) struct Graph {
     pub(super) nodes: Vec<Node>,
+    /// Their names as authored.
+    pub(super) names: Vec<Option<String>>,
     /// All nodes, each after its parent.
     pub(super) parents_first: Vec<usize>,
     /// Morph weights as authored; [`Node::morph_weights`] are ranges of this.
@@ -34,6 +36,13 @@ pub(super) enum Local {
 }
 
 impl Local {
+    pub(super) fn decomposed(self) -> Option<Trs> {
+        match self {
+            Self::Matrix(_) => None,
+            Self::Decomposed(trs) => Some(trs),
+        }
+    }
+
     pub(super) fn parent_from_node(self) -> DAffine3 {
         match self {
             Self::Matrix(matrix) => matrix,
@@ -44,12 +53,15 @@ impl Local {
     }
 }
 
-/// Scale first, then rotation (of unit length), then translation.
-#[derive(Clone, Copy)]
-pub(super) struct Trs {
-    pub(super) translation: DVec3,
-    pub(super) rotation: DQuat,
-    pub(super) scale: DVec3,
+/// From a node to its parent: scale first, then rotation (of unit length), then translation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trs {
+    /// In units of the file.
+    pub translation: DVec3,
+    /// Of unit length.
+    pub rotation: DQuat,
+    /// Along each axis.
+    pub scale: DVec3,
 }
 
 pub(super) fn read(root: &Root) -> Result<Graph, Flaw> {
@@ -71,6 +83,7 @@ pub(super) fn read(root: &Root) -> Result<Graph, Flaw> {
     }
     Ok(Graph {
         nodes,
+        names: root.nodes.iter().map(|node| node.name.clone()).collect(),
         parents_first,
         rest_weights,
     })

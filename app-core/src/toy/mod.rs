@@ -2,8 +2,8 @@
 //!
 //! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
 //! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`).
-//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) set nodes and morph weights (`rig`), the
-//! weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
+//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph weights (`rig`),
+//! the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
 //! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
 //! A toy opens no file itself; pictures outside the file are left out with a warning.
@@ -20,6 +20,7 @@ mod geometry;
 mod graph;
 mod limits;
 mod material;
+mod moment;
 mod normal;
 mod pose;
 mod rig;
@@ -35,7 +36,9 @@ use std::fmt;
 pub use bounds::Bounds;
 pub use clip::{Clip, ClipId};
 pub use error::{ToyError, ToyProblem, ToyWarning};
+pub use graph::Trs;
 pub use material::{Material, MaterialTexture, Wrap};
+pub use moment::{NodeId, NodePose, Pose};
 pub use pose::PosedMesh;
 pub use shadow_indices::{ShadowIndices, ShadowRanges};
 pub use surface::Part;
@@ -174,6 +177,15 @@ impl Toy {
     /// What in the file is not followed or was repaired.
     pub fn warnings(&self) -> &[ToyWarning] {
         &self.warnings
+    }
+
+    fn node(&self, id: NodeId) -> Result<&graph::Node, ToyError> {
+        let nodes = &self.rig.graph.nodes;
+        nodes.get(id.0).ok_or_else(|| ToyError::ForeignNode {
+            file: self.file.clone(),
+            node: id.0,
+            n_nodes: nodes.len(),
+        })
     }
 
     fn clip(&self, id: ClipId) -> Result<&Clip, ToyError> {

@@ -3,11 +3,11 @@
 use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::Toy;
-use super::clip::ClipId;
 use super::error::ToyError;
 use super::geometry::{ActiveTarget, Geometry};
+use super::moment::{NodeId, NodePose, Pose};
 use super::normal::{carried_normal, face_normal};
-use super::rig::RigPose;
+use super::rig::{RigPose, Set};
 use super::surface::Surface;
 
 /// The vertices of a posed toy. Keep it from frame to frame: its memory is used again.
@@ -20,20 +20,15 @@ pub struct PosedMesh {
 }
 
 impl Toy {
-    /// Poses the toy at a time of a clip, or with its nodes as authored, and writes positions and normals.
+    /// Poses the toy, and writes positions and normals.
     ///
     /// `anchor_from_object` is affine and does not mirror; object space is that of the glTF scene.
     /// A time beyond the clip shows its end. Everything is composed in 64 bits and stored in 32.
     /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest.
     ///
     /// # Errors
-    /// An id of another toy, a time that is negative or not finite, or a position too large to be stored.
-    pub fn pose(
-        &self,
-        pose: Option<(ClipId, f64)>,
-        anchor_from_object: &DMat4,
-        out: &mut PosedMesh,
-    ) -> Result<(), ToyError> {
+    /// An id of another toy, a time or a transform that is not one, or a position too large to be stored.
+    pub fn pose(&self, pose: &Pose, anchor_from_object: &DMat4, out: &mut PosedMesh) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;
         out.positions.resize(self.n_vertices(), Vec3::ZERO);
         out.normals.resize(self.n_vertices(), Vec3::Y);
@@ -48,16 +43,46 @@ impl Toy {
         self.check_positions(&out.positions)
     }
 
-    pub(super) fn rig_pose(
-        &self,
-        pose: Option<(ClipId, f64)>,
-        anchor_from_object: DAffine3,
-    ) -> Result<RigPose, ToyError> {
-        let moment = match pose {
-            Some((id, time_secs)) => Some((self.clip(id)?, self.clamp_time(id, time_secs)?.0)),
-            None => None,
+    pub(super) fn rig_pose(&self, pose: &Pose, anchor_from_object: DAffine3) -> Result<RigPose, ToyError> {
+        let set = match pose {
+            Pose::Authored => Set::Authored,
+            Pose::Clip { clip, time_secs } => {
+                Set::Clip(self.clip(*clip)?, self.clamp_time(*clip, *time_secs)?.0)
+            }
+            Pose::Nodes(pose) => {
+                self.check_nodes(pose)?;
+                Set::Nodes(pose)
+            }
         };
-        Ok(self.rig.pose(moment, anchor_from_object))
+        Ok(self.rig.pose(&set, anchor_from_object))
+    }
+
+    fn check_nodes(&self, pose: &NodePose) -> Result<(), ToyError> {
+        let flaw = |node: NodeId, reason| {
+            Err(ToyError::NodePose {
+                file: self.file.clone(),
+                node: node.0,
+                reason,
+            })
+        };
+        for (id, trs) in &pose.parent_from_node {
+            self.node(*id)?;
+            if !(trs.translation.is_finite() && trs.rotation.is_finite() && trs.scale.is_finite()) {
+                return flaw(*id, "its transform is not finite");
+            }
+            if trs.rotation.length_recip().is_infinite() {
+                return flaw(*id, "its rotation has no length");
+            }
+        }
+        for (id, weights) in &pose.morph_weights {
+            if weights.len() != self.node(*id)?.morph_weights.len() {
+                return flaw(*id, "it has another number of morph weights");
+            }
+            if !weights.iter().all(|weight| weight.is_finite()) {
+                return flaw(*id, "a morph weight is not finite");
+            }
+        }
+        Ok(())
     }
 
     fn check_positions(&self, positions: &[Vec3]) -> Result<(), ToyError> {

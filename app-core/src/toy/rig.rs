@@ -5,12 +5,21 @@ use gltf::json::animation::Property;
 
 use super::clip::Clip;
 use super::graph::{Graph, Local, Trs};
+use super::moment::NodePose;
 use super::skin::Skin;
 
 pub(super) struct Rig {
     pub(super) graph: Graph,
     pub(super) skins: Vec<Skin>,
     pub(super) clips: Vec<Clip>,
+}
+
+/// What sets the nodes.
+pub(super) enum Set<'a> {
+    Authored,
+    /// A clip at a time.
+    Clip(&'a Clip, f64),
+    Nodes(&'a NodePose),
 }
 
 /// The rig at one moment. `anchor` is the space that everything is posed in.
@@ -22,12 +31,14 @@ pub(super) struct RigPose {
 }
 
 impl Rig {
-    /// Poses the rig: at a time of a clip, or as authored.
-    pub(super) fn pose(&self, moment: Option<(&Clip, f64)>, anchor_from_object: DAffine3) -> RigPose {
+    /// Poses the rig.
+    pub(super) fn pose(&self, set: &Set<'_>, anchor_from_object: DAffine3) -> RigPose {
         let mut locals: Vec<Local> = self.graph.nodes.iter().map(|node| node.rest).collect();
         let mut morph_weights = self.graph.rest_weights.clone();
-        if let Some((clip, time_secs)) = moment {
-            self.apply(clip, time_secs, &mut locals, &mut morph_weights);
+        match *set {
+            Set::Authored => {}
+            Set::Clip(clip, time_secs) => self.apply_clip(clip, time_secs, &mut locals, &mut morph_weights),
+            Set::Nodes(pose) => self.apply_nodes(pose, &mut locals, &mut morph_weights),
         }
         let mut anchor_from_node = vec![DAffine3::IDENTITY; locals.len()];
         for &node in &self.graph.parents_first {
@@ -54,7 +65,20 @@ impl Rig {
         &pose.morph_weights[self.graph.nodes[node].morph_weights.clone()]
     }
 
-    fn apply(&self, clip: &Clip, time_secs: f64, locals: &mut [Local], morph_weights: &mut [f64]) {
+    /// `pose` has been checked.
+    fn apply_nodes(&self, pose: &NodePose, locals: &mut [Local], morph_weights: &mut [f64]) {
+        for (node, trs) in &pose.parent_from_node {
+            locals[node.0] = Local::Decomposed(Trs {
+                rotation: trs.rotation.normalize(),
+                ..*trs
+            });
+        }
+        for (node, weights) in &pose.morph_weights {
+            morph_weights[self.graph.nodes[node.0].morph_weights.clone()].copy_from_slice(weights);
+        }
+    }
+
+    fn apply_clip(&self, clip: &Clip, time_secs: f64, locals: &mut [Local], morph_weights: &mut [f64]) {
         for channel in &clip.channels {
             let track = &channel.track;
             let sampled = || {

@@ -4,16 +4,16 @@ use std::thread;
 
 use app_core::core::Core;
 use app_core::frame::FrameInput;
-use app_core::gpu::layout::{MAX_LIGHTS, MAX_RECEIVERS};
-use app_core::inject::InjectedVisibility;
-use app_core::light_points::light_in_plane;
-use app_core::maps::FloatMap;
+use app_core::internals::FloatMap;
+use app_core::internals::InjectedVisibility;
+use app_core::internals::PixelRect;
+use app_core::internals::light_in_plane;
+use app_core::internals::{AnchoredReceiver, SceneLayout, View};
 use app_core::preset::Preset;
-use app_core::region::PixelRect;
-use app_core::scene::{Light, PoseTime, Scene};
+use app_core::scene::{Camera, Light, Pose, Scene};
+use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::toy::{PosedMesh, ToyError};
-use app_core::view::{Place, View};
 use glam::{DMat4, DVec3, UVec2};
 
 use crate::metrics::{self, Regions};
@@ -40,21 +40,21 @@ pub(super) fn measure(
     let frames = options.frames.clone().unwrap_or(0..session.n_frames());
     let n_frames = frames.len();
     let mut scores = Vec::new();
-    let mut physical: Option<(DMat4, FloatMap)> = None;
+    let mut physical: Option<(Camera, FloatMap)> = None;
     for index in frames {
         let failed = |reason| ReplayError::Frame { index, reason };
         let input = FrameInput::from(&session.frame(index)?);
         if let Some(rect) = core.frame(&input).map_err(failed)?.region {
-            let rays = Rays::new(scene, &input.world_from_camera, &rect);
-            let map = |pose: &PoseTime| rays.visibility(scene, pose).map_err(|error| failed(error.into()));
+            let rays = Rays::new(scene, &input.camera, &rect);
+            let map = |pose: &Pose| rays.visibility(scene, pose).map_err(|error| failed(error.into()));
             let known = physical.take().filter(|(camera, map)| {
-                *camera == input.world_from_camera && [map.width, map.height] == rect.size_px.to_array()
+                *camera == input.camera && [map.width, map.height] == rect.size_px.to_array()
             });
             let of_place = match known {
                 Some((_, map)) => map,
                 None => map(&scene.physical_pose)?,
             };
-            physical = Some((input.world_from_camera, of_place.clone()));
+            physical = Some((input.camera, of_place.clone()));
             let maps = InjectedVisibility {
                 physical: Some(of_place),
                 shown: Some(map(&input.shown_pose)?),
@@ -83,18 +83,22 @@ pub(super) fn measure(
 struct Rays {
     region: Region,
     lights: Vec<Vec<Light>>,
-    stage_from_object: DMat4,
+    anchor_from_object: DMat4,
 }
 
 impl Rays {
-    fn new(scene: &Scene, world_from_camera: &DMat4, rect: &PixelRect) -> Self {
-        let receivers = &scene.receivers[..MAX_RECEIVERS.min(scene.receivers.len())];
+    fn new(scene: &Scene, camera: &Camera, rect: &PixelRect) -> Self {
+        let used = scene.receivers.iter().take(MAX_RECEIVERS);
+        let toy_in_world = scene.world_from_object.w_axis.truncate();
+        let receivers: Vec<AnchoredReceiver> = used
+            .map(|receiver| AnchoredReceiver::near(receiver, toy_in_world))
+            .collect();
         let image_px = UVec2::new(scene.width_px, scene.height_px);
-        let view = View::new(image_px, scene.intrinsics, world_from_camera);
-        let place = Place {
-            receivers,
+        let view = View::new(image_px, camera);
+        let layout = SceneLayout {
+            receivers: &receivers,
             lights: &[],
-            toy_in_stage: DVec3::ZERO,
+            toy_in_anchor: DVec3::ZERO,
         };
         let planes_from_world: Vec<DMat4> = receivers
             .iter()
@@ -110,27 +114,26 @@ impl Rays {
             lights.map(|light| moved(light, plane_from_world)).collect()
         };
         Self {
-            region: Region::new(&view, rect, &place),
+            region: Region::new(&view, rect, &layout),
             lights: planes_from_world.iter().map(lights_in).collect(),
-            stage_from_object: place.world_from_stage().inverse() * scene.world_from_object,
+            anchor_from_object: layout.world_from_anchor().inverse() * scene.world_from_object,
         }
     }
 
     /// Visibility of each light over the region with the toy in a pose.
-    fn visibility(&self, scene: &Scene, pose: &PoseTime) -> Result<FloatMap, ToyError> {
+    fn visibility(&self, scene: &Scene, pose: &Pose) -> Result<FloatMap, ToyError> {
         let mut posed = PosedMesh::default();
-        let moment = pose.clip.map(|clip| (clip, pose.time_secs));
-        scene.toy.pose(moment, &self.stage_from_object, &mut posed)?;
-        let occluder_in = |plane_from_stage: &DMat4| {
+        scene.toy.pose(pose, &self.anchor_from_object, &mut posed)?;
+        let occluder_in = |plane_from_anchor: &DMat4| {
             let positions = posed.positions.iter();
             let positions: Vec<DVec3> = positions
-                .map(|position| plane_from_stage.transform_point3(position.as_dvec3()))
+                .map(|position| plane_from_anchor.transform_point3(position.as_dvec3()))
                 .collect();
             Occluder::new(&positions, scene.toy.indices())
         };
         let receivers = self.region.receivers.iter();
         let occluders: Vec<Occluder> = receivers
-            .map(|receiver| occluder_in(&receiver.plane_from_stage))
+            .map(|receiver| occluder_in(&receiver.plane_from_anchor))
             .collect();
 
         let UVec2 { x: width, y: height } = self.region.size_px;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use app_core::core::Core;
 use app_core::frame::FrameInput;
-use app_core::maps::{FloatMap, Map};
-use app_core::preset::{Method, Preset};
-use app_core::region::PixelRect;
+use app_core::internals::PixelRect;
+use app_core::internals::{FloatMap, Map};
+use app_core::preset::{Preset, Settings};
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use glam::Vec4;
@@ -41,7 +41,7 @@ pub struct Rebuilt {
 pub fn rebuild(session: &Capture, core: &mut Core, presets: &[Preset]) -> Result<Vec<Rebuilt>, ReplayError> {
     let mut rebuilt = Vec::new();
     for &preset in presets {
-        if matches!(preset.method(), Method::Model(_)) {
+        if matches!(preset.settings(), Settings::Model(_)) {
             rebuilt.extend(rebuild_with(session, core, preset)?);
         }
     }
@@ -56,7 +56,7 @@ fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Ve
     let mut rebuilt = Vec::new();
     for frame in 0..session.n_frames() {
         let input = FrameInput {
-            shown_pose: scene.physical_pose,
+            shown_pose: scene.physical_pose.clone(),
             ..FrameInput::from(&session.frame(frame)?)
         };
         if latest
@@ -71,12 +71,12 @@ fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Ve
         let (mut all, mut clear) = Default::default();
         if let Some(region) = region {
             let read = |map| core.read_map(map).map_err(failed);
-            let (evidence, plate) = (read(Map::Evidence)?, read(Map::Plate)?);
+            let (validity, plate) = (read(Map::Validity)?, read(Map::Plate)?);
             let gain = core.read_fit().map_err(failed)?.map(|fit| Vec4::from(fit.gain));
-            if let (Some(evidence), Some(plate), Some(gain)) = (evidence, plate, gain) {
+            if let (Some(validity), Some(plate), Some(gain)) = (validity, plate, gain) {
                 let withheld = Withheld {
                     region,
-                    evidence,
+                    validity,
                     plate,
                     gain,
                 };
@@ -99,7 +99,7 @@ fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Ve
 
 struct Withheld {
     region: PixelRect,
-    evidence: FloatMap,
+    validity: FloatMap,
     plate: FloatMap,
     gain: Vec4,
 }
@@ -118,11 +118,11 @@ impl Withheld {
     /// Over the pixels that have such an alpha.
     fn errors(&self, picture: &Image, photograph: &Image, is_counted: impl Fn(f32) -> bool) -> Errors {
         let mut errors = Errors::default();
-        for (index, marks) in self.evidence.texels.iter().enumerate() {
+        for (index, marks) in self.validity.texels.iter().enumerate() {
             if !is_counted(marks[3]) {
                 continue;
             }
-            let width = self.evidence.width as usize;
+            let width = self.validity.width as usize;
             let [left, top] = self.region.origin_px.to_array().map(|px| px as usize);
             let first = 4 * ((top + index / width) * photograph.width_px as usize + left + index % width);
             let lit = Vec4::from(self.plate.texels[index]) * self.gain;

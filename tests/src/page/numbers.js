@@ -76,7 +76,7 @@ function showTimes() {
   });
   const wasOpen = at("times").querySelector("details")?.open ?? false;
   const lists = data.presets.map(preset => table(preset.report.preset, ["pass", "path", "device time"], [
-    ...entry(preset).passes.map(pass => row(pass.name, [pass.path, ms(pass.gpu_ms)])),
+    ...entry(preset).passes.map(pass => row(pass.n_runs > 1 ? `${pass.name} × ${pass.n_runs}` : pass.name, [pass.path, ms(pass.gpu_ms)])),
     row("on the processor", ["", ms(entry(preset).cpu_ms)]),
     row("until read back", ["", ms(entry(preset).wall_ms)])]));
   at("times").replaceChildren(
@@ -95,7 +95,7 @@ function makeFit() {
     table(report.preset, ["", "red  green  blue"], [
       row("gain: frame over plate", [rgb(report.fit.gain)]),
       row("bounce: light thrown back by the toy", [rgb(report.fit.bounce)]),
-      ...report.fit.share.map((share, i) => row(`f: share of light ${i} in the plate`, [rgb(share)]))])));
+      ...report.fit.direct_fraction.map((fraction, i) => row(`f: fraction of light ${i} in the plate`, [rgb(fraction)]))])));
 }
 
 function showSkipped() {

@@ -1,4 +1,4 @@
-//! Twin of `appearance.wgsl`: the toy's own colours, carried a little past its outline.
+//! CPU reference of `appearance.wgsl`: the toy's own colours, carried a little past its outline.
 
 use glam::{DVec3, IVec2, UVec2};
 

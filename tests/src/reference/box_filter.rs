@@ -1,4 +1,4 @@
-//! Twin of `box_filter.wgsl`: the box filter of the shadow term.
+//! CPU reference of `box_filter.wgsl`: the box filter of the shadow term.
 //!
 //! The shader sums rows, then columns; here each square is summed as it is.
 

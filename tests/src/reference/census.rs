@@ -1,4 +1,4 @@
-//! Twin of `census.wgsl`: the sets of lights that occur in mask 3c.
+//! CPU reference of `census.wgsl`: the sets of lights that occur in mask 3c.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Twin of `composite.wgsl`: the picture where it shows the receiver.
+//! CPU reference of `composite.wgsl`: the picture where it shows the receiver.
 
 use glam::{DVec3, DVec4, UVec2};
 
@@ -17,13 +17,13 @@ pub struct CompositeConstants {
     /// Change from which the pooled residual no longer holds at half its size.
     pub residual_half: f64,
     /// Pooled residual up to which nothing unknown is seen.
-    pub unknown_none: f64,
+    pub outlier_none: f64,
     /// Least over most of a residual's channels, from which it may be a shadow.
     pub shadow_evenness: f64,
     /// The same, below which it is a thing of its own colour.
     pub object_evenness: f64,
     /// Pooled residual from which what the camera saw stays.
-    pub unknown_all: f64,
+    pub outlier_all: f64,
 }
 
 impl CompositeConstants {
@@ -36,10 +36,10 @@ impl CompositeConstants {
             keep_all: shader_constant("composite", "KEEP_ALL")?,
             keep_none: shader_constant("composite", "KEEP_NONE")?,
             residual_half: shader_constant("composite", "RESIDUAL_HALF")?,
-            unknown_none: shader_constant("composite", "UNKNOWN_NONE")?,
+            outlier_none: shader_constant("composite", "OUTLIER_NONE")?,
             shadow_evenness: shader_constant("composite", "SHADOW_EVENNESS")?,
             object_evenness: shader_constant("composite", "OBJECT_EVENNESS")?,
-            unknown_all: shader_constant("composite", "UNKNOWN_ALL")?,
+            outlier_all: shader_constant("composite", "OUTLIER_ALL")?,
         })
     }
 }
@@ -93,8 +93,8 @@ pub fn receiver_color(
     let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
     let unknown = smoothstep(
-        constants.unknown_none,
-        constants.unknown_all,
+        constants.outlier_none,
+        constants.outlier_all,
         pooled.abs().max_element(),
     );
     let object = unknown * (1.0 - shadow_likeness(pooled, constants));

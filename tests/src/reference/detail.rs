@@ -1,4 +1,4 @@
-//! Twin of `detail.wgsl`: what each pixel knows of its own residual, with the noise of the shadow taken out.
+//! CPU reference of `detail.wgsl`: what each pixel knows of its own residual, with the noise of the shadow taken out.
 
 use glam::{DVec3, IVec2, UVec2};
 
@@ -35,7 +35,7 @@ impl DetailConstants {
             detail: shader_constant("detail", "DETAIL")?,
             shadow: shader_constant("detail", "SHADOW")?,
             lit: shader_constant("detail", "LIT")?,
-            darkest: shader_constant("detail", "DARKEST_EVIDENCE")?,
+            darkest: shader_constant("detail", "DARKEST_USABLE")?,
         })
     }
 }

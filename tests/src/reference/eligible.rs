@@ -1,4 +1,4 @@
-//! Twin of `eligible.wgsl`: masks 3b and 3c.
+//! CPU reference of `eligible.wgsl`: masks 3b and 3c.
 
 use glam::{DVec4, IVec2};
 

@@ -1,4 +1,4 @@
-//! Twin of `estimate.wgsl`: the plate, with an estimate where none was photographed.
+//! CPU reference of `estimate.wgsl`: the plate, with an estimate where none was photographed.
 
 use glam::{DVec3, DVec4, UVec2};
 

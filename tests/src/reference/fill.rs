@@ -1,4 +1,4 @@
-//! Twin of `fill.wgsl`: cells that are not known, from those around, by pull-push.
+//! CPU reference of `fill.wgsl`: cells that are not known, from those around, by pull-push.
 //!
 //! Source: Gortler et al. 1996, section 3.4.
 

@@ -1,11 +1,11 @@
-//! Twin of `fit.wgsl` and `fit_solve.wgsl`: what the real shadow and the real toy tell of the light, by iteratively
+//! CPU reference of `fit.wgsl` and `fit_solve.wgsl`: what the real shadow and the real toy tell of the light, by iteratively
 //! reweighted least squares with weak priors.
 
 use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
 use super::model::{
-    EvidenceRange, Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at,
+    Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, UsableRange, centre_px, coarse_at,
 };
 use super::raster::Raster;
 use super::{ConstantError, shader_constant};
@@ -14,7 +14,7 @@ use super::{ConstantError, shader_constant};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitConstants {
     /// Which values carry evidence.
-    pub evidence: EvidenceRange,
+    pub validity: UsableRange,
     /// Residual of the receiver, as a fraction of the plate, at which a pixel counts half.
     pub cauchy_scale: f64,
     /// The same for the toy, as a fraction of its base colour.
@@ -28,9 +28,9 @@ pub struct FitConstants {
     /// Expected bounce.
     pub prior_bounce: f64,
     /// Expected share of all lights together.
-    pub prior_share: f64,
+    pub prior_direct_fraction: f64,
     /// Most that all lights together may have.
-    pub max_share: f64,
+    pub max_direct_fraction: f64,
     /// Most bounce.
     pub max_bounce: f64,
 }
@@ -43,15 +43,15 @@ impl FitConstants {
     pub fn from_shaders() -> Result<Self, ConstantError> {
         let cauchy_scale = shader_constant("fit", "CAUCHY_SCALE")?;
         Ok(Self {
-            evidence: EvidenceRange::from_shader("fit")?,
+            validity: UsableRange::from_shader("fit")?,
             cauchy_scale,
             toy_cauchy_scale: shader_constant("fit", "TOY_CAUCHY_SCALE")?,
             prior_weight: shader_constant("fit_solve", "PRIOR_WEIGHT")?,
             white_weight: shader_constant("fit_solve", "WHITE_WEIGHT")?,
             same_gain_weight: shader_constant("fit_solve", "SAME_GAIN_WEIGHT")?,
             prior_bounce: shader_constant("fit_solve", "PRIOR_BOUNCE")?,
-            prior_share: shader_constant("fit_solve", "PRIOR_SHARE")?,
-            max_share: shader_constant("fit_solve", "MAX_SHARE")?,
+            prior_direct_fraction: shader_constant("fit_solve", "PRIOR_DIRECT_FRACTION")?,
+            max_direct_fraction: shader_constant("fit_solve", "MAX_DIRECT_FRACTION")?,
             max_bounce: shader_constant("fit_solve", "MAX_BOUNCE")?,
         })
     }
@@ -137,10 +137,10 @@ fn receiver_equations(
             plate * sample.ambient * (1.0 - sample.ambient),
         ];
         columns.extend((0..region.lights.len()).map(|i| {
-            let visible = before.levels[i][channel] * sample.visibility[i] - sample.ambient;
+            let visible = before.intensities[i][channel] * sample.visibility[i] - sample.ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
-        let mut weight = constants.evidence.holds(frame, plate);
+        let mut weight = constants.validity.holds(frame, plate);
         if is_reweighted {
             let model = before.receiver_model(region, sample.point, sample.ambient, sample.visibility);
             weight *= cauchy_weight(value - plate * model[channel], constants.cauchy_scale * plate);
@@ -176,8 +176,12 @@ fn receiver_priors(
             .map(|i| irradiance(&region.receivers[0], i))
             .collect();
         let total: f64 = each.iter().sum();
-        let shares = each.into_iter().map(|one| constants.prior_share * one / total);
-        return std::iter::once(constants.prior_bounce).chain(shares).collect();
+        let direct_fractions = each
+            .into_iter()
+            .map(|one| constants.prior_direct_fraction * one / total);
+        return std::iter::once(constants.prior_bounce)
+            .chain(direct_fractions)
+            .collect();
     }
     // The same lights amid as much ambient light.
     let first = &before.receivers[0];
@@ -189,13 +193,21 @@ fn receiver_priors(
             0.0
         }
     };
-    let shares: Vec<f64> = (0..n_lights)
-        .map(|i| first.shares[i][channel] * of_first(i))
+    let direct_fractions: Vec<f64> = (0..n_lights)
+        .map(|i| first.direct_fractions[i][channel] * of_first(i))
         .collect();
-    let direct: f64 = first.shares.iter().map(|share| share[channel]).sum();
-    let total = 1.0 - direct + shares.iter().sum::<f64>();
-    let shares = shares.into_iter().map(|share| share / total);
-    std::iter::once(first.bounce[channel]).chain(shares).collect()
+    let direct: f64 = first
+        .direct_fractions
+        .iter()
+        .map(|direct_fraction| direct_fraction[channel])
+        .sum();
+    let total = 1.0 - direct + direct_fractions.iter().sum::<f64>();
+    let direct_fractions = direct_fractions
+        .into_iter()
+        .map(|direct_fraction| direct_fraction / total);
+    std::iter::once(first.bounce[channel])
+        .chain(direct_fractions)
+        .collect()
 }
 
 fn take_receiver(
@@ -209,7 +221,7 @@ fn take_receiver(
     if energy <= 0.0 {
         return;
     }
-    let n_lights = solution.levels.len();
+    let n_lights = solution.intensities.len();
     let mut equations = observed.clone();
     let weight = constants.prior_weight * energy;
     equations.expect(0, 1.0, weight);
@@ -228,23 +240,23 @@ fn take_receiver(
     if receiver == 0 {
         solution.gain[channel] *= correction;
     }
-    let shares: Vec<f64> = unknowns[2..]
+    let direct_fractions: Vec<f64> = unknowns[2..]
         .iter()
         .map(|unknown| (unknown / correction).max(0.0))
         .collect();
-    let total: f64 = shares.iter().sum();
-    let scale = if total > constants.max_share {
-        constants.max_share / total
+    let total: f64 = direct_fractions.iter().sum();
+    let scale = if total > constants.max_direct_fraction {
+        constants.max_direct_fraction / total
     } else {
         1.0
     };
     let found = &mut solution.receivers[receiver];
     found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, constants.max_bounce);
     found
-        .shares
+        .direct_fractions
         .iter_mut()
-        .zip(&shares)
-        .for_each(|(slot, share)| slot[channel] = scale * share);
+        .zip(&direct_fractions)
+        .for_each(|(slot, direct_fraction)| slot[channel] = scale * direct_fraction);
     found.contrast[channel] = (0..n_lights).map(|i| observed.energy(2 + i)).sum::<f64>() / energy;
 }
 
@@ -310,11 +322,11 @@ fn toy_equations(
     for sample in samples {
         let (frame, base) = (sample.frame[channel], sample.base[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.levels)
+        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
-        let mut weight = constants.evidence.holds(frame, frame);
+        let mut weight = constants.validity.holds(frame, frame);
         if is_reweighted {
             let model: f64 = columns
                 .iter()
@@ -330,18 +342,18 @@ fn toy_equations(
 
 /// What the light on the toy is made of: constant, vertical gradient, and what is received of each light at its level.
 #[must_use]
-pub fn toy_columns(normal: DVec3, received: DVec4, levels: &[DVec3]) -> Vec<DVec3> {
-    let lights = levels.iter().zip(received.to_array());
+pub fn toy_columns(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<DVec3> {
+    let lights = intensities.iter().zip(received.to_array());
     [DVec3::ONE, DVec3::splat(normal.y)]
         .into_iter()
-        .chain(lights.map(|(level, received)| *level * received))
+        .chain(lights.map(|(intensity, received)| *intensity * received))
         .collect()
 }
 
-/// Twin of `common/toy_radiance.wgsl`: radiance of a surface of the toy over its base colour and the gain.
+/// CPU reference of `common/toy_radiance.wgsl`: radiance of a surface of the toy over its base colour and the gain.
 #[must_use]
 pub fn toy_radiance(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
-    let columns = toy_columns(normal, received, &solution.levels);
+    let columns = toy_columns(normal, received, &solution.intensities);
     let terms = columns.iter().zip(&solution.toy);
     terms
         .map(|(column, light)| *column * *light)

@@ -1,6 +1,6 @@
-//! Twin of `common/grid.wgsl` and `common/pool.wgsl`: square cells over a receiver, and what is known of each.
+//! CPU reference of `common/grid.wgsl` and `common/pool.wgsl`: square cells over a receiver, and what is known of each.
 
-use app_core::gpu::layout::Grid;
+use app_core::internals::Grid;
 use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
 
 use super::model::{Region, centre_px};
@@ -65,18 +65,18 @@ impl PlaneGrid {
 }
 
 /// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of
-/// values times certainties and of certainties, which count at most as much as `most_kept` full ones.
+/// values times certainties and of certainties, which count at most as much as `max_frames` full ones.
 #[must_use]
-pub fn remember(kept: DVec4, fresh: Cell, most_kept: f64) -> (Cell, DVec4) {
-    let known = kept + (fresh.value * fresh.certainty).extend(fresh.certainty);
-    if known.w == 0.0 {
+pub fn accumulate(accumulated: DVec4, fresh: Cell, max_frames: f64) -> (Cell, DVec4) {
+    let sum = accumulated + (fresh.value * fresh.certainty).extend(fresh.certainty);
+    if sum.w == 0.0 {
         return (Cell::default(), DVec4::ZERO);
     }
-    let value = known.truncate() / known.w;
+    let value = sum.truncate() / sum.w;
     let cell = Cell {
         value,
-        certainty: known.w.min(1.0),
+        certainty: sum.w.min(1.0),
     };
-    let weight = known.w.min(most_kept);
+    let weight = sum.w.min(max_frames);
     (cell, (value * weight).extend(weight))
 }

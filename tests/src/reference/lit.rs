@@ -1,4 +1,4 @@
-//! Twin of `lit.wgsl`: what the receivers look like in the light, pooled on coarse grids.
+//! CPU reference of `lit.wgsl`: what the receivers look like in the light, pooled on coarse grids.
 
 use glam::DVec3;
 

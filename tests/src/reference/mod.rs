@@ -1,6 +1,6 @@
 //! The passes once more: plain functions on the processor, in 64 bits, without anything of the graphics device.
 //!
-//! Each file twins the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
+//! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
 //! What a scene fixes comes as arguments; what a shader fixes is read from that shader by [`shader_constant`].
 
@@ -11,7 +11,6 @@ pub mod composite;
 pub mod detail;
 pub mod eligible;
 pub mod estimate;
-pub mod evidence;
 pub mod fill;
 pub mod fit;
 pub mod grid;
@@ -28,12 +27,13 @@ pub mod search;
 pub mod self_shadow;
 pub mod sets;
 pub mod tint;
+pub mod validity;
 pub mod visibility;
 pub mod withhold;
 
 use std::str::FromStr;
 
-use app_core::gpu::shaders;
+use app_core::internals::shaders;
 use thiserror::Error;
 
 /// A constant that a shader does not declare as a plain number.
@@ -58,8 +58,7 @@ pub fn shader_constant<T: FromStr>(shader: &str, name: &str) -> Result<T, Consta
         let (value, _) = value.split_once(';')?;
         value.trim().trim_end_matches(['u', 'i', 'f']).parse().ok()
     };
-    shaders::ALL
-        .iter()
+    shaders()
         .find(|candidate| candidate.name == shader)
         .and_then(|found| number(found.source()))
         .ok_or_else(|| ConstantError {

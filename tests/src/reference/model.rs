@@ -1,9 +1,9 @@
-//! What every pass knows of the scene, and the model of the receiver: twin of `common/globals.wgsl` and
+//! What every pass knows of the scene, and the model of the receiver: CPU reference of `common/globals.wgsl` and
 //! `common/model.wgsl`.
 
-use app_core::light_points::light_in_plane;
-use app_core::region::PixelRect;
-use app_core::view::{Place, View};
+use app_core::internals::{PixelRect, PlaneRect};
+use app_core::internals::light_in_plane;
+use app_core::internals::{SceneLayout, View, globals};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
@@ -26,15 +26,15 @@ pub struct Region {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceiverPlane {
     /// From stage space.
-    pub plane_from_stage: DMat4,
+    pub plane_from_anchor: DMat4,
     /// From (u, v, 1) in pixels of the region to (x, z, w) on the receiver; w > 0 in front of the camera.
     pub plane_from_region_px: DMat3,
     /// The lights in plane space, homogeneous.
     pub lights: Vec<DVec4>,
     /// Where the lights' shares are stated, (x, z) in plane space.
     pub reference_in_plane: DVec2,
-    /// The receiver ends at plus and minus this, in metres.
-    pub half_extent_m: DVec2,
+    /// Where the receiver ends.
+    pub rect: PlaneRect,
 }
 
 /// A point of a receiver.
@@ -89,32 +89,31 @@ impl ReceiverPlane {
 impl Region {
     /// The region `rect` of a camera's picture.
     #[must_use]
-    pub fn new(view: &View, rect: &PixelRect, place: &Place<'_>) -> Self {
-        let globals = view.globals(rect, place);
-        let world_from_stage = place.world_from_stage();
+    pub fn new(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Self {
+        let globals = globals(view, rect, layout);
+        let world_from_anchor = layout.world_from_anchor();
         let lights_in = |space_from_world: &DMat4| {
-            let lights = place.lights.iter();
+            let lights = layout.lights.iter();
             lights
                 .map(|light| light_in_plane(light, space_from_world))
                 .collect()
         };
-        let receivers = place.receivers.iter().map(|receiver| {
+        let receivers = layout.receivers.iter().map(|receiver| {
             let plane_from_world = receiver.world_from_plane.inverse();
-            let toy = (plane_from_world * world_from_stage).transform_point3(place.toy_in_stage);
-            let half_extent_m = receiver.half_extent_m;
+            let toy = (plane_from_world * world_from_anchor).transform_point3(layout.toy_in_anchor);
             ReceiverPlane {
-                plane_from_stage: plane_from_world * world_from_stage,
+                plane_from_anchor: plane_from_world * world_from_anchor,
                 plane_from_region_px: view.plane_from_region_px(rect, &receiver.world_from_plane),
                 lights: lights_in(&plane_from_world),
-                reference_in_plane: DVec2::new(toy.x, toy.z).clamp(-half_extent_m, half_extent_m),
-                half_extent_m,
+                reference_in_plane: receiver.rect.nearest(DVec2::new(toy.x, toy.z)),
+                rect: receiver.rect,
             }
         });
         Self {
             receivers: receivers.collect(),
             size_px: rect.size_px,
             border_px: globals.border_px.map(f64::from),
-            lights: lights_in(&world_from_stage.inverse()),
+            lights: lights_in(&world_from_anchor.inverse()),
         }
     }
 
@@ -131,8 +130,10 @@ impl Region {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
             let in_plane = plane.plane_point(region_px)?;
             let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
-            let is_on = in_plane.abs().cmple(plane.half_extent_m).all();
-            is_on.then_some((inverse_depth, ReceiverPoint { receiver, in_plane }))
+            plane
+                .rect
+                .holds(in_plane)
+                .then_some((inverse_depth, ReceiverPoint { receiver, in_plane }))
         });
         hits.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
     }
@@ -150,7 +151,7 @@ pub struct Solution {
     /// Frame over plate where nothing changed.
     pub gain: DVec3,
     /// Each light's power over that when the plate was taken.
-    pub levels: Vec<DVec3>,
+    pub intensities: Vec<DVec3>,
     /// What is learned of each receiver.
     pub receivers: Vec<ReceiverSolution>,
     /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor for what is received of
@@ -164,7 +165,7 @@ pub struct ReceiverSolution {
     /// Light thrown back by the toy, as a fraction of the ambient light it takes away.
     pub bounce: DVec3,
     /// Each light's share of the plate's radiance at the reference point.
-    pub shares: Vec<DVec3>,
+    pub direct_fractions: Vec<DVec3>,
     /// Energy of the light columns over that of the plate.
     pub contrast: DVec3,
 }
@@ -173,19 +174,19 @@ impl Solution {
     /// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
     #[must_use]
     pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
-        let shares = self.receivers[point.receiver].shares.iter().enumerate();
+        let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
         let plane = region.plane_of(point);
         DVec3::ONE
-            + shares
-                .map(|(i, share)| *share * (plane.falloff(i, point.in_plane) - 1.0))
+            + direct_fractions
+                .map(|(i, direct_fraction)| *direct_fraction * (plane.falloff(i, point.in_plane) - 1.0))
                 .sum::<DVec3>()
     }
 
     /// A light's share of the plate's radiance at a point.
     #[must_use]
-    pub fn light_share(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
+    pub fn light_fraction(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
         let falloff = region.plane_of(point).falloff(i, point.in_plane);
-        self.receivers[point.receiver].shares[i] * falloff / self.plate_falloff(region, point)
+        self.receivers[point.receiver].direct_fractions[i] * falloff / self.plate_falloff(region, point)
     }
 
     /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
@@ -200,11 +201,11 @@ impl Solution {
         visibility: DVec4,
     ) -> DVec3 {
         let bounce = self.receivers[point.receiver].bounce;
-        let mut kept = DVec3::splat(ambient) + bounce * ambient * (1.0 - ambient);
-        for (i, level) in self.levels.iter().enumerate() {
-            kept += self.light_share(region, i, point) * (*level * visibility[i] - ambient);
+        let mut ratio = DVec3::splat(ambient) + bounce * ambient * (1.0 - ambient);
+        for (i, intensity) in self.intensities.iter().enumerate() {
+            ratio += self.light_fraction(region, i, point) * (*intensity * visibility[i] - ambient);
         }
-        kept
+        ratio
     }
 }
 
@@ -237,22 +238,22 @@ pub fn coarse_at(map: &Raster<f64>, region: &Region, region_px: DVec2) -> f64 {
 
 /// Linear light between which an 8-bit code carries evidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EvidenceRange {
+pub struct UsableRange {
     /// Below, a code is mostly quantisation.
     pub darkest: f64,
     /// Above, a code may be clipped.
     pub brightest: f64,
 }
 
-impl EvidenceRange {
+impl UsableRange {
     /// Reads it from `shader`, which includes `common/pixel.wgsl`.
     ///
     /// # Errors
     /// When it does not.
     pub fn from_shader(shader: &str) -> Result<Self, ConstantError> {
         Ok(Self {
-            darkest: shader_constant(shader, "DARKEST_EVIDENCE")?,
-            brightest: shader_constant(shader, "BRIGHTEST_EVIDENCE")?,
+            darkest: shader_constant(shader, "DARKEST_USABLE")?,
+            brightest: shader_constant(shader, "BRIGHTEST_USABLE")?,
         })
     }
 

@@ -1,4 +1,4 @@
-//! Twin of `occlusion.wgsl`: which light points a posed mesh hides from a point of the receiver.
+//! CPU reference of `occlusion.wgsl`: which light points a posed mesh hides from a point of the receiver.
 //!
 //! The shader flattens the mesh onto the receiver; here a ray goes from the receiver to the light.
 

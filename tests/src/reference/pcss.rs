@@ -1,4 +1,4 @@
-//! Twin of `pcss.wgsl`: percentage-closer soft shadows on the receiver.
+//! CPU reference of `pcss.wgsl`: percentage-closer soft shadows on the receiver.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Twin of `plate.wgsl`: the place as this camera would have taken it, from plates of other cameras.
+//! CPU reference of `plate.wgsl`: the place as this camera would have taken it, from plates of other cameras.
 
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
@@ -48,7 +48,7 @@ pub struct Viewpoint {
     /// Its picture, or a part of it.
     pub region: Region,
     /// Its centre.
-    pub centre_in_stage: DVec3,
+    pub centre_in_anchor: DVec3,
 }
 
 /// A plate.
@@ -66,8 +66,8 @@ impl Viewpoint {
     /// The camera's centre in the space of a receiver.
     fn centre_in(&self, receiver: usize) -> DVec3 {
         self.region.receivers[receiver]
-            .plane_from_stage
-            .transform_point3(self.centre_in_stage)
+            .plane_from_anchor
+            .transform_point3(self.centre_in_anchor)
     }
 
     /// The surface at a pixel, front or back of a receiver; beyond all of them the first one's plane without end.

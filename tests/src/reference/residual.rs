@@ -1,9 +1,9 @@
-//! Twin of `residual.wgsl`: what the model leaves unexplained, pooled on coarse grids.
+//! CPU reference of `residual.wgsl`: what the model leaves unexplained, pooled on coarse grids.
 
 use glam::{DVec3, UVec2};
 
 use super::grid::{Cell, PlaneGrid};
-use super::model::{EvidenceRange, Pictures, Region, Solution, centre_px, coarse_at};
+use super::model::{Pictures, Region, Solution, UsableRange, centre_px, coarse_at};
 use super::raster::Raster;
 use super::{ConstantError, shader_constant};
 
@@ -11,7 +11,7 @@ use super::{ConstantError, shader_constant};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResidualConstants {
     /// Which values carry evidence.
-    pub evidence: EvidenceRange,
+    pub validity: UsableRange,
     /// Residual, as a fraction of the plate, at which a pixel counts half.
     pub cauchy_scale: f64,
     /// Share of a cell's points that must be evidence for the cell to count in full.
@@ -27,7 +27,7 @@ impl ResidualConstants {
     /// When it has no such constant.
     pub fn from_shader() -> Result<Self, ConstantError> {
         Ok(Self {
-            evidence: EvidenceRange::from_shader("residual")?,
+            validity: UsableRange::from_shader("residual")?,
             cauchy_scale: shader_constant("residual", "CAUCHY_SCALE")?,
             full_share: shader_constant("residual", "FULL_SHARE")?,
             n_points: shader_constant("residual", "N_POINTS")?,
@@ -88,7 +88,7 @@ impl Sums {
         let unexplained = frame / solution.gain - plate * model;
         let relative = unexplained.length_squared() / (brightness * constants.cauchy_scale.powi(2));
         for channel in 0..3 {
-            let usable = constants.evidence.holds(frame[channel], plate[channel]);
+            let usable = constants.validity.holds(frame[channel], plate[channel]);
             let usable = usable * pictures.seen.at(texel);
             let weight = usable / (1.0 + relative);
             self.product[channel] += weight * plate[channel] * unexplained[channel];

@@ -1,4 +1,4 @@
-//! Twin of `retarget.wgsl`: the published picture where it shows the receiver.
+//! CPU reference of `retarget.wgsl`: the published picture where it shows the receiver.
 
 use glam::{DVec3, DVec4, IVec2, UVec2};
 

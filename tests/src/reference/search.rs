@@ -1,4 +1,4 @@
-//! Twin of `search.wgsl`: the concentric ring search.
+//! CPU reference of `search.wgsl`: the concentric ring search.
 
 use std::f64::consts::TAU;
 

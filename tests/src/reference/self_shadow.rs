@@ -1,4 +1,4 @@
-//! Twin of `self_shadow.wgsl` and `common/self_shadow.wgsl`: what a point of the toy receives of each light, by rays
+//! CPU reference of `self_shadow.wgsl` and `common/self_shadow.wgsl`: what a point of the toy receives of each light, by rays
 //! rather than depth maps.
 
 use glam::{DVec3, DVec4};

@@ -1,4 +1,4 @@
-//! Twin of the sets of lights in `common/published.wgsl`.
+//! CPU reference of the sets of lights in `common/baseline.wgsl`.
 
 /// The lights that do not reach a place: bit i stands for light i. Empty where it is lit by all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,8 +1,8 @@
-//! Twin of `tint.wgsl` and `tint_fill.wgsl`: how the real toy's paint differs from its model's, on one grid a material.
+//! CPU reference of `tint.wgsl` and `tint_fill.wgsl`: how the real toy's paint differs from its model's, on one grid a material.
 //!
 //! Source: Gortler et al. 1996, section 3.4, here in a volume.
 
-use app_core::gpu::layout::{TINT_SIDE, TintGrid};
+use app_core::internals::{TINT_SIDE, TintGrid};
 use glam::{DVec3, DVec4, UVec3, Vec3};
 
 use super::{ConstantError, shader_constant};
@@ -27,9 +27,9 @@ impl TintConstants {
     /// When they have no such constants.
     pub fn from_shader() -> Result<Self, ConstantError> {
         Ok(Self {
-            brightest: shader_constant("tint", "BRIGHTEST_EVIDENCE")?,
+            brightest: shader_constant("tint", "BRIGHTEST_USABLE")?,
             most_expected: shader_constant("tint", "MOST_EXPECTED")?,
-            darkest: shader_constant("tint_fill", "DARKEST_EVIDENCE")?,
+            darkest: shader_constant("tint_fill", "DARKEST_USABLE")?,
             full_pixels: shader_constant("tint_fill", "FULL_PIXELS")?,
         })
     }
@@ -39,7 +39,7 @@ impl TintConstants {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenPaint {
     /// The point of the physical toy, in metres.
-    pub in_stage: DVec3,
+    pub in_anchor: DVec3,
     /// Which of the toy's materials.
     pub material: usize,
     /// What the pixel shows, linear.
@@ -106,8 +106,8 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint], constants: &TintConstants) -> 
                 .filter(|paint| paint.shown.max_element() <= constants.brightest)
                 .collect();
             let cell_of = |paint: &SeenPaint| {
-                let corner = Vec3::from(grid.corner_in_stage).as_dvec3();
-                let place = (paint.in_stage - corner) / f64::from(grid.cell_m);
+                let corner = Vec3::from(grid.corner_in_anchor).as_dvec3();
+                let place = (paint.in_anchor - corner) / f64::from(grid.cell_m);
                 place.max(DVec3::ZERO).as_uvec3().min(UVec3::splat(side - 1))
             };
             let finest = Volume::from_fn(side, |cell| {

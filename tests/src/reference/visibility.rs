@@ -1,4 +1,4 @@
-//! Twin of `visibility.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
+//! CPU reference of `visibility.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
 
 use glam::{DVec2, DVec3, UVec2};
 

@@ -1,4 +1,4 @@
-//! Twin of `withhold.wgsl`: evidence without the real shadow.
+//! CPU reference of `withhold.wgsl`: evidence without the real shadow.
 
 use glam::DVec4;
 
@@ -14,16 +14,16 @@ pub fn lit_of_shader() -> Result<f64, ConstantError> {
     shader_constant("withhold", "LIT")
 }
 
-/// The marks of `evidence`, but none where a receiver is seen in shadow: there alpha is 0, and a half beside the toy.
+/// The marks of `validity`, but none where a receiver is seen in shadow: there alpha is 0, and a half beside the toy.
 #[must_use]
 pub fn withhold(
     region: &Region,
     pictures: &Pictures,
     solution: &Solution,
-    (evidence, lit): (&Raster<DVec4>, f64),
+    (validity, lit): (&Raster<DVec4>, f64),
 ) -> Raster<DVec4> {
     Raster::from_fn(region.size_px, |texel| {
-        let (marks, at) = (evidence.at(texel), centre_px(texel));
+        let (marks, at) = (validity.at(texel), centre_px(texel));
         let in_shadow = region.receiver_point(at).is_some_and(|point| {
             let ambient = coarse_at(&pictures.ambient, region, at);
             let left = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));

@@ -1,12 +1,11 @@
 //! The shaders' side of the contract: everything that is demanded of one joined module, as a list of what is wrong.
 
-use app_core::gpu::phone_limits;
+use app_core::internals::{Member, Mirror, NumberKind, Part, phone_limits};
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
 use naga::{
-    AddressSpace, ArraySize, Expression, GlobalVariable, Handle, ImageClass, Literal, Module, Type, TypeInner,
+    AddressSpace, ArraySize, Expression, GlobalVariable, Handle, ImageClass, Literal, Module, ScalarKind,
+    Type, TypeInner,
 };
-
-use crate::mirrors::{Member, SHARED_CONSTANTS, mirrors};
 
 /// What a shader may use beyond plain WGSL: nothing.
 ///
@@ -28,16 +27,18 @@ pub(crate) fn validate(module: &Module, capabilities: Capabilities) -> Result<Mo
         .map_err(|error| format!("is not valid for the device: {:?}", error.into_inner()))
 }
 
-/// What is wrong with a joined module that should have `entry_points`.
-pub(crate) fn problems(source: &str, entry_points: &[&str]) -> Vec<String> {
+/// What is wrong with `source`, which is joined of `parts`, perhaps with a fault in it.
+pub(crate) fn problems(source: &str, parts: &[&Part]) -> Vec<String> {
     let checked = parse(source).and_then(|module| Ok((validate(&module, REQUESTED)?, module)));
     let (info, module) = match checked {
         Ok(checked) => checked,
         Err(problem) => return vec![problem],
     };
-    let mut problems = struct_problems(&module);
-    problems.extend(constant_problems(&module));
-    problems.extend(entry_point_problems(&module, entry_points));
+    let mirrors: Vec<&Mirror> = parts.iter().flat_map(|part| part.structs).collect();
+    let mut problems = struct_problems(&module, &mirrors);
+    let constants = parts.iter().flat_map(|part| part.constants);
+    problems.extend(constants.filter_map(|constant| constant_problem(&module, constant)));
+    problems.extend(entry_point_problems(&module));
     for (index, entry) in module.entry_points.iter().enumerate() {
         let counts = counts(&module, entry, info.get_entry_point(index));
         let too_many = counts.into_iter().filter(|(_, count, limit)| count > limit);
@@ -48,14 +49,15 @@ pub(crate) fn problems(source: &str, entry_points: &[&str]) -> Vec<String> {
     problems
 }
 
-/// Value of a constant of type u32.
-pub(crate) fn constant(module: &Module, name: &str) -> Option<u32> {
+/// Value of a constant that is a plain number.
+pub(crate) fn constant(module: &Module, name: &str) -> Option<f64> {
     let (_, constant) = module
         .constants
         .iter()
         .find(|(_, constant)| constant.name.as_deref() == Some(name))?;
     match module.global_expressions[constant.init] {
-        Expression::Literal(Literal::U32(value)) => Some(value),
+        Expression::Literal(Literal::U32(value)) => Some(f64::from(value)),
+        Expression::Literal(Literal::F32(value)) => Some(f64::from(value)),
         _ => None,
     }
 }
@@ -75,26 +77,23 @@ pub(crate) fn array_length(module: &Module, name: &str) -> Option<u32> {
     }
 }
 
-fn struct_problems(module: &Module) -> Vec<String> {
+fn struct_problems(module: &Module, mirrors: &[&Mirror]) -> Vec<String> {
     let mut problems = Vec::new();
-    let mirrors = mirrors();
-    for (_, ty) in module.types.iter() {
-        let TypeInner::Struct { members, span } = &ty.inner else {
+    for mirror in mirrors {
+        let name = mirror.name;
+        let of_that_name = |ty: &&Type| ty.name.as_deref() == Some(name);
+        let ty = module.types.iter().map(|(_, ty)| ty).find(of_that_name);
+        let Some(TypeInner::Struct { members, span }) = ty.map(|ty| &ty.inner) else {
+            problems.push(format!("{name}: the host shares it, but the shader has none"));
             continue;
         };
-        let name = ty.name.as_deref().unwrap_or_default();
-        let Some(mirror) = mirrors.iter().find(|mirror| mirror.name == name) else {
-            continue;
-        };
-        let shader: Vec<Member> = members
+        let shader: Vec<ShaderMember> = members
             .iter()
             .map(|member| shader_member(module, member))
             .collect();
-        if shader != mirror.members {
-            problems.push(format!(
-                "{name}: shader has {shader:#?}, host has {:#?}",
-                mirror.members
-            ));
+        let host: Vec<ShaderMember> = mirror.members.iter().map(ShaderMember::from).collect();
+        if shader != host {
+            problems.push(format!("{name}: shader has {shader:#?}, host has {host:#?}"));
         }
         if *span as usize != mirror.size {
             problems.push(format!(
@@ -114,7 +113,7 @@ fn struct_problems(module: &Module) -> Vec<String> {
 }
 
 /// Names of the structs that buffers hold: alone, in arrays, or within others.
-pub(crate) fn shared_structs(module: &Module) -> Vec<String> {
+fn shared_structs(module: &Module) -> Vec<String> {
     let is_buffer = |global: &&GlobalVariable| {
         matches!(global.space, AddressSpace::Uniform | AddressSpace::Storage { .. })
     };
@@ -134,7 +133,31 @@ pub(crate) fn shared_structs(module: &Module) -> Vec<String> {
     names
 }
 
-fn shader_member(module: &Module, member: &naga::StructMember) -> Member {
+/// A member of a shared struct, as naga or as Rust lays it out.
+#[derive(Debug, PartialEq)]
+struct ShaderMember {
+    name: String,
+    offset: usize,
+    size: usize,
+    kind: Option<ScalarKind>,
+}
+
+impl From<&Member> for ShaderMember {
+    fn from(member: &Member) -> Self {
+        Self {
+            name: member.name.to_owned(),
+            offset: member.offset,
+            size: member.size,
+            kind: member.kind.map(|kind| match kind {
+                NumberKind::Float => ScalarKind::Float,
+                NumberKind::Signed => ScalarKind::Sint,
+                NumberKind::Unsigned => ScalarKind::Uint,
+            }),
+        }
+    }
+}
+
+fn shader_member(module: &Module, member: &naga::StructMember) -> ShaderMember {
     let mut inner = &module.types[member.ty].inner;
     let size = inner.size(module.to_ctx()) as usize;
     while let TypeInner::Array { base, .. } = inner {
@@ -144,7 +167,7 @@ fn shader_member(module: &Module, member: &naga::StructMember) -> Member {
         TypeInner::Matrix { scalar, .. } => Some(scalar.kind),
         other => other.scalar_kind(),
     };
-    Member {
+    ShaderMember {
         name: member.name.clone().unwrap_or_default(),
         offset: member.offset as usize,
         size,
@@ -152,38 +175,13 @@ fn shader_member(module: &Module, member: &naga::StructMember) -> Member {
     }
 }
 
-fn constant_problems(module: &Module) -> Vec<String> {
-    let is_there = |name: &str| {
-        module
-            .constants
-            .iter()
-            .any(|(_, constant)| constant.name.as_deref() == Some(name))
-    };
-    SHARED_CONSTANTS
-        .iter()
-        .filter(|(name, _)| is_there(name))
-        .filter_map(|(name, host)| {
-            let shader = constant(module, name).map(|value| value as usize);
-            (shader != Some(*host)).then(|| format!("{name}: {shader:?} in the shader, {host} on the host"))
-        })
-        .collect()
+fn constant_problem(module: &Module, (name, host): &(&'static str, f64)) -> Option<String> {
+    let shader = constant(module, name);
+    (shader != Some(*host)).then(|| format!("{name}: {shader:?} in the shader, {host} on the host"))
 }
 
-fn entry_point_problems(module: &Module, listed: &[&str]) -> Vec<String> {
+fn entry_point_problems(module: &Module) -> Vec<String> {
     let mut problems = Vec::new();
-    let mut found: Vec<&str> = module
-        .entry_points
-        .iter()
-        .map(|entry| entry.name.as_str())
-        .collect();
-    let mut listed = listed.to_vec();
-    found.sort_unstable();
-    listed.sort_unstable();
-    if found != listed {
-        problems.push(format!(
-            "the entry points are {found:?}, but {listed:?} are listed"
-        ));
-    }
     for entry in &module.entry_points {
         let prefix = match entry.stage {
             naga::ShaderStage::Vertex => "vs_",

@@ -1,7 +1,7 @@
 //! Points over a light and directions over the hemisphere against the moments of disc and hemisphere.
 
-use app_core::light_points::{ambient_directions, light_in_plane, light_points};
-use app_core::preset::{Method, Preset};
+use app_core::internals::{ambient_directions, light_in_plane, light_points};
+use app_core::preset::{Preset, Settings};
 use app_core::scene::Light;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4};
 
@@ -81,7 +81,7 @@ fn light_points_have_the_moments_of_a_disc() {
 #[test]
 fn each_position_gets_points_from_all_over_the_light() {
     for preset in Preset::ALL {
-        let Method::Model(settings) = preset.method() else {
+        let Settings::Model(settings) = preset.settings() else {
             continue;
         };
         let n_points = settings.n_light_points;

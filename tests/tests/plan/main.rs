@@ -1,12 +1,12 @@
 //! Plans, the work region, the points over a light and the presets: everything that is decided without a device.
 
+mod conditioning;
 mod light_points;
+mod outliers;
 mod outline;
 mod passes;
 mod penumbra;
 mod preset;
 mod region;
-mod resolution;
 mod rig;
 mod transforms;
-mod unknown;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use app_core::grids::{grids_over, holds};
-use app_core::outline::Outline;
-use app_core::region::PlaneRect;
+use app_core::internals::Outline;
+use app_core::internals::PlaneRect;
+use app_core::internals::{grids_over, holds};
 use glam::{DQuat, DVec2, DVec3};
 
 /// `n` directions, each standing for an equal part of the sphere. Source: Vogel 1979, by equal heights.

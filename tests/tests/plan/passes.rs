@@ -1,9 +1,9 @@
 //! Which passes a plan runs on which path, with which sizes and formats.
 
-use app_core::plan::{Path, Plan, SceneFacts};
+use app_core::frame::Path;
+use app_core::internals::PixelRect;
+use app_core::internals::{Change, Plan, SceneFacts, planned_by_model};
 use app_core::preset::BALANCED;
-use app_core::region::PixelRect;
-use app_core::wgpu::TextureFormat;
 use glam::UVec2;
 
 /// Sizes of regions, from a pixel to more than any camera.
@@ -36,85 +36,66 @@ fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
     Plan::new(&facts, &BALANCED)
 }
 
-fn names(plan: &Plan, path: Path) -> Vec<&'static str> {
-    plan.passes
-        .iter()
-        .filter(|pass| pass.path == path)
-        .map(|pass| pass.name)
-        .collect()
-}
-
 fn leaves_out(plan: &Plan, what: &str) -> bool {
     assert!(plan.left_out.iter().all(|left_out| !left_out.why.is_empty()));
     plan.left_out.iter().any(|left_out| left_out.what == what)
 }
 
 #[test]
-fn what_belongs_to_the_place_is_not_on_the_frame_path() {
-    let plan = plan([640, 360], &[10.0]);
-    assert_eq!(
-        names(&plan, Path::Frame),
-        [
-            "occlusion",
-            "visibility",
-            "self_shadow",
-            "motion",
-            "toy",
-            "coverage",
-            "composite",
-            "present"
-        ]
-    );
-    let capture = names(&plan, Path::Capture);
-    let place = |name: &str| capture.iter().position(|pass| *pass == name).unwrap();
-    // Each pass comes after those whose results it reads.
-    for order in [
-        &[
-            "self_shadow",
-            "object",
-            "evidence",
-            "fit",
-            "fit_solve",
-            "appearance",
-        ][..],
-        &["occlusion", "visibility", "fit", "fit_solve", "residual", "fill"],
-        &["plate", "lit", "estimate", "fit"],
-        &["evidence", "fit"],
-    ] {
+fn a_new_pose_costs_the_frame_path_alone() {
+    let plan = plan([640, 360], &[10.0, 10.0]);
+    let light = ["occlusion", "visibility"];
+    let drawn = ["self_shadow", "moved_mask", "toy", "coverage", "composite"];
+    // A light each, and the ambient light.
+    let frame = [light, light, light].concat().into_iter().chain(drawn);
+    let frame: Vec<_> = frame.map(|pass| (Path::Frame, pass)).collect();
+    assert_eq!(planned_by_model(&plan, Change::Pose), frame);
+    for change in Change::ALL {
+        let planned = planned_by_model(&plan, change);
+        assert!(planned.ends_with(&frame), "{change:?}: {planned:?}");
+        let before = &planned[..planned.len() - frame.len()];
         assert!(
-            order.is_sorted_by_key(|name| place(name)),
-            "{order:?} in {capture:?}"
+            before
+                .iter()
+                .all(|(path, _)| (*path == Path::Capture) == (change >= Change::View))
         );
     }
-    let first_frame = plan
-        .passes
-        .iter()
-        .position(|pass| pass.path == Path::Frame)
-        .unwrap();
-    assert!(
-        plan.passes[first_frame..]
-            .iter()
-            .all(|pass| pass.path == Path::Frame)
-    );
+}
+
+/// Each pass comes after those whose results it reads.
+#[test]
+fn the_capture_path_reads_what_was_made_before() {
+    let plan = plan([640, 360], &[10.0]);
+    for change in [Change::View, Change::Scene] {
+        let planned = planned_by_model(&plan, change);
+        let place = |name: &str| planned.iter().position(|(_, pass)| *pass == name).unwrap();
+        for order in [
+            &[
+                "self_shadow",
+                "gbuffer",
+                "validity",
+                "fit",
+                "fit_solve",
+                "appearance",
+            ][..],
+            &["occlusion", "visibility", "fit", "fit_solve", "residual", "tint"],
+            &["plate", "estimate", "fit"],
+            &["plate", "lit"],
+            &["tint", "tint_fill"],
+        ] {
+            assert!(
+                order.is_sorted_by_key(|name| place(name)),
+                "{order:?} in {planned:?}"
+            );
+        }
+    }
 }
 
 #[test]
-fn there_is_a_channel_for_each_light_and_few_more() {
-    let formats = [
-        TextureFormat::R16Float,
-        TextureFormat::Rg16Float,
-        TextureFormat::Rgba16Float,
-    ];
+fn further_lights_are_left_out() {
     for n_lights in 1..=6 {
         let plan = plan([640, 360], &vec![10.0; n_lights]);
         assert_eq!(plan.lights.len(), n_lights.min(4), "the fifth is left out");
-        let n_channels = usize::from(plan.visibility_format.components());
-        let least = formats
-            .iter()
-            .map(|format| usize::from(format.components()))
-            .find(|n| *n >= plan.lights.len());
-        assert!(formats.contains(&plan.visibility_format));
-        assert_eq!(Some(n_channels), least);
         assert_eq!(leaves_out(&plan, "overlap of shadows"), n_lights == 1);
     }
 }

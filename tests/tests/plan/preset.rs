@@ -1,6 +1,6 @@
 //! Names of presets, and what they spend.
 
-use app_core::preset::{Method, Preset};
+use app_core::preset::{Preset, Settings};
 
 /// The names that the design gives to presets, built or not.
 const DESIGNED: [&str; 5] = ["flat", "paper", "fast", "balanced", "best"];
@@ -32,7 +32,7 @@ fn a_preset_that_is_not_built_is_refused_by_name() {
 #[test]
 fn a_preset_spends_what_the_passes_can_take() {
     for preset in Preset::ALL {
-        let Method::Model(settings) = preset.method() else {
+        let Settings::Model(settings) = preset.settings() else {
             continue;
         };
         for n_points in [settings.n_light_points, settings.n_ambient_directions] {

@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use app_core::region::{Bounds, PixelRect, Reach};
-use app_core::scene::{Intrinsics, Receiver};
+use app_core::internals::{AnchoredReceiver, Bounds, PixelRect, Reach};
+use app_core::scene::Intrinsics;
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 
-use crate::rig::{BULB_AT, RECT, Rig, TOY, place, points_on_plane, shadow};
+use crate::rig::{BULB_AT, RECT, Rig, TOY, layout, points_on_plane, shadow, square};
 
 fn assert_holds(rect: &PixelRect, image_px: UVec2, point_px: DVec2, what: &str) {
     let seen_px = point_px.clamp(DVec2::ZERO, image_px.as_dvec2());
@@ -78,7 +78,7 @@ fn the_region_holds_the_penumbra() {
 fn the_region_of_some_points_is_within_that_of_their_box() {
     let rig = Rig::new(DVec3::ZERO);
     let (view, receivers, lights) = (rig.view(), [rig.receiver()], [rig.bulb(BULB_AT, 0.0)]);
-    let mut reach = Reach::new(&view, &TOY, &place(&receivers, &lights));
+    let mut reach = Reach::new(&view, &TOY, &layout(&receivers, &lights));
     assert_eq!(reach.region(), None, "nothing is in reach of nothing");
     let points = [TOY.min, TOY.centre(), TOY.centre().with_y(TOY.max.y)];
     points.into_iter().for_each(|point| reach.include(point));
@@ -101,21 +101,21 @@ fn the_region_of_some_points_is_within_that_of_their_box() {
 fn shadows_on_a_wall_count_where_its_front_is_seen() {
     let mut rig = Rig::new(DVec3::ZERO);
     let light = [rig.bulb(DVec3::new(0.5, 0.3, 0.15), 0.0)];
-    let stage_from_wall =
+    let anchor_from_wall =
         DMat4::from_rotation_translation(DQuat::from_rotation_x(FRAC_PI_2), DVec3::new(0.0, 0.0, -0.1));
-    let wall = Receiver {
-        world_from_plane: rig.world_from_plane() * stage_from_wall,
+    let wall = AnchoredReceiver {
+        world_from_plane: rig.world_from_plane() * anchor_from_wall,
         ..rig.receiver()
     };
-    let table = Receiver {
-        half_extent_m: DVec2::splat(0.1),
+    let table = AnchoredReceiver {
+        rect: square(0.1),
         ..rig.receiver()
     };
     let receivers = [table, wall];
     for (z_m, is_before) in [(1.2, true), (-1.2, false)] {
         rig.place_camera(DVec3::new(0.0, 1.0, z_m), DVec3::ZERO);
         let view = rig.view();
-        let [alone, both] = [1, 2].map(|n| view.region(&TOY, &place(&receivers[..n], &light)).unwrap());
+        let [alone, both] = [1, 2].map(|n| view.region(&TOY, &layout(&receivers[..n], &light)).unwrap());
         assert!(both.contains(&alone));
         assert_eq!(both != alone, is_before, "{both:?} and {alone:?}");
     }

@@ -1,9 +1,9 @@
 //! A camera over a receiver, projected by hand: dot products with axes, no matrix.
 
-use app_core::gpu::layout::Globals;
-use app_core::region::{Bounds, PixelRect};
-use app_core::scene::{Intrinsics, Light, Receiver, Surface};
-use app_core::view::{Place, View};
+use app_core::internals::Globals;
+use app_core::internals::{Bounds, PixelRect};
+use app_core::internals::{AnchoredReceiver, PlaneRect, SceneLayout, View, globals};
+use app_core::scene::{Camera, Intrinsics, Light, Surface};
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
 /// Camera and receiver as axes and positions in world space.
@@ -102,19 +102,24 @@ impl Rig {
         )
     }
 
-    pub(crate) fn receiver(&self) -> Receiver {
+    pub(crate) fn receiver(&self) -> AnchoredReceiver {
         let [x, y, z] = self.axes;
-        Receiver {
-            name: "table".to_owned(),
+        AnchoredReceiver {
             world_from_plane: columns(x, y, z, self.origin),
-            half_extent_m: DVec2::splat(2.0),
+            rect: square(2.0),
             surface: Surface::Textured,
         }
     }
 
     pub(crate) fn view(&self) -> View {
         let world_from_camera = columns(self.right, self.up, -self.forward, self.eye);
-        View::new(self.image_px, self.intrinsics, &world_from_camera)
+        View::new(
+            self.image_px,
+            &Camera {
+                intrinsics: self.intrinsics,
+                world_from_camera,
+            },
+        )
     }
 
     /// A bulb at a position in plane space.
@@ -136,20 +141,28 @@ impl Rig {
 
     /// What the shaders are told of the rig.
     pub(crate) fn globals(&self, rect: &PixelRect, lights: &[Light]) -> Globals {
-        self.view().globals(rect, &place(&[self.receiver()], lights))
+        globals(&self.view(), rect, &layout(&[self.receiver()], lights))
     }
 
     pub(crate) fn region(&self, toy: &Bounds, lights: &[Light]) -> Option<PixelRect> {
-        self.view().region(toy, &place(&[self.receiver()], lights))
+        self.view().region(toy, &layout(&[self.receiver()], lights))
+    }
+}
+
+/// A square around the origin of a plane.
+pub(crate) fn square(half_m: f64) -> PlaneRect {
+    PlaneRect {
+        min: DVec2::splat(-half_m),
+        max: DVec2::splat(half_m),
     }
 }
 
 /// The toy in the middle of its receivers and lights.
-pub(crate) fn place<'a>(receivers: &'a [Receiver], lights: &'a [Light]) -> Place<'a> {
-    Place {
+pub(crate) fn layout<'a>(receivers: &'a [AnchoredReceiver], lights: &'a [Light]) -> SceneLayout<'a> {
+    SceneLayout {
         receivers,
         lights,
-        toy_in_stage: TOY.centre(),
+        toy_in_anchor: TOY.centre(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Maps between image and plane against projections by hand, in the core's f64 and in the shaders' f32.
 
-use app_core::gpu::layout::Globals;
-use app_core::region::PixelRect;
+use app_core::internals::Globals;
+use app_core::internals::PixelRect;
 use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec3, Vec4};
 
 use crate::rig::{BULB_AT, RECT, Rig, TOY, points_on_plane};
@@ -35,9 +35,9 @@ fn pixels_and_plane_are_inverse() {
 #[test]
 fn clip_space_is_the_region_with_reversed_depth() {
     let rig = Rig::new(DVec3::ZERO);
-    let clip_from_stage = rig.view().clip_from(&RECT, &rig.world_from_plane());
+    let clip_from_anchor = rig.view().clip_from(&RECT, &rig.world_from_plane());
     for point in points_on_plane().chain(TOY.corners()) {
-        let clip = clip_from_stage * point.extend(1.0);
+        let clip = clip_from_anchor * point.extend(1.0);
         let ndc = clip.truncate() / clip.w;
         let px = (ndc.truncate() * DVec2::new(0.5, -0.5) + 0.5) * RECT.size_px.as_dvec2();
         assert!((px + RECT.origin_px.as_dvec2() - rig.pixel(point)).length() < 1e-9);
@@ -69,7 +69,7 @@ fn far_from_the_origin_nothing_changes() {
         far.globals(&region, &lights(&far)),
     );
     let px = |globals: &Globals, point: DVec3| {
-        let clip = Mat4::from_cols_array_2d(&globals.clip_from_stage) * point.as_vec3().extend(1.0);
+        let clip = Mat4::from_cols_array_2d(&globals.clip_from_anchor) * point.as_vec3().extend(1.0);
         clip.truncate().truncate() / clip.w * 0.5 * region.size_px.as_vec2()
     };
     for point in points_on_plane().chain(TOY.corners()) {
@@ -82,7 +82,7 @@ fn far_from_the_origin_nothing_changes() {
     for (here, there) in lights(&a).into_iter().zip(lights(&b)) {
         assert!((Vec4::from(here) - Vec4::from(there)).length() < 1e-6);
     }
-    assert!((Vec3::from(a.camera_in_stage) - Vec3::from(b.camera_in_stage)).length() < 1e-6);
+    assert!((Vec3::from(a.camera_in_anchor) - Vec3::from(b.camera_in_anchor)).length() < 1e-6);
 }
 
 #[test]

@@ -55,7 +55,8 @@ fn unmoved_shadow_passes_the_frame_through() {
 #[test]
 fn beside_the_receiver_only_the_toy_goes() {
     let (mut region, mut pictures, shown) = scene();
-    region.receivers[0].half_extent_m.x = 0.105;
+    let rect = &mut region.receivers[0].rect;
+    (rect.min.x, rect.max.x) = (-0.105, 0.105);
     // Even rows are clear of the toy, odd ones are not.
     pictures.seen = Raster::from_fn(SIZE, |at| f64::from(1 - at.y % 2));
     let picture = picture(&region, &pictures, &shown);

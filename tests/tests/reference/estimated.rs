@@ -4,7 +4,7 @@ use glam::{DVec3, DVec4, UVec2};
 use harness::reference::detail::{DetailConstants, separate, told};
 use harness::reference::estimate::{EstimateConstants, Known, complete};
 use harness::reference::fill::{fill, n_levels_of_shader};
-use harness::reference::grid::{Cell, remember};
+use harness::reference::grid::{Cell, accumulate};
 use harness::reference::lit::{LitConstants, pool};
 use harness::reference::model::{Pictures, Region, Solution};
 use harness::reference::raster::Raster;
@@ -123,20 +123,20 @@ fn what_was_known_counts_by_its_certainty_and_at_most_as_much_as_is_kept() {
         certainty,
     };
     // Three certain sights of 0.2, and one of 0.6: a quarter of the way.
-    let (cell, kept) = remember(DVec3::splat(0.6).extend(3.0), fresh(1.0), 8.0);
+    let (cell, accumulated) = accumulate(DVec3::splat(0.6).extend(3.0), fresh(1.0), 8.0);
     assert!(
         (cell.value - 0.3).abs().max_element() < 1e-12 && cell.certainty == 1.0,
         "{cell:?}"
     );
     assert!(
-        (kept - DVec3::splat(1.2).extend(4.0)).abs().max_element() < 1e-12,
-        "{kept}"
+        (accumulated - DVec3::splat(1.2).extend(4.0)).abs().max_element() < 1e-12,
+        "{accumulated}"
     );
-    let (cell, kept) = remember(DVec3::splat(1.6).extend(8.0), fresh(1.0), 8.0);
-    assert!(kept.w == 8.0 && (kept.truncate() / 8.0 - cell.value).abs().max_element() < 1e-12);
-    assert_eq!(remember(DVec4::ZERO, fresh(0.5), 8.0).0, fresh(0.5));
+    let (cell, accumulated) = accumulate(DVec3::splat(1.6).extend(8.0), fresh(1.0), 8.0);
+    assert!(accumulated.w == 8.0 && (accumulated.truncate() / 8.0 - cell.value).abs().max_element() < 1e-12);
+    assert_eq!(accumulate(DVec4::ZERO, fresh(0.5), 8.0).0, fresh(0.5));
     assert_eq!(
-        remember(DVec4::ZERO, fresh(0.0), 8.0),
+        accumulate(DVec4::ZERO, fresh(0.0), 8.0),
         (Cell::default(), DVec4::ZERO)
     );
 }
@@ -170,7 +170,7 @@ fn a_constant_residual_is_no_noise_and_the_texture_divides_out() {
 #[test]
 fn in_shadow_noise_goes_and_detail_stays() {
     // One pixel stands out of nothing: what is around, itself included, is smoothed to less than this share of it.
-    let share = 0.2;
+    let direct_fraction = 0.2;
     let constants = DetailConstants::from_shader().unwrap();
     for (height, is_noise) in [(0.5 * constants.noise, true), (2.0 * constants.detail, false)] {
         for texel in PLACES {
@@ -184,7 +184,7 @@ fn in_shadow_noise_goes_and_detail_stays() {
             let found = separated(alone, texel).x / height;
             let is_gone = is_noise && texel.x > 30;
             let expected = if is_gone { 0.0 } else { 1.0 };
-            let allowed = if is_gone { share } else { 1e-9 };
+            let allowed = if is_gone { direct_fraction } else { 1e-9 };
             assert!(
                 (found - expected).abs() < allowed,
                 "{texel}: {found} of {height} is left"

@@ -16,7 +16,7 @@ fn without_priors() -> FitConstants {
     }
 }
 
-fn place(n_lights: usize) -> Region {
+fn layout(n_lights: usize) -> Region {
     region(UVec2::splat(80), two_bulbs()[..n_lights].to_vec())
 }
 
@@ -48,22 +48,22 @@ const MOST_BOUNCED: f64 = 0.25;
 /// Largest difference of gain, shares, and bounce times `weight`.
 fn difference(a: &Solution, b: &Solution, weight: f64) -> f64 {
     let (of_a, of_b) = (&a.receivers[0], &b.receivers[0]);
-    let shares = of_a
-        .shares
+    let direct_fractions = of_a
+        .direct_fractions
         .iter()
-        .zip(&of_b.shares)
+        .zip(&of_b.direct_fractions)
         .map(|(a, b)| (a - b).abs().max_element());
     let rest = [
         (a.gain - b.gain).abs().max_element(),
         weight * (of_a.bounce - of_b.bounce).abs().max_element(),
     ];
-    shares.chain(rest).fold(0.0, f64::max)
+    direct_fractions.chain(rest).fold(0.0, f64::max)
 }
 
 #[test]
 fn known_light_is_recovered() {
     for n_lights in [1, 2] {
-        let region = place(n_lights);
+        let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
         // The falloff of the plate is linearised, so this takes steps; each one halves the error and more.
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &without_priors(), 40);
@@ -76,7 +76,7 @@ fn known_light_is_recovered() {
 fn priors_and_few_steps_cost_little() {
     let constants = FitConstants::from_shaders().unwrap();
     for n_lights in [1, 2] {
-        let region = place(n_lights);
+        let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &constants, 5);
         let error = difference(&fitted, &truth(n_lights), MOST_BOUNCED);
@@ -88,7 +88,7 @@ fn priors_and_few_steps_cost_little() {
 #[test]
 fn hand_in_the_picture_counts_little() {
     for n_lights in [1, 2] {
-        let region = place(n_lights);
+        let region = layout(n_lights);
         let mut samples = samples(&region, &truth(n_lights));
         // One pixel of twenty shows skin.
         samples
@@ -101,19 +101,19 @@ fn hand_in_the_picture_counts_little() {
             ..without_priors()
         };
         let fooled = fit_receiver(&region, (0, &samples), &start(n_lights), &plain, 20);
-        let shares = |solution: &Solution| {
-            let of_truth = &truth(n_lights).receivers[0].shares;
+        let direct_fractions = |solution: &Solution| {
+            let of_truth = &truth(n_lights).receivers[0].direct_fractions;
             let off = solution.receivers[0]
-                .shares
+                .direct_fractions
                 .iter()
                 .zip(of_truth)
                 .map(|(a, b)| (a - b).abs().max_element());
             off.fold(0.0, f64::max)
         };
         // Measured: 2e-4 with one light and 5e-4 with two; 2e-2 without weights.
-        assert!(shares(&fitted) < 2e-3, "{n_lights} lights: {fitted:?}");
+        assert!(direct_fractions(&fitted) < 2e-3, "{n_lights} lights: {fitted:?}");
         assert!(
-            shares(&fooled) > 5.0 * shares(&fitted),
+            direct_fractions(&fooled) > 5.0 * direct_fractions(&fitted),
             "weights make no difference: {fooled:?}"
         );
     }
@@ -122,7 +122,7 @@ fn hand_in_the_picture_counts_little() {
 #[test]
 fn without_evidence_the_start_stays() {
     let constants = FitConstants::from_shaders().unwrap();
-    let region = place(2);
+    let region = layout(2);
     let mut dark = samples(&region, &truth(2));
     dark.iter_mut().for_each(|sample| sample.frame = DVec3::ZERO);
     for samples in [Vec::new(), dark] {
@@ -137,7 +137,7 @@ fn without_evidence_the_start_stays() {
 #[test]
 fn unseen_shadow_leaves_the_expected_share() {
     let constants = FitConstants::from_shaders().unwrap();
-    let region = place(2);
+    let region = layout(2);
     let mut lit = samples(&region, &truth(2));
     for sample in &mut lit {
         (sample.ambient, sample.visibility) = (1.0, DVec4::ONE);
@@ -148,10 +148,13 @@ fn unseen_shadow_leaves_the_expected_share() {
     let of_bulb = |bulb: DVec4| bulb.y / bulb.truncate().length().powi(3);
     let bulbs = two_bulbs();
     let both: f64 = bulbs.iter().map(|bulb| of_bulb(*bulb)).sum();
-    for (share, bulb) in fitted.receivers[0].shares.iter().zip(bulbs) {
+    for (direct_fraction, bulb) in fitted.receivers[0].direct_fractions.iter().zip(bulbs) {
         // Whatever the gain is, which is found first.
-        let expected = constants.prior_share * of_bulb(bulb) / both;
-        assert!((share - expected).abs().max_element() < 1e-3, "{fitted:?}");
+        let expected = constants.prior_direct_fraction * of_bulb(bulb) / both;
+        assert!(
+            (direct_fraction - expected).abs().max_element() < 1e-3,
+            "{fitted:?}"
+        );
     }
     assert!((fitted.gain - 0.9).abs().max_element() < 1e-3, "{fitted:?}");
     assert!(fitted.receivers[0].contrast.max_element() < 1e-12, "{fitted:?}");
@@ -159,7 +162,7 @@ fn unseen_shadow_leaves_the_expected_share() {
 
 #[test]
 fn light_on_the_toy_is_recovered() {
-    let region = place(2);
+    let region = layout(2);
     let lit = [
         DVec3::new(0.3, 0.32, 0.4),
         DVec3::new(0.1, 0.12, 0.15),
@@ -168,7 +171,7 @@ fn light_on_the_toy_is_recovered() {
     ];
     // One of the lights is dimmed, the other turned up.
     let known = Solution {
-        levels: vec![DVec3::new(0.5, 0.6, 0.7), DVec3::splat(1.3)],
+        intensities: vec![DVec3::new(0.5, 0.6, 0.7), DVec3::splat(1.3)],
         ..start(2)
     };
     let sample = |seed: u32| {
@@ -177,7 +180,7 @@ fn light_on_the_toy_is_recovered() {
         let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
         // Any light that rises and falls otherwise than the normal will do.
         let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
-        let columns = toy_columns(normal, received, &known.levels);
+        let columns = toy_columns(normal, received, &known.intensities);
         let light: DVec3 = columns.iter().zip(lit).map(|(column, lit)| *column * lit).sum();
         ToySample {
             frame: base * light,

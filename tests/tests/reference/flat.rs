@@ -1,5 +1,6 @@
 //! A region that looks straight down: one pixel is one centimetre of the receiver.
 
+use app_core::internals::PlaneRect;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{ReceiverPlane, ReceiverPoint, ReceiverSolution, Region, Solution};
@@ -11,7 +12,7 @@ pub(crate) const PIXEL_M: f64 = 0.01;
 pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
     let half_m = 0.5 * PIXEL_M * size_px.as_dvec2();
     let receiver = ReceiverPlane {
-        plane_from_stage: DMat4::IDENTITY,
+        plane_from_anchor: DMat4::IDENTITY,
         plane_from_region_px: DMat3::from_cols(
             DVec3::new(PIXEL_M, 0.0, 0.0),
             DVec3::new(0.0, PIXEL_M, 0.0),
@@ -19,7 +20,10 @@ pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
         ),
         lights: lights.clone(),
         reference_in_plane: DVec2::ZERO,
-        half_extent_m: DVec2::splat(10.0),
+        rect: PlaneRect {
+            min: DVec2::splat(-10.0),
+            max: DVec2::splat(10.0),
+        },
     };
     Region {
         receivers: vec![receiver],
@@ -53,13 +57,13 @@ pub(crate) fn two_bulbs() -> Vec<DVec4> {
 
 /// A solution whose channels and lights all differ.
 pub(crate) fn truth(n_lights: usize) -> Solution {
-    let shares = [DVec3::new(0.31, 0.35, 0.42), DVec3::new(0.24, 0.2, 0.11)];
+    let direct_fractions = [DVec3::new(0.31, 0.35, 0.42), DVec3::new(0.24, 0.2, 0.11)];
     Solution {
         gain: DVec3::new(1.05, 0.98, 0.93),
-        levels: vec![DVec3::ONE; n_lights],
+        intensities: vec![DVec3::ONE; n_lights],
         receivers: vec![ReceiverSolution {
             bounce: DVec3::new(0.3, 0.12, 0.06),
-            shares: shares[..n_lights].to_vec(),
+            direct_fractions: direct_fractions[..n_lights].to_vec(),
             contrast: DVec3::ZERO,
         }],
         toy: vec![DVec3::splat(0.5); 2 + n_lights],
@@ -69,13 +73,13 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
 /// What a fit starts from: gain 1, and half of the light from all lights together.
 pub(crate) fn start(n_lights: usize) -> Solution {
     #[allow(clippy::cast_precision_loss, reason = "two lights")]
-    let share = 0.5 / n_lights as f64;
+    let direct_fraction = 0.5 / n_lights as f64;
     Solution {
         gain: DVec3::ONE,
-        levels: vec![DVec3::ONE; n_lights],
+        intensities: vec![DVec3::ONE; n_lights],
         receivers: vec![ReceiverSolution {
             bounce: DVec3::splat(0.27),
-            shares: vec![DVec3::splat(share); n_lights],
+            direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
             contrast: DVec3::ZERO,
         }],
         toy: vec![DVec3::ZERO; 2 + n_lights],

@@ -1,5 +1,6 @@
 //! Plates whose colours are known: of a plane seen straight from above, higher or lower, here or beside.
 
+use app_core::internals::PlaneRect;
 use glam::{DMat3, DMat4, DVec2, DVec3, UVec2};
 use harness::reference::model::{ReceiverPlane, Region};
 use harness::reference::plate::{PlateConstants, PlatePhoto, Viewpoint, choose};
@@ -12,13 +13,16 @@ fn above(middle: DVec2, height_m: f64) -> Viewpoint {
     let pixel_m = 0.01 * height_m;
     let corner = middle - 0.5 * pixel_m * SIZE.as_dvec2();
     let plane = ReceiverPlane {
-        plane_from_stage: DMat4::IDENTITY,
+        plane_from_anchor: DMat4::IDENTITY,
         // w is the inverse of the depth.
         plane_from_region_px: DMat3::from_cols(DVec3::X * pixel_m, DVec3::Y * pixel_m, corner.extend(1.0))
             * (1.0 / height_m),
         lights: Vec::new(),
         reference_in_plane: DVec2::ZERO,
-        half_extent_m: DVec2::splat(10.0),
+        rect: PlaneRect {
+            min: DVec2::splat(-10.0),
+            max: DVec2::splat(10.0),
+        },
     };
     Viewpoint {
         region: Region {
@@ -27,7 +31,7 @@ fn above(middle: DVec2, height_m: f64) -> Viewpoint {
             border_px: [0.0; 4],
             lights: Vec::new(),
         },
-        centre_in_stage: DVec3::new(middle.x, height_m, middle.y),
+        centre_in_anchor: DVec3::new(middle.x, height_m, middle.y),
     }
 }
 
@@ -79,7 +83,7 @@ fn a_slope_is_the_same_from_wherever_it_is_photographed() {
 fn of_two_plates_detail_weighs_by_its_power_and_no_more_than_enough() {
     let constants = PlateConstants::from_shader().unwrap();
     let view = above(DVec2::ZERO, 1.0);
-    let share_of_first = |heights_m: [f64; 2]| {
+    let direct_fraction_of_first = |heights_m: [f64; 2]| {
         let [first, second] = heights_m.map(|height_m| above(DVec2::ZERO, height_m));
         let plates = [
             photo(&first, 1.0, |_| DVec3::ONE),
@@ -88,14 +92,14 @@ fn of_two_plates_detail_weighs_by_its_power_and_no_more_than_enough() {
         choose(&view, &plates, &constants, UVec2::new(40, 30)).x
     };
     // From the middle both are 30 px inside: less than the feather, and alike.
-    assert!((share_of_first([1.0, 1.0]) - 0.5).abs() < 1e-9);
+    assert!((direct_fraction_of_first([1.0, 1.0]) - 0.5).abs() < 1e-9);
     // Nearer is no better than the view itself.
-    assert!((share_of_first([0.5, 1.0]) - 0.5).abs() < 1e-9);
+    assert!((direct_fraction_of_first([0.5, 1.0]) - 0.5).abs() < 1e-9);
     // A tenth higher shows 1 / 1.21 of the pixels.
     let weight = 1.21_f64.powf(-constants.choice_power);
     let expected = 1.0 / (1.0 + weight);
-    let found = share_of_first([1.0, 1.1]);
+    let found = direct_fraction_of_first([1.0, 1.1]);
     assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
     // Twice as high is not looked at, unless there is nothing else.
-    assert_eq!(share_of_first([1.0, 2.0]), 1.0);
+    assert_eq!(direct_fraction_of_first([1.0, 2.0]), 1.0);
 }

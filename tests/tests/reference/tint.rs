@@ -1,12 +1,12 @@
 //! `tint` against what must be so.
 
-use app_core::gpu::layout::TintGrid;
+use app_core::internals::TintGrid;
 use glam::{DVec3, UVec3};
 use harness::reference::tint::{SeenPaint, TintConstants, Volume, tints};
 
 const SIDE: u32 = 16;
 const GRID: TintGrid = TintGrid {
-    corner_in_stage: [-0.1, 0.0, 0.2],
+    corner_in_anchor: [-0.1, 0.0, 0.2],
     cell_m: 0.01,
     n_materials: 2,
     _pad_0: 0,
@@ -19,7 +19,7 @@ const PAINT: DVec3 = DVec3::new(1.5, 0.5, 1.0);
 fn seen(cell: UVec3, material: usize, paint: DVec3) -> Vec<SeenPaint> {
     let corner = DVec3::new(-0.1, 0.0, 0.2);
     let pixel = SeenPaint {
-        in_stage: corner + 0.01 * (cell.as_dvec3() + 0.5),
+        in_anchor: corner + 0.01 * (cell.as_dvec3() + 0.5),
         material,
         shown: paint * EXPECTED,
         expected: EXPECTED,

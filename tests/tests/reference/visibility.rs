@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use app_core::light_points::{ambient_directions, light_points};
+use app_core::internals::{ambient_directions, light_points};
 use app_core::scene::Light;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::occlusion::{Caster, Occluder};

@@ -8,7 +8,7 @@ mod parts;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use app_core::scene::{Light, Surface};
+use app_core::scene::{Light, Pose, Surface};
 use app_core::session::{Capture, GroundTruth, Session};
 use image::{DynamicImage, ImageFormat};
 use serde_json::{Value, json};
@@ -47,11 +47,8 @@ fn a_good_capture_is_read_as_written() {
         "a repeated picture is shared"
     );
     assert_eq!(n_reads.load(Ordering::Relaxed), before + 1, "and read once");
-    assert_eq!(
-        (first.shown_pose.time_secs, first.shown_pose.clip.is_some()),
-        (0.25, true)
-    );
-    assert_eq!((second.time_secs, second.shown_pose.clip), (0.1, None));
+    assert_eq!(time_in_clip(&first.shown_pose), Some(0.25));
+    assert_eq!((second.time_secs, second.shown_pose), (0.1, Pose::Authored));
     assert!(capture.warnings().is_empty() && first.warnings.is_empty());
     assert_eq!(
         capture.truth(0).unwrap().unwrap().mask.rgba8,
@@ -72,6 +69,27 @@ fn what_is_optional_may_be_missing() {
     assert!(capture.scene().lights.is_empty() && capture.scene().plates.is_empty());
 }
 
+fn time_in_clip(pose: &Pose) -> Option<f64> {
+    match pose {
+        Pose::Clip { time_secs, .. } => Some(*time_secs),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_frame_brings_what_a_live_camera_changes() {
+    let capture = Parts::good().open().unwrap();
+    let (first, second) = (capture.frame(0).unwrap(), capture.frame(1).unwrap());
+    assert_eq!(
+        [first.camera, second.camera].map(|camera| camera.intrinsics.fx_px),
+        [2.0, 2.5]
+    );
+    assert_eq!(capture.scene().plates[0].camera, second.camera);
+    assert_eq!([first.exposure, second.exposure], [1.0, 0.5]);
+    assert_eq!(first.world_from_object, capture.scene().world_from_object);
+    assert_eq!(second.world_from_object.w_axis.x, 0.25);
+}
+
 #[test]
 fn a_time_beyond_its_clip_is_clamped_and_said() {
     let mut parts = Parts::good();
@@ -79,15 +97,19 @@ fn a_time_beyond_its_clip_is_clamped_and_said() {
     parts.set("toy.physical_pose", json!({"clip": "Wave", "time": 3.0}));
     let capture = parts.open().unwrap();
     let frame = capture.frame(0).unwrap();
-    assert_eq!((frame.shown_pose.time_secs, frame.warnings.len()), (1.0, 1));
+    assert_eq!(
+        (time_in_clip(&frame.shown_pose), frame.warnings.len()),
+        (Some(1.0), 1)
+    );
     let text = frame.warnings[0].to_string();
     assert!(
         text.contains("capture.json (frames[0].animation.time): 7.5 s is beyond"),
         "{text}"
     );
+    let physical_pose = &capture.scene().physical_pose;
     assert_eq!(
-        (capture.scene().physical_pose.time_secs, capture.warnings().len()),
-        (1.0, 1)
+        (time_in_clip(physical_pose), capture.warnings().len()),
+        (Some(1.0), 1)
     );
 }
 
@@ -128,6 +150,10 @@ fn each_wrong_value_is_named() {
         ("frames[0].world_from_camera", with(12, json!(1e300)), "is not from"),
         ("frames[0].world_from_camera", json!([1, 0, 0]), "invalid length 3"),
         ("frames[1].world_from_camera[7]", json!(null), "expected f64"),
+        ("frames[1].exposure", json!(0), "0 is not from"),
+        ("frames[1].intrinsics.fx", json!(-1), "-1 is not from"),
+        ("frames[1].world_from_object", with(5, json!(-1)), "mirrors"),
+        ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),
         ("frames[0].animation.time", json!(-0.1), "-0.1 is not from 0"),
         ("probe.exposure_ratio", json!(0), "0 is not from"),

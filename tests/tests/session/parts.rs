@@ -109,11 +109,14 @@ pub(crate) fn good_index() -> Value {
             {"kind": "sphere", "position": [0, 1, 0], "radius": 0.1},
             {"kind": "directional", "direction_to_light": [0, 2, 0], "angular_radius_deg": 45}
         ],
-        "backgrounds": [{"image": "plate.jpg", "world_from_camera": IDENTITY}],
+        "backgrounds": [{"image": "plate.jpg", "world_from_camera": IDENTITY,
+            "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}],
         "frames": [
             {"time": 0.0, "image": "frame.png", "world_from_camera": IDENTITY,
                 "animation": {"clip": "Wave", "time": 0.25}, "truth": "frame.png", "mask": "mask.png"},
             {"time": 0.1, "image": "frame.png", "world_from_camera": IDENTITY,
+                "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}, "exposure": 0.5,
+                "world_from_object": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0, 1],
                 "animation": {"clip": null, "time": 0}}
         ],
         "probe": {"kind": "fresnel_lens", "world_from_lens": IDENTITY, "radius": 0.05,

@@ -41,6 +41,15 @@ fn animated(path: &str, interpolation: &str, shape: &str, times: &[f32], values:
     glb
 }
 
+/// Its node, called `arm`, turns by 90 degrees around z in the second that `move` takes.
+pub(crate) fn turning() -> Glb {
+    let quarter = [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
+    let values = [[0.0, 0.0, 0.0, 1.0], quarter].concat();
+    let mut glb = animated("rotation", "LINEAR", "VEC4", &[0.0, 1.0], &values);
+    glb.json["nodes"][0]["name"] = json!("arm");
+    glb
+}
+
 pub(crate) fn cases() -> Vec<Case> {
     [tracks(), transforms(), skins_and_morphs(), topologies()]
         .into_iter()

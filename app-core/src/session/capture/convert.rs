@@ -2,15 +2,17 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty};
-use super::place::{fresnel_lens, intrinsics, light, plates, receiver};
+use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
+use super::place::{camera, fresnel_lens, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
-use super::{Capture, Frame, PictureStore, TruthFiles, read_named};
-use crate::scene::{PoseTime, Scene};
-use crate::session::error::{FieldError, SessionError};
+use super::{Capture, Frame, PictureStore, TruthFiles};
+use crate::scene::{FieldError, Intrinsics, Pose, Scene, check};
+use crate::session::SessionWarning;
+use crate::session::error::SessionError;
+use crate::session::files::Files;
 use crate::session::picture::PictureSize;
-use crate::session::{Files, SessionWarning, check};
 use crate::toy::Toy;
+use glam::DMat4;
 
 const MAX_TOY_BYTES: u64 = 256 << 20;
 const MAX_SIDE_PX: f64 = 16384.0;
@@ -23,7 +25,7 @@ pub(super) fn capture_from_record(
     record: CaptureRecord,
 ) -> Result<Capture, SessionError> {
     let size = picture_size(&record)?;
-    let intrinsics = intrinsics(&record.intrinsics)?;
+    let intrinsics = intrinsics("intrinsics", &record.intrinsics)?;
     let world_from_object = at(
         "toy.world_from_object",
         check::similarity(record.toy.world_from_object),
@@ -39,12 +41,16 @@ pub(super) fn capture_from_record(
         &record.toy.physical_pose,
         &mut warnings,
     )?;
+    let defaults = Defaults {
+        intrinsics,
+        world_from_object,
+    };
     let frames = non_empty("frames", &record.frames, |field, frame| {
-        frame_from_record(&toy, field, frame)
+        frame_from_record(&toy, &defaults, field, frame)
     })?;
 
     let store = PictureStore { files, size };
-    let plates = plates(&store, &record.backgrounds)?;
+    let plates = plates(&store, &intrinsics, &record.backgrounds)?;
     let probe = record
         .probe
         .map(|probe| fresnel_lens(&store, &probe))
@@ -53,7 +59,6 @@ pub(super) fn capture_from_record(
         name: record.name,
         width_px: size.width_px,
         height_px: size.height_px,
-        intrinsics,
         toy: Arc::new(toy),
         world_from_object,
         physical_pose,
@@ -115,14 +120,11 @@ fn pose(
     field: &str,
     record: &PoseRecord,
     warnings: &mut Vec<SessionWarning>,
-) -> Result<PoseTime, SessionError> {
+) -> Result<Pose, SessionError> {
     let time_field = format!("{field}.time");
     let asked_secs = at(&time_field, check::number(record.time, &check::CLIP_TIME_SECS))?;
     let Some(name) = &record.clip else {
-        return Ok(PoseTime {
-            clip: None,
-            time_secs: asked_secs,
-        });
+        return Ok(Pose::Authored);
     };
     let clip = toy
         .find_clip(name)
@@ -139,13 +141,24 @@ fn pose(
             used_secs,
         });
     }
-    Ok(PoseTime {
-        clip: Some(clip),
+    Ok(Pose::Clip {
+        clip,
         time_secs: used_secs,
     })
 }
 
-fn frame_from_record(toy: &Toy, field: &str, record: &FrameRecord) -> Result<Frame, SessionError> {
+/// What a frame has unless it brings its own.
+struct Defaults {
+    intrinsics: Intrinsics,
+    world_from_object: DMat4,
+}
+
+fn frame_from_record(
+    toy: &Toy,
+    defaults: &Defaults,
+    field: &str,
+    record: &FrameRecord,
+) -> Result<Frame, SessionError> {
     let mut warnings = Vec::new();
     let picture_fields = [
         ("image", Some(&record.image)),
@@ -162,9 +175,18 @@ fn frame_from_record(toy: &Toy, field: &str, record: &FrameRecord) -> Result<Fra
             check::number(record.time, &check::TIME_SECS),
         )?,
         picture: record.image.clone(),
-        world_from_camera: at(
-            &format!("{field}.world_from_camera"),
-            check::rigid(record.world_from_camera),
+        camera: camera(
+            field,
+            record.world_from_camera,
+            (record.intrinsics.as_ref(), &defaults.intrinsics),
+        )?,
+        world_from_object: match record.world_from_object {
+            Some(matrix) => at(&format!("{field}.world_from_object"), check::similarity(matrix))?,
+            None => defaults.world_from_object,
+        },
+        exposure: at(
+            &format!("{field}.exposure"),
+            check::number(record.exposure.unwrap_or(1.0), &check::EXPOSURE),
         )?,
         shown_pose: pose(
             toy,

@@ -1,7 +1,8 @@
 //! Where in `capture.json` something stands, for the errors.
 
-use crate::session::error::{FieldError, SessionError, SessionErrorKind};
-use crate::session::files::{FileError, check_path};
+use crate::scene::FieldError;
+use crate::session::error::{SessionError, SessionErrorKind};
+use crate::session::files::{FileError, Files, check_path};
 
 pub(super) const INDEX_FILE: &str = "capture.json";
 /// Stands in the place of a field when no single one is at fault.
@@ -47,4 +48,17 @@ pub(super) fn non_empty<R, T>(
         return Err(in_index(field, FieldError::Empty));
     }
     each(field, records, convert)
+}
+
+/// Reads a file that a field of `capture.json` names.
+pub(super) fn read_named(
+    files: &dyn Files,
+    path: &str,
+    field: &str,
+    max_bytes: u64,
+) -> Result<Vec<u8>, SessionError> {
+    check_named(path, field)?;
+    files
+        .read(path, max_bytes)
+        .map_err(|error| SessionError::new(path, field, error))
 }

@@ -10,19 +10,36 @@ use super::field::{at, in_index};
 use super::record::{
     BackgroundRecord, IntrinsicsRecord, LightKind, LightRecord, ProbeRecord, ReceiverRecord, SurfaceRecord,
 };
-use crate::scene::{FresnelLens, Image, Intrinsics, Light, Plate, Receiver, Surface};
-use crate::session::check;
-use crate::session::error::{FieldError, SessionError};
+use crate::scene::check;
+use crate::scene::{Camera, FieldError, FresnelLens, Image, Intrinsics, Light, Plate, Receiver, Surface};
+use crate::session::error::SessionError;
 
 /// Pixels of all plates together, which stay in memory: 1 GiB.
 const MAX_PLATE_PIXELS: u64 = 1 << 28;
 
-pub(super) fn intrinsics(record: &IntrinsicsRecord) -> Result<Intrinsics, SessionError> {
+pub(super) fn intrinsics(field: &str, record: &IntrinsicsRecord) -> Result<Intrinsics, SessionError> {
+    let number = |name: &str, value, range| at(&format!("{field}.{name}"), check::number(value, range));
     Ok(Intrinsics {
-        fx_px: at("intrinsics.fx", check::number(record.fx, &check::FOCAL_PX))?,
-        fy_px: at("intrinsics.fy", check::number(record.fy, &check::FOCAL_PX))?,
-        cx_px: at("intrinsics.cx", check::number(record.cx, &check::POSITION_PX))?,
-        cy_px: at("intrinsics.cy", check::number(record.cy, &check::POSITION_PX))?,
+        fx_px: number("fx", record.fx, &check::FOCAL_PX)?,
+        fy_px: number("fy", record.fy, &check::FOCAL_PX)?,
+        cx_px: number("cx", record.cx, &check::POSITION_PX)?,
+        cy_px: number("cy", record.cy, &check::POSITION_PX)?,
+    })
+}
+
+/// A camera with intrinsics of its own or those of the session.
+pub(super) fn camera(
+    field: &str,
+    world_from_camera: [f64; 16],
+    (own, of_session): (Option<&IntrinsicsRecord>, &Intrinsics),
+) -> Result<Camera, SessionError> {
+    let own = own.map(|own| intrinsics(&format!("{field}.intrinsics"), own));
+    Ok(Camera {
+        intrinsics: own.transpose()?.unwrap_or(*of_session),
+        world_from_camera: at(
+            &format!("{field}.world_from_camera"),
+            check::rigid(world_from_camera),
+        )?,
     })
 }
 
@@ -85,14 +102,19 @@ pub(super) fn light(field: &str, record: &LightRecord) -> Result<Light, SessionE
 }
 
 /// Reads the plates. Those with the same file share its picture.
-pub(super) fn plates(store: &PictureStore, records: &[BackgroundRecord]) -> Result<Vec<Plate>, SessionError> {
+pub(super) fn plates(
+    store: &PictureStore,
+    intrinsics: &Intrinsics,
+    records: &[BackgroundRecord],
+) -> Result<Vec<Plate>, SessionError> {
     let mut pictures: HashMap<&str, Arc<Image>> = HashMap::new();
     let mut plates = Vec::new();
     for (i, record) in records.iter().enumerate() {
         let field = format!("backgrounds[{i}]");
-        let world_from_camera = at(
-            &format!("{field}.world_from_camera"),
-            check::rigid(record.world_from_camera),
+        let camera = camera(
+            &field,
+            record.world_from_camera,
+            (record.intrinsics.as_ref(), intrinsics),
         )?;
         let image = match pictures.get(record.image.as_str()) {
             Some(image) => Arc::clone(image),
@@ -109,10 +131,7 @@ pub(super) fn plates(store: &PictureStore, records: &[BackgroundRecord]) -> Resu
                 image
             }
         };
-        plates.push(Plate {
-            world_from_camera,
-            image,
-        });
+        plates.push(Plate { camera, image });
     }
     Ok(plates)
 }

@@ -89,6 +89,8 @@ pub(super) enum LightKind {
 #[derive(Deserialize)]
 pub(super) struct BackgroundRecord {
     pub(super) image: String,
+    /// Those of the session where there are none.
+    pub(super) intrinsics: Option<IntrinsicsRecord>,
     pub(super) world_from_camera: [f64; 16],
 }
 
@@ -96,6 +98,12 @@ pub(super) struct BackgroundRecord {
 pub(super) struct FrameRecord {
     pub(super) time: f64,
     pub(super) image: String,
+    /// Those of the session where there are none.
+    pub(super) intrinsics: Option<IntrinsicsRecord>,
+    /// Where the toy stands, if it was moved since the session began.
+    pub(super) world_from_object: Option<[f64; 16]>,
+    /// Exposure of the picture, relative to that of the other frames.
+    pub(super) exposure: Option<f64>,
     pub(super) world_from_camera: [f64; 16],
     pub(super) animation: PoseRecord,
     pub(super) truth: Option<String>,

@@ -1,0 +1,64 @@
+//! `eligible`: the paper's masks 3b and 3c, the real shadow and the part of it to sample from.
+
+use wgpu::TextureFormat;
+
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::FULLSCREEN;
+
+pub(crate) const SHADER: Shader =
+    Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/eligible")]);
+const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture];
+/// Format of the masks: r is 3c as a set of lights, g is 3b.
+const FORMAT: TextureFormat = TextureFormat::Rg8Uint;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) mask: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    pub(crate) labels: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &BaselinePlan) -> Self {
+        Self {
+            labels: Texture::target(gpu, "eligible", plan.region.size_px, FORMAT),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_mark", groups, &[FORMAT])),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(
+                &self.draw,
+                GROUP_PASS,
+                &[inputs.mask.into(), inputs.visibility.into()],
+            ),
+        ];
+        recorder.fullscreen(&self.draw, &groups, &[&targets.labels.view]);
+    }
+}

@@ -1,0 +1,87 @@
+//! `search`: the shadow term of each texel of the new shadows, by the warp or by the concentric ring search.
+
+use wgpu::TextureFormat;
+
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::FULLSCREEN;
+
+pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/search")]);
+const SLOTS: &[Slot] = &[
+    Slot::Layers,
+    Slot::WholeNumbers,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Read,
+];
+/// Format of terms and of their sums.
+pub(crate) const TERM_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of the count of taps.
+const TAPS_FORMAT: TextureFormat = TextureFormat::R16Float;
+
+/// Only where the real shadow is sampled.
+pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
+    !plan.is_constant
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) warp: &'a wgpu::TextureView,
+    pub(crate) labels: &'a wgpu::TextureView,
+    pub(crate) seen_sets: &'a wgpu::Buffer,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    pub(crate) terms: Texture,
+    pub(crate) taps: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &BaselinePlan) -> Self {
+        let target = |label, format| Texture::target(gpu, label, plan.region.size_px, format);
+        Self {
+            terms: target("terms", TERM_FORMAT),
+            taps: target("taps", TAPS_FORMAT),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        let formats = [TERM_FORMAT, TAPS_FORMAT];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_search", groups, &formats)),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let resources = [
+            inputs.warp.into(),
+            inputs.labels.into(),
+            inputs.frame.into(),
+            inputs.plate.into(),
+            inputs.seen_sets.into(),
+        ];
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(&self.draw, GROUP_PASS, &resources),
+        ];
+        let targets = [&targets.terms.view, &targets.taps.view];
+        recorder.fullscreen(&self.draw, &groups, &targets);
+    }
+}

@@ -1,0 +1,66 @@
+//! What the baseline lacks: real shadows that were not seen.
+
+use crate::baseline::Baseline;
+use crate::baseline::census::SeenSets;
+use crate::frame::warning::{UnseenShadow, Warning};
+use crate::gpu::context::{Gpu, GpuError};
+use crate::readback::{FloatMap, Map};
+use crate::scene::MAX_LIGHTS;
+
+/// Sets of lights that there can be, the empty one included.
+const N_SETS: usize = 1 << MAX_LIGHTS;
+
+impl Baseline {
+    /// Waits for the device and returns what real shadow was not seen, for the pose shown last.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+        if self.plan.is_constant {
+            return Ok(Vec::new());
+        }
+        let seen: SeenSets = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.targets.census.seen_sets)?);
+        if seen.iter().all(|sets| *sets == 0) {
+            return Ok(vec![Warning::NothingToSample]);
+        }
+        let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
+        let unseen = unseen(&needed.unwrap_or_default(), &seen);
+        let is_any = !unseen.is_empty();
+        Ok(is_any
+            .then_some(Warning::ShadowsUnseen { unseen })
+            .into_iter()
+            .collect())
+    }
+}
+
+/// What the labels of terms need, as a census has it.
+fn sets_in(terms: &FloatMap) -> SeenSets {
+    let mut needed = SeenSets::default();
+    for term in &terms.texels {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "labels are small whole numbers"
+        )]
+        let label = term[3] as usize;
+        if let Some(sets) = needed.get_mut(label / N_SETS).filter(|_| label > 0) {
+            *sets |= 1 << (label % N_SETS);
+        }
+    }
+    needed
+}
+
+fn unseen(needed: &SeenSets, seen: &SeenSets) -> Vec<UnseenShadow> {
+    let lights = |set: usize| (0..MAX_LIGHTS).filter(|light| set >> light & 1 == 1).collect();
+    let of_receiver = |(receiver, (needed, seen)): (usize, (&u32, &u32))| {
+        let sets = needed & !seen;
+        let sets = (1..N_SETS).filter(move |set| sets >> set & 1 == 1);
+        sets.map(move |set| UnseenShadow {
+            receiver,
+            lights: lights(set),
+        })
+    };
+    needed
+        .iter()
+        .zip(seen)
+        .enumerate()
+        .flat_map(of_receiver)
+        .collect()
+}

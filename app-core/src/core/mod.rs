@@ -1,0 +1,288 @@
+//! [`Core`]: the one type a shell or a harness holds.
+
+mod error;
+mod inspect;
+mod warm_up;
+
+use std::sync::Arc;
+
+use crate::frame::input::FrameInput;
+use crate::frame::report::FrameReport;
+use crate::gpu::context::{AdapterChoice, Gpu};
+use crate::gpu::pass_run::PassTime;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::surface::Window;
+use crate::gpu::timer::Timer;
+use crate::model::Model;
+use crate::model::plan::Plan;
+use crate::preset::Preset;
+use crate::readback::inject::InjectedVisibility;
+use crate::scene::{Image, Scene};
+use crate::stage::Stage;
+use crate::stage::method::Method;
+
+pub use error::CoreError;
+pub use warm_up::WarmUp;
+
+/// The pipeline on a device: scene in, frames in, pictures out.
+pub struct Core {
+    gpu: Arc<Gpu>,
+    window: Option<Window>,
+    stage: Option<Stage>,
+    /// Only for those who ask.
+    timer: Option<Timer>,
+}
+
+impl Core {
+    /// A core that draws into textures alone, for replay and tests.
+    ///
+    /// # Errors
+    /// When there is no adapter of that choice, or it falls short of a phone's limits.
+    pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
+        Ok(Self::new(Gpu::open(instance, adapter, None).await?, None))
+    }
+
+    /// A core on the caller's own device, which draws into textures alone; the caller goes on using device and queue.
+    ///
+    /// # Errors
+    /// When the device was opened with less than a phone's limits.
+    pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, CoreError> {
+        Ok(Self::new(Gpu::adopt(device, queue)?, None))
+    }
+
+    /// A core that presents on `surface`, of `size_px` physical pixels.
+    ///
+    /// # Errors
+    /// When no adapter can draw on the surface, or it falls short of a phone's limits.
+    pub async fn on_surface(
+        instance: &wgpu::Instance,
+        surface: wgpu::Surface<'static>,
+        size_px: [u32; 2],
+    ) -> Result<Self, CoreError> {
+        let gpu = Gpu::open(instance, &AdapterChoice::Fastest, Some(&surface)).await?;
+        let window = Window::new(&gpu, surface, size_px)?;
+        Ok(Self::new(gpu, Some(window)))
+    }
+
+    fn new(gpu: Gpu, window: Option<Window>) -> Self {
+        Self {
+            gpu: Arc::new(gpu),
+            window,
+            stage: None,
+            timer: None,
+        }
+    }
+
+    /// Drops the surface; device, pipelines and what was learned stay.
+    pub fn suspend(&mut self) {
+        self.window = None;
+    }
+
+    /// Continues on a new surface.
+    ///
+    /// # Errors
+    /// When the device cannot draw on it.
+    pub fn resume(&mut self, surface: wgpu::Surface<'static>, size_px: [u32; 2]) -> Result<(), CoreError> {
+        self.window = Some(Window::new(&self.gpu, surface, size_px)?);
+        Ok(())
+    }
+
+    /// Follows a new size of the surface, in physical pixels.
+    pub fn resize(&mut self, size_px: [u32; 2]) {
+        if let Some(window) = &mut self.window {
+            window.resize(&self.gpu, size_px);
+        }
+    }
+
+    /// Shows the latest picture, or black before the first.
+    ///
+    /// # Errors
+    /// When the surface is lost for good; one that is only out of date is set up anew.
+    pub fn present(&mut self) -> Result<(), CoreError> {
+        let Some(window) = &mut self.window else {
+            return Ok(());
+        };
+        let picture = self.stage.as_ref().map(|stage| &stage.output.view);
+        Ok(window.present(&self.gpu, picture)?)
+    }
+
+    /// Takes a scene; what was learned of another is forgotten.
+    ///
+    /// # Errors
+    /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
+    pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
+        scene.check()?;
+        let largest_px = self.gpu.device.raw.limits().max_texture_dimension_2d;
+        let size_px = [scene.width_px, scene.height_px];
+        if size_px.iter().any(|side| !(1..=largest_px).contains(side)) {
+            return Err(CoreError::SizeOutOfRange { size_px, largest_px });
+        }
+        for plate in &scene.plates {
+            check_size("plate", &scene, &plate.image)?;
+        }
+        self.stage = None;
+        self.gpu.release_groups();
+        for compiled in self.warm_up(preset) {
+            compiled?;
+        }
+        let stage = self.gpu.guarded(|| Stage::new(&self.gpu, scene, preset))??;
+        self.stage = Some(stage);
+        Ok(())
+    }
+
+    /// Makes the picture of one frame.
+    ///
+    /// # Errors
+    /// When there is no scene, a value of the input cannot be, the camera's picture is not of the scene's size, or the device
+    /// refuses the work.
+    pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        input.check()?;
+        check_size("camera frame", stage.scene(), &input.image)?;
+        if let Some(timer) = &mut self.timer {
+            timer.start();
+        }
+        let (gpu, timer) = (&self.gpu, self.timer.as_mut());
+        let made = gpu.guarded(|| {
+            let mut recorder = Recorder::new(gpu, timer);
+            let mut report = stage.encode(&mut recorder, input)?;
+            report.ran = recorder.submit();
+            Ok::<_, CoreError>(report)
+        });
+        match made {
+            Ok(report) => report,
+            Err(refused) => {
+                stage.forget();
+                Err(refused.into())
+            }
+        }
+    }
+
+    /// The texture that each frame's picture is drawn to, of the scene's size: sRGB codes as
+    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It stays until the next scene.
+    #[must_use]
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
+        self.stage.as_ref().map(|stage| &stage.output.raw)
+    }
+
+    /// Waits for the device and returns the latest picture, alpha 255.
+    ///
+    /// # Errors
+    /// When there is no scene, or the device is lost.
+    pub fn read_picture(&self) -> Result<Image, CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let rgba8 = self.gpu.read_texture(&stage.output.raw)?;
+        Ok(Image {
+            width_px: stage.output.raw.width(),
+            height_px: stage.output.raw.height(),
+            rgba8,
+        })
+    }
+
+    /// Takes time stamps of each pass from the next frame on, where the device can; or no longer.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn time_passes(&mut self, is_wanted: bool) -> Result<(), CoreError> {
+        self.timer = if is_wanted {
+            self.gpu.guarded(|| Timer::new(&self.gpu))?
+        } else {
+            None
+        };
+        Ok(())
+    }
+
+    /// Waits for the device and returns the latest frame's time per pass; empty where nobody asked for it, or the device
+    /// cannot tell.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_pass_times(&self) -> Result<Vec<PassTime>, CoreError> {
+        let times = self
+            .timer
+            .as_ref()
+            .map(|timer| timer.read(&self.gpu))
+            .transpose()?;
+        Ok(times.unwrap_or_default())
+    }
+
+    /// Replaces visibilities of the lights in what follows, so that errors of visibility can be told from all others.
+    ///
+    /// What was learned is learned again with the next frame. The maps stay until the place, the camera or the scene
+    /// changes, or others are injected. A measuring aid: no product has exact visibility.
+    ///
+    /// # Errors
+    /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.
+    pub fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        let expected_px = stage
+            .method()
+            .ok_or(CoreError::NoScene)?
+            .region()
+            .size_px
+            .to_array();
+        for map in [&maps.physical, &maps.shown].into_iter().flatten() {
+            let actual_px = [map.width, map.height];
+            let n_texels = map.width as usize * map.height as usize;
+            if actual_px != expected_px || map.texels.len() != n_texels {
+                return Err(CoreError::SizeDiffers {
+                    what: "injected visibility",
+                    expected_px,
+                    actual_px,
+                    n_bytes: 16 * map.texels.len(),
+                });
+            }
+        }
+        stage.inject(&self.gpu, maps);
+        Ok(())
+    }
+
+    /// Keeps the real shadow from what follows, so that how well it is rebuilt can be measured on photographs that have no
+    /// truth: of the first frame it tells the fits and, where no plate shows the place, a smooth estimate of that, in which
+    /// shadow counts little; of later ones nothing. The physical pose is then made
+    /// like any other, and its photograph is its truth.
+    ///
+    /// Until another scene is set. A measuring aid for the presets of the model; `paper` and `flat` stay as they are.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    pub fn withhold_shadow(&mut self) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
+        Ok(())
+    }
+
+    /// The model's plan of the latest retargeted frame, once there was one.
+    #[must_use]
+    pub fn plan(&self) -> Option<&Plan> {
+        self.model().map(|model| &model.region.plan)
+    }
+
+    fn model(&self) -> Option<&Model> {
+        self.stage
+            .as_ref()
+            .and_then(Stage::method)
+            .and_then(Method::model)
+    }
+
+    /// The device, for reports.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}
+
+fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
+    let expected_px = [scene.width_px, scene.height_px];
+    let actual_px = [image.width_px, image.height_px];
+    let n_bytes = 4 * u64::from(image.width_px) * u64::from(image.height_px);
+    if expected_px == actual_px && image.rgba8.len() as u64 == n_bytes {
+        Ok(())
+    } else {
+        Err(CoreError::SizeDiffers {
+            what,
+            expected_px,
+            actual_px,
+            n_bytes: image.rgba8.len(),
+        })
+    }
+}

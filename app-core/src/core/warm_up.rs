@@ -1,0 +1,44 @@
+//! Compiling what frames need before there is a scene.
+
+use std::sync::Arc;
+
+use super::Core;
+use crate::gpu::context::{Gpu, GpuError};
+use crate::passes::list::WarmUp as Compile;
+use crate::preset::Preset;
+use crate::stage::method;
+
+impl Core {
+    /// Compiles what the frames of `preset` need, one pass a step: on another thread, or a few steps between two frames of
+    /// the shell's own. What has not been compiled until then, [`Core::set_scene`] compiles.
+    #[must_use]
+    pub fn warm_up(&self, preset: Preset) -> WarmUp {
+        WarmUp {
+            gpu: Arc::clone(&self.gpu),
+            left: method::warm_ups(preset).into_iter(),
+        }
+    }
+}
+
+/// The steps of [`Core::warm_up`]: each is the name of the pass that it compiled, and [`len`](ExactSizeIterator::len) says how
+/// many are left.
+#[derive(Debug)]
+pub struct WarmUp {
+    gpu: Arc<Gpu>,
+    left: std::vec::IntoIter<Compile>,
+}
+
+impl Iterator for WarmUp {
+    type Item = Result<&'static str, GpuError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let (pass, compile) = self.left.next()?;
+        Some(self.gpu.guarded(|| compile(&self.gpu)).map(|()| pass))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.left.size_hint()
+    }
+}
+
+impl ExactSizeIterator for WarmUp {}

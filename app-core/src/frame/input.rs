@@ -1,0 +1,56 @@
+//! What comes in for one frame.
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use crate::scene::check;
+use crate::scene::{Camera, Image, InputError, Light, Pose};
+use crate::session::SessionFrame;
+
+/// A camera frame of the real, static toy, and the pose to show.
+///
+/// Whatever of it differs from the frame before, nothing is compiled anew; see the architecture for what is learned anew.
+#[derive(Clone, Debug)]
+pub struct FrameInput {
+    /// The camera's picture, of the scene's size.
+    pub image: Arc<Image>,
+    /// The camera that took it.
+    pub camera: Camera,
+    /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where nobody
+    /// says; the pixels decide then.
+    pub exposure: f64,
+    /// Where the real toy stands. From the model's scene space to world: a rotation, a translation and one positive scale.
+    pub world_from_object: DMat4,
+    /// The lights, where they are others than those of the scene.
+    pub lights: Option<Arc<[Light]>>,
+    /// The pose the toy is to be shown in.
+    pub shown_pose: Pose,
+}
+
+impl FrameInput {
+    /// Refuses what no picture could be made of.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        check::camera("camera", &self.camera)?;
+        InputError::at("exposure", check::number(self.exposure, &check::EXPOSURE))?;
+        let similarity = check::similarity(self.world_from_object.to_cols_array());
+        InputError::at("world_from_object", similarity)?;
+        for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
+            check::light(&format!("lights[{index}]"), light)?;
+        }
+        Ok(())
+    }
+}
+
+impl From<&SessionFrame> for FrameInput {
+    fn from(frame: &SessionFrame) -> Self {
+        Self {
+            image: Arc::clone(&frame.image),
+            camera: frame.camera,
+            exposure: frame.exposure,
+            world_from_object: frame.world_from_object,
+            lights: None,
+            shown_pose: frame.shown_pose.clone(),
+        }
+    }
+}

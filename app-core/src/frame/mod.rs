@@ -1,0 +1,12 @@
+//! One frame in, one report out.
+
+pub(crate) mod input;
+pub(crate) mod report;
+pub(crate) mod warning;
+
+pub use crate::geometry::rect::PixelRect;
+pub use crate::gpu::pass_run::{PassRun, PassTime, Path};
+pub use crate::plan::LeftOut;
+pub use input::FrameInput;
+pub use report::FrameReport;
+pub use warning::{Outlier, UnseenShadow, Warning};

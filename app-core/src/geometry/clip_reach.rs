@@ -1,0 +1,68 @@
+//! What a toy reaches in its physical pose and over a whole clip, in stage space: bounds that no camera changes.
+
+use glam::{DMat4, DVec3};
+
+use crate::geometry::bounds::Bounds;
+use crate::geometry::outline::Outline;
+use crate::geometry::reach::Reach;
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::view::View;
+use crate::toy::{ClipId, Pose, PosedMesh, Toy, ToyError};
+
+/// Moments of a clip that its outline is taken from.
+const N_MOMENTS: u32 = 64;
+
+/// Bounds and outline over a clip.
+pub(crate) struct ClipReach {
+    /// The clip; none for the model's pose as authored.
+    pub(crate) clip: Option<ClipId>,
+    /// The toy alone.
+    pub(crate) bounds: Bounds,
+    outline: Outline,
+}
+
+impl ClipReach {
+    /// Poses the toy at moments of `clip` and once as `physical`, into `posed`.
+    pub(crate) fn new(
+        toy: &Toy,
+        anchor_from_object: &DMat4,
+        (physical, clip): (&Pose, Option<ClipId>),
+        posed: &mut PosedMesh,
+    ) -> Result<Self, ToyError> {
+        toy.pose(physical, anchor_from_object, posed)?;
+        let mut outline = Outline::new(Bounds::around(points(posed)).centre());
+        for moment in moments(toy, clip).iter().chain([physical]) {
+            toy.pose(moment, anchor_from_object, posed)?;
+            points(posed).for_each(|p| outline.include(p));
+        }
+        Ok(Self {
+            clip,
+            bounds: Bounds::around(outline.points()),
+            outline,
+        })
+    }
+
+    /// What toy and shadows reach in a view.
+    pub(crate) fn on_view<'a>(&self, view: &'a View, layout: &SceneLayout<'_>) -> Reach<'a> {
+        let mut reach = Reach::new(view, &self.bounds, layout);
+        self.outline.points().for_each(|p| reach.include(p));
+        reach
+    }
+}
+
+fn points(posed: &PosedMesh) -> impl Iterator<Item = DVec3> + '_ {
+    posed.positions.iter().map(|p| p.as_dvec3())
+}
+
+/// Moments of a clip, evenly spaced, or the pose as authored.
+fn moments(toy: &Toy, clip: Option<ClipId>) -> Vec<Pose> {
+    let Some(clip) = clip else {
+        return vec![Pose::Authored];
+    };
+    let duration_secs = toy.clips()[clip.index()].duration_secs;
+    let moment = |k: u32| Pose::Clip {
+        clip,
+        time_secs: duration_secs * f64::from(k) / f64::from(N_MOMENTS - 1),
+    };
+    (0..N_MOMENTS).map(moment).collect()
+}

@@ -1,0 +1,11 @@
+//! The transfer function of pictures.
+
+/// Decodes an sRGB value in [0, 1]. Source: IEC 61966-2-1.
+#[must_use]
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}

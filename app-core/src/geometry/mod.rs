@@ -1,0 +1,13 @@
+//! Geometry in 64 bits: the camera, the receivers, the lights, and what toy and shadows reach in the picture.
+
+pub(crate) mod anchored;
+pub(crate) mod bounds;
+pub(crate) mod clip_reach;
+pub(crate) mod color;
+pub(crate) mod light_points;
+pub(crate) mod outline;
+pub(crate) mod reach;
+pub(crate) mod rect;
+pub(crate) mod scene_layout;
+pub(crate) mod shadow_atlas;
+pub(crate) mod view;

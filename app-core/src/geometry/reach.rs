@@ -1,0 +1,185 @@
+//! The work region: the rectangle of the camera image that toy and shadows can reach.
+//!
+//! Its pixels are receiver points through homographies, so passes that draw in a receiver's plane draw straight onto
+//! the pixels that show it: texel and pixel coincide, and an edge in the plane is as sharp as the screen allows.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
+
+use crate::geometry::bounds::Bounds;
+use crate::geometry::light_points::light_corners;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::view::{NEAR_M, View};
+
+/// The ambient light that the toy takes away counts out to this many toy heights from its footprint.
+const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
+/// What is known of a receiver is kept out to this many toy sizes from the toy: a low light's shadow has no end.
+const KEPT_REACH_SIZES: f64 = 6.0;
+/// Grows around what a toy and its shadows reach in the picture and on the receivers, point by point.
+#[derive(Clone, Debug)]
+pub struct Reach<'a> {
+    view: &'a View,
+    world_from_anchor: DMat4,
+    planes: Vec<PlaneReach>,
+    /// How far around its footprint the toy takes ambient light away.
+    ambient_reach_m: f64,
+    min_px: DVec2,
+    max_px: DVec2,
+    /// A point behind the camera: the rectangle has no bound.
+    is_endless: bool,
+}
+
+/// The same on one receiver.
+#[derive(Clone, Debug)]
+struct PlaneReach {
+    world_from_plane: DMat4,
+    plane_from_anchor: DMat4,
+    /// Where the receiver ends.
+    receiver: PlaneRect,
+    /// What is reached on a receiver that is seen from behind changes nothing in the picture.
+    is_seen: bool,
+    /// Corners of each light's disc, boxed: their shadows bound those of the whole light.
+    sources: Vec<DVec4>,
+    rect: PlaneRect,
+    kept: PlaneRect,
+}
+
+impl<'a> Reach<'a> {
+    /// Starts empty, for a toy within `toy`, in stage space.
+    #[must_use]
+    pub fn new(view: &'a View, toy: &Bounds, layout: &SceneLayout<'_>) -> Self {
+        let world_from_anchor = layout.world_from_anchor();
+        let kept_m = KEPT_REACH_SIZES * (toy.max - toy.min).max_element();
+        let planes = layout.receivers.iter().map(|receiver| {
+            let plane_from_world = receiver.world_from_plane.inverse();
+            let plane_from_anchor = plane_from_world * world_from_anchor;
+            let target = plane_from_anchor.transform_point3(toy.centre());
+            let middle = DVec2::new(target.x, target.z);
+            let lights = layout.lights.iter();
+            let corners = lights.flat_map(|light| light_corners(light, &plane_from_world, target));
+            PlaneReach {
+                world_from_plane: receiver.world_from_plane,
+                plane_from_anchor,
+                receiver: receiver.rect,
+                is_seen: view.sees_front_of(&receiver.world_from_plane),
+                sources: corners.filter(|source| source.y > 0.0).collect(),
+                rect: PlaneRect {
+                    min: DVec2::INFINITY,
+                    max: DVec2::NEG_INFINITY,
+                },
+                kept: PlaneRect {
+                    min: receiver.rect.nearest(middle - kept_m),
+                    max: receiver.rect.nearest(middle + kept_m),
+                },
+            }
+        });
+        Self {
+            view,
+            world_from_anchor,
+            planes: planes.collect(),
+            ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
+            min_px: DVec2::INFINITY,
+            max_px: DVec2::NEG_INFINITY,
+            is_endless: false,
+        }
+    }
+
+    /// Takes in a point of the toy, in stage space, its shadows and the receivers near it.
+    pub fn include(&mut self, in_anchor: DVec3) {
+        self.include_px(
+            self.view
+                .image_px_from(&self.world_from_anchor, in_anchor.extend(1.0)),
+        );
+        for k in 0..self.planes.len() {
+            let in_plane = self.planes[k].plane_from_anchor.transform_point3(in_anchor);
+            // A wall far from the toy keeps its ambient light.
+            if k == 0 || in_plane.y < 2.0 * self.ambient_reach_m {
+                for side in [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y] {
+                    let near = DVec2::new(in_plane.x, in_plane.z) + self.ambient_reach_m * side;
+                    self.include_on(k, near);
+                }
+            }
+            for source in 0..self.planes[k].sources.len() {
+                self.include_shadow(k, in_plane, self.planes[k].sources[source]);
+            }
+        }
+    }
+
+    /// The rectangle around all points, within the image; `None` when they are out of the picture.
+    #[must_use]
+    pub fn region(&self) -> Option<PixelRect> {
+        let image_px = self.view.image_px;
+        if self.is_endless {
+            return Some(PixelRect {
+                origin_px: UVec2::ZERO,
+                size_px: image_px,
+            });
+        }
+        let within = |px: DVec2| px.clamp(DVec2::ZERO, image_px.as_dvec2()).as_uvec2();
+        let (min_px, max_px) = (within(self.min_px.floor()), within(self.max_px.ceil()));
+        let size_px = max_px.saturating_sub(min_px);
+        (size_px.min_element() > 0).then_some(PixelRect {
+            origin_px: min_px,
+            size_px,
+        })
+    }
+
+    /// What toy and shadows reach of each receiver, as far as it is kept.
+    #[must_use]
+    pub fn plane_rects(&self) -> Vec<PlaneRect> {
+        self.planes.iter().map(|plane| plane.rect).collect()
+    }
+
+    /// The shadow of a point over receiver `k`; what lies under it casts none.
+    fn include_shadow(&mut self, k: usize, in_plane: DVec3, source: DVec4) {
+        let shadow = shadow_of(in_plane.with_y(in_plane.y.max(0.0)), source);
+        if shadow.z > 0.0 {
+            self.include_on(k, shadow.truncate() / shadow.z);
+            return;
+        }
+        // A light no higher than the point casts a shadow as far as the receiver goes.
+        for corner in self.planes[k].receiver.corners() {
+            self.include_on(k, corner);
+        }
+    }
+
+    fn include_on(&mut self, k: usize, in_plane: DVec2) {
+        let plane = &mut self.planes[k];
+        let on_receiver = plane.receiver.nearest(in_plane);
+        let kept = plane.kept.nearest(on_receiver);
+        plane.rect.min = plane.rect.min.min(kept);
+        plane.rect.max = plane.rect.max.max(kept);
+        if !plane.is_seen {
+            return;
+        }
+        let at = DVec4::new(on_receiver.x, 0.0, on_receiver.y, 1.0);
+        let px = self.view.image_px_from(&plane.world_from_plane, at);
+        self.include_px(px);
+    }
+
+    fn include_px(&mut self, at: DVec3) {
+        if at.z <= NEAR_M {
+            self.is_endless = true;
+            return;
+        }
+        self.min_px = self.min_px.min(at.truncate() / at.z);
+        self.max_px = self.max_px.max(at.truncate() / at.z);
+    }
+}
+
+/// Where the line from a homogeneous light through `p` meets y = 0, as (x, z, w); w is not positive where it does not.
+fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
+    let at = light.y * p - p.y * light.truncate();
+    DVec3::new(at.x, at.z, light.y - light.w * p.y)
+}
+
+impl View {
+    /// The rectangle that a toy within `toy`, in stage space, and its shadows can reach, or `None` when it is out of the
+    /// picture.
+    #[must_use]
+    pub fn region(&self, toy: &Bounds, layout: &SceneLayout<'_>) -> Option<PixelRect> {
+        let mut reach = Reach::new(self, toy, layout);
+        toy.corners().for_each(|corner| reach.include(corner));
+        reach.region()
+    }
+}

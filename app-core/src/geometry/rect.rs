@@ -1,0 +1,75 @@
+//! Rectangles: of the camera image, and of a receiver's plane.
+
+use glam::{DVec2, UVec2};
+
+/// A rectangle of the camera image, in pixels from its top left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelRect {
+    /// Top left corner.
+    pub origin_px: UVec2,
+    /// Size; not zero.
+    pub size_px: UVec2,
+}
+
+impl PixelRect {
+    /// Grown by `margin_px` on each side, as far as the image goes.
+    #[must_use]
+    pub fn grown(&self, margin_px: u32, image_px: UVec2) -> Self {
+        let origin_px = self.origin_px.saturating_sub(UVec2::splat(margin_px));
+        let end_px = (self.origin_px + self.size_px + margin_px).min(image_px);
+        Self {
+            origin_px,
+            size_px: end_px - origin_px,
+        }
+    }
+
+    /// Whether all of `other` lies within.
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        self.origin_px.cmple(other.origin_px).all()
+            && (self.origin_px + self.size_px)
+                .cmpge(other.origin_px + other.size_px)
+                .all()
+    }
+
+    /// A rectangle of `size_px` within the image that holds this one, which is no larger, as near its middle as can be.
+    #[must_use]
+    pub fn within(&self, size_px: UVec2, image_px: UVec2) -> Self {
+        let spare_px = size_px.saturating_sub(self.size_px) / 2;
+        let last_px = image_px.saturating_sub(size_px);
+        Self {
+            origin_px: self.origin_px.saturating_sub(spare_px).min(last_px),
+            size_px,
+        }
+    }
+}
+
+/// A rectangle of a receiver's plane, (x, z) in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneRect {
+    /// Smallest coordinates.
+    pub min: DVec2,
+    /// Largest coordinates.
+    pub max: DVec2,
+}
+
+impl PlaneRect {
+    /// Whether a point lies within.
+    #[must_use]
+    pub fn holds(&self, in_plane: DVec2) -> bool {
+        in_plane.cmpge(self.min).all() && in_plane.cmple(self.max).all()
+    }
+
+    /// The point within that is nearest to a point.
+    #[must_use]
+    pub fn nearest(&self, in_plane: DVec2) -> DVec2 {
+        in_plane.clamp(self.min, self.max)
+    }
+
+    /// The four corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec2; 4] {
+        let Self { min, max } = *self;
+        [max, min, DVec2::new(max.x, min.y), DVec2::new(min.x, max.y)]
+    }
+}

@@ -1,0 +1,28 @@
+//! What stands where: receivers, lights and the toy.
+
+use glam::{DMat4, DVec3};
+
+use crate::geometry::anchored::AnchoredReceiver;
+use crate::scene::Light;
+
+/// Receivers, lights and where the toy is.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneLayout<'a> {
+    /// The planes that catch the shadow, at least one; those after the fourth are left out. The first one's plane space is the
+    /// anchor.
+    pub receivers: &'a [AnchoredReceiver],
+    /// At most four lights; further ones are left out.
+    pub lights: &'a [Light],
+    /// Middle of the toy, in anchor space: direct fractions are stated at the points of the receivers nearest to it.
+    pub toy_in_anchor: DVec3,
+}
+
+impl SceneLayout<'_> {
+    /// The first receiver's plane space, which has the toy.
+    #[must_use]
+    pub fn world_from_anchor(&self) -> DMat4 {
+        self.receivers
+            .first()
+            .map_or(DMat4::IDENTITY, |first| first.world_from_plane)
+    }
+}

@@ -1,0 +1,249 @@
+//! What shaders read and write: the slots of a bind group, and groups that are made once and kept.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use wgpu::{
+    BindingType, BufferBindingType, SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension,
+};
+
+use super::device::Device;
+use super::uniforms::Uniforms;
+
+/// Group of what all passes share: the globals, and what a method adds to them.
+pub(crate) const GROUP_SCENE: usize = 0;
+/// Group of a pass's own inputs and outputs.
+pub(crate) const GROUP_PASS: usize = 1;
+/// Group of what changes from draw to draw.
+pub(crate) const GROUP_DRAW: usize = 2;
+/// Bind groups that a phone has.
+pub(crate) const N_GROUPS: usize = 4;
+
+/// What a binding of a group holds; its number is its place in the group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Slot {
+    /// A uniform of that many bytes, in a buffer of its own.
+    Uniform(usize),
+    /// A uniform of that many bytes that is written for each use.
+    PerUse(usize),
+    /// A storage buffer to read.
+    Read,
+    /// A storage buffer to read and write, in compute shaders.
+    ReadWrite,
+    /// A picture whose texels are loaded.
+    Texture,
+    /// Layers of pictures whose texels are loaded.
+    Layers,
+    /// A picture of whole numbers.
+    WholeNumbers,
+    /// A picture that is filtered.
+    Filtered,
+    /// A depth map.
+    Depth,
+    /// The sampler that filters.
+    Sampler,
+    /// The sampler that compares depths.
+    Comparison,
+}
+
+impl Slot {
+    /// A uniform that lasts.
+    pub(crate) const fn uniform<T>() -> Self {
+        Self::Uniform(size_of::<T>())
+    }
+
+    /// A uniform that is written for each use.
+    pub(crate) const fn per_use<T>() -> Self {
+        Self::PerUse(size_of::<T>())
+    }
+
+    fn layout_entry(self, binding: u32) -> wgpu::BindGroupLayoutEntry {
+        let drawn = ShaderStages::FRAGMENT | ShaderStages::COMPUTE;
+        let buffer = |ty, has_dynamic_offset, n_bytes| BindingType::Buffer {
+            ty,
+            has_dynamic_offset,
+            min_binding_size: NonZeroU64::new(n_bytes as u64),
+        };
+        let texture = |sample_type, view_dimension| BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        };
+        let loaded = TextureSampleType::Float { filterable: false };
+        let (visibility, ty) = match self {
+            Self::Uniform(n) => (
+                drawn | ShaderStages::VERTEX,
+                buffer(BufferBindingType::Uniform, false, n),
+            ),
+            Self::PerUse(n) => (
+                drawn | ShaderStages::VERTEX,
+                buffer(BufferBindingType::Uniform, true, n),
+            ),
+            Self::Read => (
+                drawn,
+                buffer(BufferBindingType::Storage { read_only: true }, false, 0),
+            ),
+            Self::ReadWrite => (
+                ShaderStages::COMPUTE,
+                buffer(BufferBindingType::Storage { read_only: false }, false, 0),
+            ),
+            Self::Texture => (drawn, texture(loaded, TextureViewDimension::D2)),
+            Self::Layers => (drawn, texture(loaded, TextureViewDimension::D2Array)),
+            Self::WholeNumbers => (drawn, texture(TextureSampleType::Uint, TextureViewDimension::D2)),
+            Self::Filtered => (
+                drawn,
+                texture(
+                    TextureSampleType::Float { filterable: true },
+                    TextureViewDimension::D2,
+                ),
+            ),
+            Self::Depth => (drawn, texture(TextureSampleType::Depth, TextureViewDimension::D2)),
+            Self::Sampler => (drawn, BindingType::Sampler(SamplerBindingType::Filtering)),
+            Self::Comparison => (drawn, BindingType::Sampler(SamplerBindingType::Comparison)),
+        };
+        wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty,
+            count: None,
+        }
+    }
+}
+
+/// What is bound to a slot.
+#[derive(Clone, Copy)]
+pub(crate) enum Resource<'a> {
+    /// A whole buffer.
+    Buffer(&'a wgpu::Buffer),
+    /// A texture.
+    View(&'a wgpu::TextureView),
+    /// A sampler.
+    Sampler(&'a wgpu::Sampler),
+    /// Uniforms that are written for each use.
+    PerUse,
+}
+
+impl<'a> Resource<'a> {
+    fn binding(self, slot: Slot, uniforms: &'a Uniforms) -> wgpu::BindingResource<'a> {
+        match (self, slot) {
+            (Self::Buffer(buffer), _) => buffer.as_entire_binding(),
+            (Self::View(view), _) => wgpu::BindingResource::TextureView(view),
+            (Self::Sampler(sampler), _) => wgpu::BindingResource::Sampler(sampler),
+            (Self::PerUse, Slot::PerUse(n_bytes)) => uniforms.binding(n_bytes),
+            // Refused by the device, which names the binding.
+            (Self::PerUse, _) => uniforms.binding(0),
+        }
+    }
+}
+
+impl<'a> From<&'a wgpu::Buffer> for Resource<'a> {
+    fn from(buffer: &'a wgpu::Buffer) -> Self {
+        Self::Buffer(buffer)
+    }
+}
+
+impl<'a> From<&'a wgpu::TextureView> for Resource<'a> {
+    fn from(view: &'a wgpu::TextureView) -> Self {
+        Self::View(view)
+    }
+}
+
+impl<'a> From<&'a wgpu::Sampler> for Resource<'a> {
+    fn from(sampler: &'a wgpu::Sampler) -> Self {
+        Self::Sampler(sampler)
+    }
+}
+
+/// A resource by its identity; it lives as long as the group that it is in.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Held {
+    Buffer(wgpu::Buffer),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+    PerUse,
+}
+
+impl From<&Resource<'_>> for Held {
+    fn from(resource: &Resource<'_>) -> Self {
+        match *resource {
+            Resource::Buffer(buffer) => Self::Buffer(buffer.clone()),
+            Resource::View(view) => Self::View(view.clone()),
+            Resource::Sampler(sampler) => Self::Sampler(sampler.clone()),
+            Resource::PerUse => Self::PerUse,
+        }
+    }
+}
+
+/// A group's slots, and the device's layout of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    pub(crate) slots: &'static [Slot],
+    pub(crate) raw: wgpu::BindGroupLayout,
+}
+
+/// A group by its slots and what they hold.
+type GroupKey = (&'static [Slot], Vec<Held>);
+
+/// Layouts by their slots, and groups by what they hold: each is made once.
+#[derive(Default)]
+pub(crate) struct BindingCache {
+    layouts: Mutex<HashMap<&'static [Slot], Layout>>,
+    groups: Mutex<HashMap<GroupKey, wgpu::BindGroup>>,
+}
+
+impl BindingCache {
+    /// The layout of a group.
+    pub(crate) fn layout(&self, device: &Device, slots: &'static [Slot]) -> Layout {
+        let mut layouts = locked(&self.layouts);
+        let layout = layouts.entry(slots).or_insert_with(|| {
+            let entries: Vec<_> = (0..)
+                .zip(slots)
+                .map(|(binding, slot)| slot.layout_entry(binding))
+                .collect();
+            Layout {
+                slots,
+                raw: device.bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                    label: None,
+                    entries: &entries,
+                }),
+            }
+        });
+        layout.clone()
+    }
+
+    /// The group that holds `resources`, in the order of the layout's slots: the one from before if there was one.
+    pub(crate) fn group(
+        &self,
+        (device, uniforms): (&Device, &Uniforms),
+        layout: &Layout,
+        resources: &[Resource<'_>],
+    ) -> wgpu::BindGroup {
+        let held: Vec<Held> = resources.iter().map(Held::from).collect();
+        let mut groups = locked(&self.groups);
+        let group = groups.entry((layout.slots, held)).or_insert_with(|| {
+            let entries: Vec<_> = (0..)
+                .zip(layout.slots.iter().zip(resources))
+                .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {
+                    binding,
+                    resource: resource.binding(*slot, uniforms),
+                })
+                .collect();
+            device.bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout: &layout.raw,
+                entries: &entries,
+            })
+        });
+        group.clone()
+    }
+
+    /// Lets go of all groups, and so of what nothing but them holds: for when textures were replaced by larger ones.
+    pub(crate) fn release_groups(&self) {
+        locked(&self.groups).clear();
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,89 @@
+//! Time stamps: how long each pass of the latest submission took on the device. Only for those who ask.
+
+use super::context::{Gpu, GpuError};
+use super::pass_run::{PassTime, Path};
+
+/// Most passes of one submission that are timed.
+const MAX_TIMED: u32 = 512;
+/// Bytes of one time stamp.
+const STAMP_BYTES: u64 = 8;
+
+/// Stamps on the device, and whose they are.
+pub(crate) struct Timer {
+    queries: wgpu::QuerySet,
+    stamps: wgpu::Buffer,
+    passes: Vec<(Path, &'static str)>,
+}
+
+impl Timer {
+    /// None where the device cannot tell.
+    pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
+        if !gpu
+            .device
+            .raw
+            .features()
+            .contains(wgpu::Features::TIMESTAMP_QUERY)
+        {
+            return None;
+        }
+        Some(Self {
+            queries: gpu.device.query_set(&wgpu::QuerySetDescriptor {
+                label: Some("pass times"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2 * MAX_TIMED,
+            }),
+            stamps: gpu.device.buffer(&wgpu::BufferDescriptor {
+                label: Some("pass times"),
+                size: 2 * u64::from(MAX_TIMED) * STAMP_BYTES,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            passes: Vec::new(),
+        })
+    }
+
+    /// Forgets the submission before.
+    pub(crate) fn start(&mut self) {
+        self.passes.clear();
+    }
+
+    /// Where the stamps of the next pass go: its first of two places; none when all are taken.
+    pub(crate) fn next(&mut self, path: Path, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
+        let index = u32::try_from(self.passes.len())
+            .ok()
+            .filter(|index| *index < MAX_TIMED)?;
+        self.passes.push((path, pass));
+        Some((&self.queries, 2 * index))
+    }
+
+    /// Encodes that the stamps are kept.
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        let n_queries = 2 * u32::try_from(self.passes.len()).unwrap_or(MAX_TIMED);
+        if n_queries > 0 {
+            encoder.resolve_query_set(&self.queries, 0..n_queries, &self.stamps, 0);
+        }
+    }
+
+    /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first run.
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
+        let bytes = gpu.read_buffer(&self.stamps)?;
+        let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
+        let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
+        let mut times: Vec<PassTime> = Vec::new();
+        for (&(path, pass), stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
+            #[allow(
+                clippy::cast_precision_loss,
+                reason = "a difference of ticks within one frame is far below 2^52"
+            )]
+            let gpu_ms = stamp[1].saturating_sub(stamp[0]) as f64 * ms_per_tick;
+            match times
+                .iter_mut()
+                .find(|time| (time.path, time.pass) == (path, pass))
+            {
+                Some(time) => time.gpu_ms += gpu_ms,
+                None => times.push(PassTime { path, pass, gpu_ms }),
+            }
+        }
+        Ok(times)
+    }
+}

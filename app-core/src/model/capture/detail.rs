@@ -1,0 +1,93 @@
+//! `detail`: what each pixel knows of its own residual, with the noise of the shadow taken out.
+
+use wgpu::TextureFormat;
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::parts::MODEL;
+use crate::model::plan::Plan;
+use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::{CHANNELS, FULLSCREEN, PIXEL};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &PIXEL,
+    &CHANNELS,
+    &FULLSCREEN,
+    &part!("capture/detail"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+];
+/// Format of residuals, in plates.
+const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+/// Only where the real shadow is cleared of noise.
+pub(crate) fn is_needed(plan: &Plan) -> bool {
+    plan.is_noise_removed
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+/// Of the region's size, where it is needed.
+pub(crate) struct Targets {
+    pub(crate) residual: Option<Texture>,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = || Texture::target(gpu, "detail", plan.region.size_px, FORMAT);
+        Self {
+            residual: is_needed(plan).then(target),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_separate", groups, &[FORMAT])),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let Some(target) = &targets.residual else { return };
+        let resources = [
+            inputs.frame.into(),
+            inputs.plate.into(),
+            inputs.validity.into(),
+            inputs.visibility.into(),
+            inputs.ambient.into(),
+            (&recorder.gpu.samplers.linear).into(),
+        ];
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(&self.draw, GROUP_PASS, &resources),
+        ];
+        recorder.fullscreen(&self.draw, &groups, &[&target.view]);
+    }
+}

@@ -1,0 +1,126 @@
+//! `estimate`: the plate, with an estimate where no plate shows the place.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
+use crate::model::plan::Plan;
+use crate::model::state::grids::{GRID, Grids};
+use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::{CHANNELS, FULLSCREEN};
+use crate::passes::plate::PLATE_FORMAT;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &CHANNELS,
+    &GRID,
+    &BETWEEN_CELLS,
+    &CELLS,
+    &FULLSCREEN,
+    &part!("capture/estimate"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::uniform::<Grids>(),
+    Slot::Read,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+];
+
+/// Only where plates do not show all of the region.
+pub(crate) fn is_needed(plan: &Plan) -> bool {
+    plan.is_plate_estimated
+}
+
+/// How much of the frame an estimate may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fineness {
+    /// Smooth: to find the shadow in.
+    Smooth,
+    /// Each seen pixel tells its own, once the shadow is known.
+    Full,
+}
+
+pub(crate) struct Pass {
+    smooth: Draw,
+    full: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) lit_cells: &'a wgpu::Buffer,
+    pub(crate) photographed: &'a wgpu::TextureView,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+/// Of the region's size, where it is needed.
+pub(crate) struct Targets {
+    /// What was photographed; the plate that passes read is completed from it.
+    pub(crate) photographed: Option<Texture>,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = || Texture::target(gpu, "photographed plate", plan.region.size_px, PLATE_FORMAT);
+        Self {
+            photographed: is_needed(plan).then(target),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        let draw = |is_final| {
+            gpu.draw(&DrawSpec {
+                constants: vec![("IS_FINAL", is_final)],
+                ..DrawSpec::fullscreen(&SHADER, "fs_complete", groups, &[PLATE_FORMAT])
+            })
+        };
+        Self {
+            smooth: draw(0),
+            full: draw(1),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        fineness: Fineness,
+        target: &wgpu::TextureView,
+    ) {
+        let draw = match fineness {
+            Fineness::Smooth => &self.smooth,
+            Fineness::Full => &self.full,
+        };
+        let resources = [
+            inputs.grids.into(),
+            inputs.lit_cells.into(),
+            inputs.photographed.into(),
+            inputs.frame.into(),
+            inputs.validity.into(),
+            inputs.visibility.into(),
+            inputs.ambient.into(),
+            (&recorder.gpu.samplers.linear).into(),
+        ];
+        let groups = [
+            recorder.bind(draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(draw, GROUP_PASS, &resources),
+        ];
+        recorder.fullscreen(draw, &groups, &[target]);
+    }
+}

@@ -1,0 +1,40 @@
+//! `fill`: the cells that the toy hides, from those around, by pull-push.
+
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::parts::BETWEEN_CELLS;
+use crate::model::state::grids::{GRID, Grids};
+pub(crate) use crate::passes::list::NoTargets as Targets;
+
+pub(crate) const SHADER: Shader = Shader::new(&[&GRID, &BETWEEN_CELLS, &part!("capture/fill")]);
+const SLOTS: &[Slot] = &[Slot::uniform::<Grids>(), Slot::ReadWrite];
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) n_receivers: u32,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_pull_push",
+                groups: [&[], SLOTS, &[], &[]],
+            }),
+        }
+    }
+
+    /// Fills the finest levels of `cells` in place.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, cells: &wgpu::Buffer) {
+        let own = recorder.bind(&self.compute, GROUP_PASS, &[inputs.grids.into(), cells.into()]);
+        recorder.compute(&self.compute, &[own], [inputs.n_receivers, 1, 1]);
+    }
+}

@@ -1,0 +1,175 @@
+//! `fit`: sums of the normal equations of what the real shadow and the real toy tell of the light.
+
+use wgpu::BufferUsages;
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shared::shared_struct;
+use crate::model::capture::gbuffer;
+use crate::model::parts::{MODEL, TOY_RADIANCE};
+use crate::model::plan::{MAX_FIT_ROWS, Plan};
+use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::PIXEL;
+
+/// One step of the iteratively reweighted least squares.
+pub(crate) const FIT_STEP: Part = part!(
+    "common/fit_step",
+    structs: [FitStep],
+    constants: [SUBJECT_RECEIVER, SUBJECT_TOY, SUBJECT_INTENSITIES],
+);
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &FIT_STEP,
+    &MODEL,
+    &TOY_RADIANCE,
+    &PIXEL,
+    &part!("capture/fit"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::per_use::<FitStep>(),
+    Slot::ReadWrite,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+];
+const SUBJECT_RECEIVER: u32 = Subject::Receiver as u32;
+const SUBJECT_TOY: u32 = Subject::Toy as u32;
+const SUBJECT_INTENSITIES: u32 = Subject::Intensities as u32;
+
+shared_struct! {
+    /// One step of a fit.
+    pub(crate) struct FitStep {
+        pub is_reweighted: u32,
+        pub n_rows: u32,
+        pub n_columns: u32,
+        pub subject: u32,
+        pub receiver: u32,
+        pub stride_px: u32,
+        pub is_last: u32,
+    }
+}
+
+/// What is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum Subject {
+    /// A receiver: gain, bounce and each light's share.
+    Receiver = 0,
+    /// The toy: ambient light, its gradient and each light's strength.
+    Toy = 1,
+    /// The frame's exposure and each light's power.
+    Intensities = 2,
+}
+
+/// One least-squares problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Task {
+    pub(crate) subject: Subject,
+    /// The receiver that is fitted, for [`Subject::Receiver`].
+    pub(crate) receiver: u32,
+    pub(crate) n_steps: u32,
+    /// The solution so far is good enough to tell outliers from.
+    pub(crate) is_refinement: bool,
+}
+
+impl Task {
+    /// What the shaders know of step `index`.
+    pub(crate) fn step(&self, plan: &Plan, index: u32) -> FitStep {
+        #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
+        let n_columns = 2 + plan.lights.len() as u32;
+        FitStep {
+            is_reweighted: u32::from(index > 0 || self.is_refinement),
+            n_rows: plan.n_fit_rows,
+            n_columns,
+            subject: self.subject as u32,
+            receiver: self.receiver,
+            stride_px: plan.fit_stride_px,
+            is_last: u32::from(index + 1 == self.n_steps),
+        }
+    }
+}
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) gbuffer: &'a gbuffer::Targets,
+}
+
+/// Rows of sums, one a workgroup and channel.
+pub(crate) struct Targets {
+    pub(crate) rows: wgpu::Buffer,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, _plan: &Plan) -> Self {
+        let n_sums = N_FIT_SUMS * N_CHANNELS * MAX_FIT_ROWS as usize;
+        Self {
+            rows: gpu.storage(
+                "fit rows",
+                (size_of::<f32>() * n_sums) as u64,
+                BufferUsages::empty(),
+            ),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_accumulate",
+                groups: [SCENE_SLOTS, SLOTS, &[], &[]],
+            }),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        step: &FitStep,
+        targets: &Targets,
+    ) {
+        let gbuffer = inputs.gbuffer;
+        let resources = [
+            Resource::PerUse,
+            (&targets.rows).into(),
+            inputs.frame.into(),
+            inputs.plate.into(),
+            inputs.validity.into(),
+            inputs.visibility.into(),
+            inputs.ambient.into(),
+            (&recorder.gpu.samplers.linear).into(),
+            (&gbuffer.base.view).into(),
+            (&gbuffer.normal.view).into(),
+            (&gbuffer.received.view).into(),
+        ];
+        let groups = [
+            recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind_with(&self.compute, GROUP_PASS, step, &resources),
+        ];
+        #[allow(clippy::cast_possible_truncation, reason = "three")]
+        let n_channels = N_CHANNELS as u32;
+        recorder.compute(&self.compute, &groups, [step.n_rows, 1, n_channels]);
+    }
+}

@@ -1,0 +1,68 @@
+//! `fit_solve`: the solution of the normal equations that `fit` summed, with weak priors.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::capture::fit::{FIT_STEP, FitStep};
+use crate::model::state::SceneState;
+use crate::model::state::solution::{FIT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+pub(crate) use crate::passes::list::NoTargets as Targets;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &FIT_STEP,
+    &part!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION]),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::per_use::<FitStep>(),
+    Slot::Read,
+    Slot::ReadWrite,
+    Slot::ReadWrite,
+];
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    /// Rows of sums of this step.
+    pub(crate) rows: &'a wgpu::Buffer,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_solve",
+                groups: [GLOBALS_GROUP, SLOTS, &[], &[]],
+            }),
+        }
+    }
+
+    /// Leaves what it finds in the solution, and in the last step of a fit the sums to keep.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        step: &FitStep,
+        state: &SceneState,
+    ) {
+        let resources = [
+            Resource::PerUse,
+            inputs.rows.into(),
+            (&state.solution).into(),
+            (&state.fit_sums).into(),
+        ];
+        let groups = [
+            recorder.bind(&self.compute, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind_with(&self.compute, GROUP_PASS, step, &resources),
+        ];
+        recorder.compute(&self.compute, &groups, [1, 1, 1]);
+    }
+}

@@ -1,0 +1,92 @@
+//! `gbuffer`: the physical toy as the camera sees it: base colour, normal, received light and depth.
+
+use wgpu::{StoreOp, TextureFormat};
+
+use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
+use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::lighting::self_shadow::{
+    self, GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
+};
+use crate::model::plan::Plan;
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::BEHIND;
+use crate::passes::toy_mesh::{LOOK_STREAMS, MATERIAL, MATERIAL_GROUP, ToyMesh};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &TOY_LIGHT,
+    &SELF_SHADOW_MAPS,
+    &MATERIAL,
+    &BEHIND,
+    &part!("capture/gbuffer"),
+]);
+/// Format of the base colour, whose alpha is the toy's coverage.
+pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Format of the normals.
+const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of what each light gives.
+const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) self_shadow: &'a self_shadow::Targets,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    pub(crate) base: Texture,
+    pub(crate) normal: Texture,
+    pub(crate) received: Texture,
+    pub(crate) depth: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = |label, format| Texture::target(gpu, label, plan.region.size_px, format);
+        Self {
+            base: target("gbuffer base", BASE_FORMAT),
+            normal: target("gbuffer normal", NORMAL_FORMAT),
+            received: target("gbuffer received", RECEIVED_FORMAT),
+            depth: target("gbuffer depth", TextureFormat::Depth32Float),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, &[], MATERIAL_GROUP, SELF_SHADOW_GROUP];
+        let targets = [BASE_FORMAT, NORMAL_FORMAT, RECEIVED_FORMAT];
+        Self {
+            draw: gpu.draw(&DrawSpec {
+                vertex: "vs_project",
+                streams: &LOOK_STREAMS,
+                depth: Some(nearest_surface()),
+                ..DrawSpec::fullscreen(&SHADER, "fs_describe", groups, &targets)
+            }),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let maps = inputs.self_shadow.resources(recorder.gpu);
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(&self.draw, GROUP_SELF_SHADOW, &maps),
+        ];
+        let materials = inputs.toy.bind_materials(recorder, &self.draw);
+        let colors = [&targets.base, &targets.normal, &targets.received];
+        let colors = colors.map(|texture| Some(cleared(&texture.view)));
+        let mut render = recorder.render(SHADER.name, &colors, Some(&targets.depth.view), StoreOp::Store);
+        render.begin(&self.draw, &groups);
+        let toy = inputs.toy;
+        toy.draw_parts(&mut render, &[&toy.physical], &materials);
+    }
+}

@@ -1,0 +1,62 @@
+//! `lit`: what the receivers look like in the light, pooled on coarse grids.
+
+use crate::gpu::bindings::Slot;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::capture::pool::{POOL, Pool, PoolGrids};
+use crate::model::parts::{ACCUMULATED, MODEL};
+use crate::model::plan::Plan;
+use crate::model::state::grids::{GRID, Grids};
+use crate::model::state::solution::FIT;
+use crate::passes::globals::GLOBALS;
+pub(crate) use crate::passes::list::NoTargets as Targets;
+use crate::passes::parts::CHANNELS;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &CHANNELS,
+    &GRID,
+    &ACCUMULATED,
+    &POOL,
+    &part!("capture/lit"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::uniform::<Grids>(),
+    Slot::ReadWrite,
+    Slot::ReadWrite,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+];
+
+/// Only where plates do not show all of the region.
+pub(crate) fn is_needed(plan: &Plan) -> bool {
+    plan.is_plate_estimated
+}
+
+pub(crate) struct Pass(Pool);
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) on: PoolGrids<'a>,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self(Pool::new(gpu, &SHADER, SLOTS))
+    }
+
+    /// Adds this view's colours to the cells.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
+        let pictures = [inputs.frame, inputs.validity, inputs.visibility, inputs.ambient];
+        self.0.encode(recorder, &inputs.on, &pictures);
+    }
+}

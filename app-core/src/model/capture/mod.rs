@@ -1,0 +1,267 @@
+//! The capture path: what is learned of one view of the real toy and its real shadow, and how the scene state grows by it.
+
+pub(crate) mod order;
+pub(crate) mod pool;
+
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::model::capture::estimate::Fineness;
+use crate::model::capture::fit::Task;
+use crate::model::capture::order::Step;
+use crate::model::capture::pool::PoolGrids;
+use crate::model::lighting::{self, LightMaps, Lighting, Posed};
+use crate::model::plan::Plan;
+use crate::model::region::Region;
+use crate::model::state::SceneState;
+use crate::model::state::grids::CellBuffers;
+use crate::model::state::solution::Scene;
+use crate::passes::list::passes;
+use crate::passes::pictures::Pictures;
+use crate::passes::plate::{self, PLATE_FORMAT};
+use crate::passes::toy_mesh::ToyMesh;
+
+passes!(Plan:
+    gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
+);
+
+/// What the capture path makes of one view, all of the region's size.
+pub(crate) struct CaptureTargets {
+    /// What light reaches in the physical pose.
+    pub(crate) light: LightMaps,
+    /// The plate that all passes read, with an estimate where nothing was photographed.
+    pub(crate) plate: Texture,
+    pub(crate) by_pass: Targets,
+}
+
+impl CaptureTargets {
+    /// Allocates what `plan` asks for.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            light: LightMaps::new(gpu, plan),
+            plate: Texture::target(gpu, "plate", plan.region.size_px, PLATE_FORMAT),
+            by_pass: Targets::new(gpu, plan),
+        }
+    }
+
+    /// Whether `plan`, of a region of the same size, has all that it asks for.
+    pub(crate) fn serves(&self, plan: &Plan) -> bool {
+        !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some()
+    }
+}
+
+/// All that the capture path reads and writes.
+pub(crate) struct CapturePath<'a> {
+    pub(crate) region: &'a Region,
+    pub(crate) captured: &'a CaptureTargets,
+    pub(crate) passes: &'a Passes,
+    pub(crate) plate: &'a plate::Pass,
+    pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
+    pub(crate) state: &'a SceneState,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pictures: &'a Pictures<'a>,
+}
+
+impl CapturePath<'_> {
+    /// Encodes one step.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
+        let (passes, of) = (self.passes, &self.captured.by_pass);
+        match step {
+            Step::Forget => self.state.forget(recorder),
+            Step::ForgetSums => self.state.forget_sums(recorder),
+            Step::Lighting(step) => self.light(recorder, step),
+            Step::Gbuffer => passes
+                .gbuffer
+                .encode(recorder, &self.gbuffer_inputs(), &of.gbuffer),
+            Step::Validity => passes
+                .validity
+                .encode(recorder, &of.gbuffer.depth.view, &of.validity),
+            Step::Plate => self.plate(recorder),
+            Step::Withhold => {
+                let marks = &of.validity.marks;
+                passes
+                    .withhold
+                    .encode(recorder, &self.withhold_inputs(), &of.withhold, marks);
+            }
+            Step::Lit => passes.lit.encode(recorder, &self.lit_inputs()),
+            Step::FillLit => self.fill(recorder, &self.state.lit),
+            Step::Estimate(fineness) => self.estimate(recorder, fineness),
+            Step::Fit(task) => self.fit(recorder, task),
+            Step::Residual => passes.residual.encode(recorder, &self.residual_inputs()),
+            Step::FillResidual => self.fill(recorder, &self.state.residual),
+            Step::Detail => passes.detail.encode(recorder, &self.detail_inputs(), &of.detail),
+            Step::Tint => passes
+                .tint
+                .encode(recorder, &self.tint_inputs(), &self.state.tints),
+            Step::TintFill => passes.tint_fill.encode(recorder, &self.state.tints),
+            Step::Appearance => {
+                passes
+                    .appearance
+                    .encode(recorder, &self.appearance_inputs(), &of.appearance);
+            }
+        }
+    }
+
+    fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
+        let (passes, lighting) = self.lighting;
+        let posed = Posed {
+            globals: &self.region.globals,
+            toy: self.toy,
+            pose: &self.toy.physical,
+        };
+        lighting.encode(recorder, passes, step, (posed, &self.captured.light));
+    }
+
+    fn plate(&self, recorder: &mut Recorder<'_>) {
+        let inputs = plate::Inputs {
+            globals: &self.region.globals,
+            views: self.pictures.plate_views,
+            plates: self.pictures.plates,
+        };
+        // Where it is completed afterwards, that is read from what was photographed.
+        let is_completed = estimate::is_needed(&self.region.plan);
+        let photographed = self.captured.by_pass.estimate.photographed.as_ref();
+        let target = photographed
+            .filter(|_| is_completed)
+            .unwrap_or(&self.captured.plate);
+        self.plate.encode(recorder, &inputs, &target.view);
+    }
+
+    fn estimate(&self, recorder: &mut Recorder<'_>, fineness: Fineness) {
+        let Some(photographed) = &self.captured.by_pass.estimate.photographed else {
+            return;
+        };
+        let inputs = estimate::Inputs {
+            scene: self.scene(),
+            grids: &self.state.grids,
+            lit_cells: &self.state.lit.cells,
+            photographed: &photographed.view,
+            frame: self.pictures.frame,
+            validity: self.validity(),
+            visibility: &self.captured.light.visibility.lights.view,
+            ambient: &self.captured.light.visibility.ambient.view,
+        };
+        self.passes
+            .estimate
+            .encode(recorder, &inputs, fineness, &self.captured.plate.view);
+    }
+
+    fn fit(&self, recorder: &mut Recorder<'_>, task: Task) {
+        let (captured, targets) = (self.captured, &self.captured.by_pass.fit);
+        let inputs = fit::Inputs {
+            scene: self.scene(),
+            frame: self.pictures.frame,
+            plate: &captured.plate.view,
+            validity: self.validity(),
+            visibility: &captured.light.visibility.lights.view,
+            ambient: &captured.light.visibility.ambient.view,
+            gbuffer: &captured.by_pass.gbuffer,
+        };
+        let to_solve = fit_solve::Inputs {
+            globals: &self.region.globals,
+            rows: &targets.rows,
+        };
+        for index in 0..task.n_steps {
+            let step = task.step(&self.region.plan, index);
+            self.passes.fit.encode(recorder, &inputs, &step, targets);
+            self.passes
+                .fit_solve
+                .encode(recorder, &to_solve, &step, self.state);
+        }
+    }
+
+    fn fill(&self, recorder: &mut Recorder<'_>, cells: &CellBuffers) {
+        let inputs = fill::Inputs {
+            grids: &self.state.grids,
+            n_receivers: self.region.plan.n_receivers,
+        };
+        self.passes.fill.encode(recorder, &inputs, &cells.cells);
+    }
+
+    fn gbuffer_inputs(&self) -> gbuffer::Inputs<'_> {
+        gbuffer::Inputs {
+            globals: &self.region.globals,
+            toy: self.toy,
+            self_shadow: &self.captured.light.self_shadow,
+        }
+    }
+
+    fn withhold_inputs(&self) -> withhold::Inputs<'_> {
+        withhold::Inputs {
+            scene: self.scene(),
+            visibility: &self.captured.light.visibility.lights.view,
+            ambient: &self.captured.light.visibility.ambient.view,
+        }
+    }
+
+    fn lit_inputs(&self) -> lit::Inputs<'_> {
+        lit::Inputs {
+            on: self.pool_grids(&self.state.lit),
+            frame: self.pictures.frame,
+            validity: self.validity(),
+            visibility: &self.captured.light.visibility.lights.view,
+            ambient: &self.captured.light.visibility.ambient.view,
+        }
+    }
+
+    fn residual_inputs(&self) -> residual::Inputs<'_> {
+        residual::Inputs {
+            on: self.pool_grids(&self.state.residual),
+            frame: self.pictures.frame,
+            plate: &self.captured.plate.view,
+            validity: self.validity(),
+            visibility: &self.captured.light.visibility.lights.view,
+            ambient: &self.captured.light.visibility.ambient.view,
+        }
+    }
+
+    fn detail_inputs(&self) -> detail::Inputs<'_> {
+        detail::Inputs {
+            scene: self.scene(),
+            frame: self.pictures.frame,
+            plate: &self.captured.plate.view,
+            validity: self.validity(),
+            visibility: &self.captured.light.visibility.lights.view,
+            ambient: &self.captured.light.visibility.ambient.view,
+        }
+    }
+
+    fn tint_inputs(&self) -> tint::Inputs<'_> {
+        tint::Inputs {
+            plan: &self.region.plan,
+            scene: self.scene(),
+            frame: self.pictures.frame,
+            validity: self.validity(),
+            gbuffer: &self.captured.by_pass.gbuffer,
+        }
+    }
+
+    fn appearance_inputs(&self) -> appearance::Inputs<'_> {
+        appearance::Inputs {
+            scene: self.scene(),
+            frame: self.pictures.frame,
+            validity: self.validity(),
+            gbuffer: &self.captured.by_pass.gbuffer,
+        }
+    }
+
+    fn scene(&self) -> Scene<'_> {
+        Scene {
+            globals: &self.region.globals,
+            solution: &self.state.solution,
+        }
+    }
+
+    fn validity(&self) -> &wgpu::TextureView {
+        &self.captured.by_pass.validity.marks.view
+    }
+
+    fn pool_grids<'a>(&'a self, cells: &'a CellBuffers) -> PoolGrids<'a> {
+        PoolGrids {
+            scene: self.scene(),
+            grids: &self.state.grids,
+            cells,
+            n_receivers: self.region.plan.n_receivers,
+        }
+    }
+}

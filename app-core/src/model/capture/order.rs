@@ -1,0 +1,159 @@
+//! The order of the capture path: what runs is what is planned.
+
+use crate::model::capture::estimate::{self, Fineness};
+use crate::model::capture::fit::{Subject, Task};
+use crate::model::capture::{detail, lit, withhold};
+use crate::model::lighting;
+use crate::model::plan::Plan;
+use crate::plan::Change;
+
+/// Rounds in which plate and light are estimated from one another.
+const N_ESTIMATE_ROUNDS: u32 = 3;
+
+/// One step of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// Forgets all that is known of the place.
+    Forget,
+    /// Forgets what fits and lit colours were summed from.
+    ForgetSums,
+    /// What light reaches in the physical pose.
+    Lighting(lighting::Step),
+    Gbuffer,
+    Validity,
+    Plate,
+    Withhold,
+    Lit,
+    FillLit,
+    Estimate(Fineness),
+    Fit(Task),
+    Residual,
+    FillResidual,
+    Detail,
+    Tint,
+    TintFill,
+    Appearance,
+}
+
+impl Step {
+    /// The passes that it runs, in order.
+    pub(crate) fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::Forget | Self::ForgetSums => &[],
+            Self::Lighting(step) => step.passes(),
+            Self::Gbuffer => &["gbuffer"],
+            Self::Validity => &["validity"],
+            Self::Plate => &["plate"],
+            Self::Withhold => &["withhold"],
+            Self::Lit => &["lit"],
+            Self::FillLit | Self::FillResidual => &["fill"],
+            Self::Estimate(_) => &["estimate"],
+            Self::Fit(_) => &["fit", "fit_solve"],
+            Self::Residual => &["residual"],
+            Self::Detail => &["detail"],
+            Self::Tint => &["tint"],
+            Self::TintFill => &["tint_fill"],
+            Self::Appearance => &["appearance"],
+        }
+    }
+}
+
+/// What runs when that much of a frame is new.
+pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
+    let mut steps = Vec::new();
+    match change {
+        Change::Pose => return steps,
+        Change::Picture => steps.push(fit_intensities(plan)),
+        Change::View => {
+            add_view(&mut steps, plan);
+            add_if(&mut steps, withhold::is_needed(plan), [Step::Withhold]);
+            add_if(
+                &mut steps,
+                estimate::is_needed(plan),
+                [Step::Estimate(Fineness::Smooth)],
+            );
+            steps.push(fit_intensities(plan));
+            add_light(&mut steps, plan, false);
+            add_rest_of_fits(&mut steps, plan, false);
+        }
+        Change::Scene => {
+            steps.push(Step::Forget);
+            add_view(&mut steps, plan);
+            add_light(&mut steps, plan, true);
+            if estimate::is_needed(plan) {
+                // The first guess was pooled with shares that nobody had seen.
+                for _ in 1..N_ESTIMATE_ROUNDS {
+                    steps.push(Step::ForgetSums);
+                    add_light(&mut steps, plan, true);
+                }
+            }
+            // The first fits need the real shadow.
+            add_if(&mut steps, withhold::is_needed(plan), [Step::Withhold]);
+            add_rest_of_fits(&mut steps, plan, true);
+        }
+    }
+    steps.extend([Step::Residual, Step::FillResidual]);
+    add_if(&mut steps, detail::is_needed(plan), [Step::Detail]);
+    steps.extend([Step::Tint, Step::TintFill, Step::Appearance]);
+    steps
+}
+
+/// What a view shows before anything is learned from it: geometry of the physical pose, and the plate.
+fn add_view(steps: &mut Vec<Step>, plan: &Plan) {
+    steps.extend([
+        Step::Lighting(lighting::Step::SelfShadow),
+        Step::Gbuffer,
+        Step::Validity,
+    ]);
+    steps.extend(lighting::Step::visibilities(plan).map(Step::Lighting));
+    steps.push(Step::Plate);
+}
+
+/// The light on each receiver in turn, what the first tells is what the others are expected to be; before it, a smooth
+/// estimate of what plates do not show.
+fn add_light(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
+    add_if(steps, lit::is_needed(plan), [Step::Lit, Step::FillLit]);
+    add_if(
+        steps,
+        estimate::is_needed(plan),
+        [Step::Estimate(Fineness::Smooth)],
+    );
+    let fit = |receiver| fit(plan, Subject::Receiver, receiver, is_first);
+    steps.extend((0..plan.n_receivers).map(fit));
+}
+
+/// What the light on the receivers makes possible: the estimate in full, and the light on the toy.
+fn add_rest_of_fits(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
+    add_if(steps, estimate::is_needed(plan), [Step::Estimate(Fineness::Full)]);
+    steps.push(fit(plan, Subject::Toy, 0, is_first));
+}
+
+/// The exposure of this picture and the power of each light in it. A jump of the exposure makes every pixel an outlier, so
+/// that weights start anew.
+fn fit_intensities(plan: &Plan) -> Step {
+    Step::Fit(Task {
+        subject: Subject::Intensities,
+        receiver: 0,
+        n_steps: plan.n_refine_steps,
+        is_refinement: false,
+    })
+}
+
+fn fit(plan: &Plan, subject: Subject, receiver: u32, is_first: bool) -> Step {
+    Step::Fit(Task {
+        subject,
+        receiver,
+        n_steps: if is_first {
+            plan.n_fit_steps
+        } else {
+            plan.n_refine_steps
+        },
+        is_refinement: !is_first,
+    })
+}
+
+fn add_if<const N: usize>(steps: &mut Vec<Step>, is_needed: bool, more: [Step; N]) {
+    if is_needed {
+        steps.extend(more);
+    }
+}

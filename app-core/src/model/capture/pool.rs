@@ -1,0 +1,60 @@
+//! What `lit` and `residual` share: pooling pictures in the cells of coarse grids.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Part, Shader, part};
+use crate::model::state::grids::CellBuffers;
+use crate::model::state::solution::{SCENE_SLOTS, Scene};
+
+/// Points of a cell, and how a cell grows by them.
+pub(crate) const POOL: Part = part!("common/pool");
+/// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
+const WORKGROUPS: u32 = 8;
+
+pub(crate) struct Pool {
+    compute: Compute,
+}
+
+/// Where is pooled.
+pub(crate) struct PoolGrids<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) cells: &'a CellBuffers,
+    pub(crate) n_receivers: u32,
+}
+
+impl Pool {
+    /// The slots begin with the grids, the cells and what is kept of them.
+    pub(crate) fn new(gpu: &Gpu, shader: &'static Shader, slots: &'static [Slot]) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader,
+                entry_point: "cs_pool",
+                groups: [SCENE_SLOTS, slots, &[], &[]],
+            }),
+        }
+    }
+
+    /// Pools `pictures`, which are in the order of the slots, the sampler after them.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        on: &PoolGrids<'_>,
+        pictures: &[&wgpu::TextureView],
+    ) {
+        let buffers = [on.grids, &on.cells.cells, &on.cells.accumulated].map(Resource::from);
+        let sampler = Resource::from(&recorder.gpu.samplers.linear);
+        let resources: Vec<_> = buffers
+            .into_iter()
+            .chain(pictures.iter().map(|picture| Resource::from(*picture)))
+            .chain([sampler])
+            .collect();
+        let groups = [
+            recorder.bind(&self.compute, GROUP_SCENE, &on.scene.resources()),
+            recorder.bind(&self.compute, GROUP_PASS, &resources),
+        ];
+        recorder.compute(&self.compute, &groups, [WORKGROUPS, WORKGROUPS, on.n_receivers]);
+    }
+}

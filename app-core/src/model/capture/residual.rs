@@ -1,0 +1,64 @@
+//! `residual`: what the model leaves unexplained, pooled on coarse grids.
+
+use crate::gpu::bindings::Slot;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::capture::pool::{POOL, Pool, PoolGrids};
+use crate::model::parts::{ACCUMULATED, MODEL};
+use crate::model::state::grids::{GRID, Grids};
+use crate::model::state::solution::FIT;
+use crate::passes::globals::GLOBALS;
+pub(crate) use crate::passes::list::NoTargets as Targets;
+use crate::passes::parts::PIXEL;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &PIXEL,
+    &GRID,
+    &ACCUMULATED,
+    &POOL,
+    &part!("capture/residual"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::uniform::<Grids>(),
+    Slot::ReadWrite,
+    Slot::ReadWrite,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+];
+
+pub(crate) struct Pass(Pool);
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) on: PoolGrids<'a>,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self(Pool::new(gpu, &SHADER, SLOTS))
+    }
+
+    /// Adds this view's residuals to the cells.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
+        let pictures = [
+            inputs.frame,
+            inputs.plate,
+            inputs.validity,
+            inputs.visibility,
+            inputs.ambient,
+        ];
+        self.0.encode(recorder, &inputs.on, &pictures);
+    }
+}

@@ -1,0 +1,89 @@
+//! `tint`: what the toy's visible surface tells of its paint, summed in cells.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::capture::gbuffer;
+use crate::model::parts::TOY_RADIANCE;
+use crate::model::plan::Plan;
+use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
+use crate::passes::globals::GLOBALS;
+pub(crate) use crate::passes::list::NoTargets as Targets;
+use crate::passes::parts::{CHANNELS, PIXEL};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &TOY_RADIANCE,
+    &PIXEL,
+    &CHANNELS,
+    &TINT_GRID,
+    &TINT_CELL,
+    &part!("capture/tint"),
+]);
+/// The stride, in region pixels, at which a pixel is taken; then the grid, the sums and what they are of.
+const SLOTS: &[Slot] = &[
+    Slot::per_use::<u32>(),
+    Slot::uniform::<TintGrid>(),
+    Slot::ReadWrite,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Depth,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+];
+/// Invocations of a workgroup along each side.
+const WORKGROUP_PX: u32 = 8;
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) scene: Scene<'a>,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) gbuffer: &'a gbuffer::Targets,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_add",
+                groups: [SCENE_SLOTS, SLOTS, &[], &[]],
+            }),
+        }
+    }
+
+    /// Sums what a frame shows of the toy.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, tints: &Tints) {
+        recorder.clear(&tints.sums);
+        let gbuffer = inputs.gbuffer;
+        let resources = [
+            Resource::PerUse,
+            (&tints.grid).into(),
+            (&tints.sums).into(),
+            inputs.frame.into(),
+            inputs.validity.into(),
+            (&gbuffer.depth.view).into(),
+            (&gbuffer.normal.view).into(),
+            (&gbuffer.received.view).into(),
+            (&gbuffer.base.view).into(),
+        ];
+        let stride_px = inputs.plan.fit_stride_px;
+        let groups = [
+            recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
+        ];
+        let size_px = inputs.plan.region.size_px;
+        let workgroups = size_px.map(|side_px| side_px.div_ceil(stride_px).div_ceil(WORKGROUP_PX));
+        recorder.compute(&self.compute, &groups, [workgroups.x, workgroups.y, 1]);
+    }
+}

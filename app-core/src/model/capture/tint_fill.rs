@@ -1,0 +1,43 @@
+//! `tint_fill`: how the real toy's paint differs from its model's, also where no camera has seen it.
+
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::model::parts::ACCUMULATED;
+use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, Tints};
+pub(crate) use crate::passes::list::NoTargets as Targets;
+use crate::passes::parts::PIXEL;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &PIXEL,
+    &ACCUMULATED,
+    &TINT_CELL,
+    &BETWEEN_TINTS,
+    &part!("capture/tint_fill"),
+]);
+const SLOTS: &[Slot] = &[Slot::Read, Slot::ReadWrite, Slot::ReadWrite];
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_fill",
+                groups: [&[], SLOTS, &[], &[]],
+            }),
+        }
+    }
+
+    /// Adds the sums of a frame to what is known, and fills every cell.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, tints: &Tints) {
+        let buffers = [&tints.sums, &tints.accumulated, &tints.cells];
+        let own = recorder.bind(&self.compute, GROUP_PASS, &buffers.map(Into::into));
+        recorder.compute(&self.compute, &[own], [tints.layout.n_materials, 1, 1]);
+    }
+}

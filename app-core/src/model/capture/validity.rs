@@ -1,0 +1,53 @@
+//! `validity`: which pixels of the frame show the receiver alone, and which one surface of the toy.
+
+use wgpu::TextureFormat;
+
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::plan::Plan;
+use crate::passes::parts::{DEPTH, FULLSCREEN};
+
+pub(crate) const SHADER: Shader = Shader::new(&[&DEPTH, &FULLSCREEN, &part!("capture/validity")]);
+const SLOTS: &[Slot] = &[Slot::Depth];
+/// Format of the marks: r for the receiver, g for the toy, b for the receiver well clear of the toy.
+pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    pub(crate) marks: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            marks: Texture::target(gpu, "validity", plan.region.size_px, FORMAT),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [&[][..], SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_mark", groups, &[FORMAT])),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        gbuffer_depth: &wgpu::TextureView,
+        targets: &Targets,
+    ) {
+        let own = recorder.bind(&self.draw, GROUP_PASS, &[gbuffer_depth.into()]);
+        recorder.fullscreen(&self.draw, &[own], &[&targets.marks.view]);
+    }
+}

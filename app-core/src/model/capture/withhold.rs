@@ -1,0 +1,91 @@
+//! `withhold`: evidence without the real shadow, for measuring how well that is rebuilt.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::capture::validity;
+use crate::model::parts::MODEL;
+use crate::model::plan::Plan;
+use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::{CHANNELS, FULLSCREEN};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &CHANNELS,
+    &FULLSCREEN,
+    &part!("capture/withhold"),
+]);
+const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture, Slot::Filtered, Slot::Sampler];
+
+/// Only where that is asked for.
+pub(crate) fn is_needed(plan: &Plan) -> bool {
+    plan.is_shadow_withheld
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+/// Of the region's size, where it is needed.
+pub(crate) struct Targets {
+    /// The marks as they were.
+    all: Option<Texture>,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = || Texture::target(gpu, "all validity", plan.region.size_px, validity::FORMAT);
+        Self {
+            all: is_needed(plan).then(target),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(
+                &SHADER,
+                "fs_withhold",
+                groups,
+                &[validity::FORMAT],
+            )),
+        }
+    }
+
+    /// Takes the real shadow out of the marks.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        targets: &Targets,
+        marks: &Texture,
+    ) {
+        let Some(all) = &targets.all else { return };
+        recorder.copy(&marks.raw, &all.raw);
+        let resources = [
+            (&all.view).into(),
+            inputs.visibility.into(),
+            inputs.ambient.into(),
+            (&recorder.gpu.samplers.linear).into(),
+        ];
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(&self.draw, GROUP_PASS, &resources),
+        ];
+        recorder.fullscreen(&self.draw, &groups, &[&marks.view]);
+    }
+}

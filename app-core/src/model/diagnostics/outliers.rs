@@ -1,0 +1,39 @@
+//! What the camera sees and the model cannot explain: a thing that the plate does not have, or the shadow of a light that
+//! is not listed.
+
+use crate::frame::warning::Outlier;
+
+/// Pooled residual, in plates, from which `composite` begins to leave what the camera saw: enough to tell of a shadow.
+pub const OUTLIER_NONE: f32 = 0.15;
+/// Pooled residual from which it leaves that in full.
+pub const OUTLIER_ALL: f32 = 0.3;
+/// Least over most of a residual's channels, from which `composite` takes it for a shadow.
+pub const SHADOW_EVENNESS: f32 = 0.4;
+/// How well a cell must be known to count, of 1 a frame.
+const LEAST_CERTAINTY: f32 = 0.5;
+/// Fewer cells than this are an edge that is a little off.
+const FEWEST_CELLS: usize = 4;
+
+/// What the sums of a receiver's cells tell: each residual times its certainty, and the certainty.
+#[must_use]
+pub fn outliers(accumulated: &[[f32; 4]]) -> Vec<Outlier> {
+    let known = accumulated.iter().filter(|cell| cell[3] >= LEAST_CERTAINTY);
+    let residuals = known.map(|[r, g, b, certainty]| [r, g, b].map(|sum| sum / certainty));
+    let (mut n_objects, mut n_shadows) = (0, 0);
+    for residual in residuals {
+        let most = residual.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let least = residual.iter().copied().fold(f32::INFINITY, f32::min);
+        let is_even = most < 0.0 && most / least >= SHADOW_EVENNESS;
+        if is_even && -least >= OUTLIER_NONE {
+            n_shadows += 1;
+        } else if !is_even && most.max(-least) >= OUTLIER_ALL {
+            n_objects += 1;
+        }
+    }
+    let found = [(n_objects, Outlier::Object), (n_shadows, Outlier::Shadow)];
+    found
+        .into_iter()
+        .filter(|(n_cells, _)| *n_cells >= FEWEST_CELLS)
+        .map(|(_, unknown)| unknown)
+        .collect()
+}

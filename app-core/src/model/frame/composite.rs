@@ -1,0 +1,155 @@
+//! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::Texture;
+use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
+use crate::model::frame::coverage::COVERED;
+use crate::model::frame::toy;
+use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
+use crate::model::plan::Plan;
+use crate::model::state::grids::{GRID, Grids};
+use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::passes::globals::GLOBALS;
+use crate::passes::parts::{CHANNELS, FULLSCREEN, PIXEL};
+use crate::passes::present::REGION_FORMAT;
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &MODEL,
+    &PIXEL,
+    &GRID,
+    &BETWEEN_CELLS,
+    &CELLS,
+    &CHANNELS,
+    &COVERED,
+    &FULLSCREEN,
+    &part!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::uniform::<Grids>(),
+    Slot::Read,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Texture,
+    Slot::Filtered,
+    Slot::Sampler,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::per_use::<Drawing>(),
+];
+
+shared_struct! {
+    /// How the toy and the receivers were drawn.
+    pub(crate) struct Drawing {
+        pub n_toy_draws: u32,
+        pub has_detail: u32,
+    }
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+/// What is known of the light on one pose.
+#[derive(Clone, Copy)]
+pub(crate) struct Light<'a> {
+    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) cells: &'a wgpu::Buffer,
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) physical: Light<'a>,
+    pub(crate) shown: Light<'a>,
+    pub(crate) coverage: &'a wgpu::TextureView,
+    pub(crate) toy: &'a toy::Targets,
+    pub(crate) moved_mask: &'a wgpu::TextureView,
+    /// Each pixel's own residual; without it that is what the frame shows.
+    pub(crate) detail: Option<&'a wgpu::TextureView>,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    pub(crate) picture: Texture,
+    /// Its codes, not decoded.
+    pub(crate) codes: wgpu::TextureView,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let picture = Texture::target(gpu, "composite", plan.region.size_px, REGION_FORMAT);
+        Self {
+            codes: picture.codes(gpu),
+            picture,
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(
+                &SHADER,
+                "fs_compose",
+                groups,
+                &[REGION_FORMAT],
+            )),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let [toy_0, toy_1, toy_2, toy_3] = inputs.toy.views();
+        let resources = [
+            inputs.grids.into(),
+            inputs.cells.into(),
+            inputs.frame.into(),
+            inputs.plate.into(),
+            inputs.validity.into(),
+            inputs.physical.visibility.into(),
+            inputs.physical.ambient.into(),
+            inputs.shown.visibility.into(),
+            inputs.shown.ambient.into(),
+            (&recorder.gpu.samplers.linear).into(),
+            toy_0.into(),
+            toy_1.into(),
+            toy_2.into(),
+            toy_3.into(),
+            (&inputs.toy.moved.view).into(),
+            inputs.moved_mask.into(),
+            // Not read where there is none.
+            inputs.detail.unwrap_or(inputs.plate).into(),
+            inputs.coverage.into(),
+            Resource::PerUse,
+        ];
+        let drawing = Drawing {
+            n_toy_draws: inputs.toy.n_draws(),
+            has_detail: u32::from(inputs.detail.is_some()),
+        };
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind_with(&self.draw, GROUP_PASS, &drawing, &resources),
+        ];
+        recorder.fullscreen(&self.draw, &groups, &[&targets.picture.view]);
+    }
+}

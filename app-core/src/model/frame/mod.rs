@@ -1,0 +1,167 @@
+//! The frame path: visibility of the shown pose, then the picture of the region.
+
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::model::capture::CaptureTargets;
+use crate::model::frame::composite::Light;
+use crate::model::lighting::{self, LightMaps, Lighting, Posed};
+use crate::model::plan::Plan;
+use crate::model::region::Region;
+use crate::model::state::SceneState;
+use crate::model::state::solution::Scene;
+use crate::passes::list::passes;
+use crate::passes::toy_mesh::ToyMesh;
+
+passes!(Plan: moved_mask, toy, coverage, composite);
+
+/// One step of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// What light reaches in the shown pose.
+    Lighting(lighting::Step),
+    MovedMask,
+    Toy,
+    Coverage,
+    Composite,
+}
+
+impl Step {
+    /// The passes that it runs, in order.
+    pub(crate) fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::Lighting(step) => step.passes(),
+            Self::MovedMask => &["moved_mask"],
+            Self::Toy => &["toy"],
+            Self::Coverage => &["coverage"],
+            Self::Composite => &["composite"],
+        }
+    }
+}
+
+/// What runs for every frame.
+pub(crate) fn order(plan: &Plan) -> Vec<Step> {
+    lighting::Step::visibilities(plan)
+        .chain([lighting::Step::SelfShadow])
+        .map(Step::Lighting)
+        .chain([Step::MovedMask, Step::Toy, Step::Coverage, Step::Composite])
+        .collect()
+}
+
+/// What the frame path makes, all of the region's size.
+pub(crate) struct FrameTargets {
+    /// What light reaches in the shown pose.
+    pub(crate) light: LightMaps,
+    pub(crate) by_pass: Targets,
+}
+
+impl FrameTargets {
+    /// Allocates what `plan` asks for.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            light: LightMaps::new(gpu, plan),
+            by_pass: Targets::new(gpu, plan),
+        }
+    }
+}
+
+/// All that the frame path reads and writes.
+pub(crate) struct FramePath<'a> {
+    pub(crate) region: &'a Region,
+    pub(crate) captured: &'a CaptureTargets,
+    pub(crate) drawn: &'a FrameTargets,
+    pub(crate) passes: &'a Passes,
+    pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
+    pub(crate) state: &'a SceneState,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) frame: &'a wgpu::TextureView,
+}
+
+impl FramePath<'_> {
+    /// Encodes one step.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
+        let (passes, of) = (self.passes, &self.drawn.by_pass);
+        match step {
+            Step::Lighting(step) => self.light(recorder, step),
+            Step::MovedMask => {
+                let globals = &self.region.globals;
+                passes
+                    .moved_mask
+                    .encode(recorder, globals, self.toy, &of.moved_mask);
+            }
+            Step::Toy => passes.toy.encode(recorder, &self.toy_inputs(), &of.toy),
+            Step::Coverage => passes
+                .coverage
+                .encode(recorder, &self.coverage_inputs(), &of.coverage),
+            Step::Composite => {
+                passes
+                    .composite
+                    .encode(recorder, &self.composite_inputs(), &of.composite);
+            }
+        }
+    }
+
+    fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
+        let (passes, lighting) = self.lighting;
+        let posed = Posed {
+            globals: &self.region.globals,
+            toy: self.toy,
+            pose: &self.toy.shown,
+        };
+        lighting.encode(recorder, passes, step, (posed, &self.drawn.light));
+    }
+
+    fn toy_inputs(&self) -> toy::Inputs<'_> {
+        toy::Inputs {
+            scene: self.scene(),
+            toy: self.toy,
+            appearance: &self.captured.by_pass.appearance,
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
+            self_shadow: &self.drawn.light.self_shadow,
+            tints: &self.state.tints,
+        }
+    }
+
+    fn coverage_inputs(&self) -> coverage::Inputs<'_> {
+        coverage::Inputs {
+            globals: &self.region.globals,
+            toy: self.toy,
+            camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
+        }
+    }
+
+    fn composite_inputs(&self) -> composite::Inputs<'_> {
+        let (captured, drawn) = (self.captured, self.drawn);
+        composite::Inputs {
+            scene: self.scene(),
+            grids: &self.state.grids,
+            cells: &self.state.residual.cells,
+            frame: self.frame,
+            plate: &captured.plate.view,
+            validity: &captured.by_pass.validity.marks.view,
+            physical: Light {
+                visibility: &captured.light.visibility.lights.view,
+                ambient: &captured.light.visibility.ambient.view,
+            },
+            shown: Light {
+                visibility: &drawn.light.visibility.lights.view,
+                ambient: &drawn.light.visibility.ambient.view,
+            },
+            coverage: &drawn.by_pass.coverage.covered.count.view,
+            toy: &drawn.by_pass.toy,
+            moved_mask: &drawn.by_pass.moved_mask.moved.view,
+            detail: captured
+                .by_pass
+                .detail
+                .residual
+                .as_ref()
+                .map(|residual| &residual.view),
+        }
+    }
+
+    fn scene(&self) -> Scene<'_> {
+        Scene {
+            globals: &self.region.globals,
+            solution: &self.state.solution,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! `moved_mask`: where the surface that the camera saw of the real toy is no longer in its place.
+
+use wgpu::{StoreOp, TextureFormat, VertexFormat};
+
+use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::{Recorder, resolved};
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::model::plan::Plan;
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::{BEHIND, MOVED};
+use crate::passes::toy_mesh::ToyMesh;
+
+pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &MOVED, &BEHIND, &part!("frame/moved_mask")]);
+/// Both poses: the physical one is drawn.
+const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
+/// Format of what has moved, as part of a pixel.
+pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
+/// What is thinner than a pixel counts as well.
+const N_SAMPLES: u32 = 4;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+/// Of the region's size: two multisampled ones that stay on the chip, and what has moved.
+pub(crate) struct Targets {
+    samples: Texture,
+    depth: Texture,
+    pub(crate) moved: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let size_px = plan.region.size_px;
+        let samples = |label, format| Texture::samples(gpu, label, size_px, (format, N_SAMPLES));
+        Self {
+            samples: samples("moved_mask samples", MOVED_FORMAT),
+            depth: samples("moved_mask depth", TextureFormat::Depth32Float),
+            moved: Texture::target(gpu, "moved_mask", size_px, MOVED_FORMAT),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, &[], &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec {
+                vertex: "vs_physical",
+                streams: STREAMS,
+                n_samples: N_SAMPLES,
+                depth: Some(nearest_surface()),
+                ..DrawSpec::fullscreen(&SHADER, "fs_moved", groups, &[MOVED_FORMAT])
+            }),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        globals: &wgpu::Buffer,
+        toy: &ToyMesh,
+        targets: &Targets,
+    ) {
+        let group = recorder.bind(&self.draw, GROUP_SCENE, &[globals.into()]);
+        let colors = [Some(resolved(&targets.samples.view, &targets.moved.view))];
+        let depth = Some(&targets.depth.view);
+        let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
+        render.begin(&self.draw, &[group]);
+        render.0.set_vertex_buffer(1, toy.shown.positions.slice(..));
+        toy.draw_positions(&mut render.0, &toy.physical.positions, 0..1);
+    }
+}

@@ -1,0 +1,172 @@
+//! What light reaches in a pose: points over the lights, the passes that draw from them, and the maps that come of it.
+
+use glam::Vec4;
+
+use crate::geometry::light_points::ambient_directions;
+use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::model::lighting::occlusion::LightPointsBuffer;
+use crate::model::plan::Plan;
+use crate::passes::counting::CountingTargets;
+use crate::passes::list::passes;
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+
+passes!(occlusion, visibility, self_shadow);
+
+/// One step on the way to what light reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// The toy's shadow on itself.
+    SelfShadow,
+    /// Visibility of one light.
+    Light(usize),
+    /// Visibility of the ambient light.
+    Ambient,
+}
+
+impl Step {
+    /// Those that give the visibilities of a plan's lights.
+    pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
+        (0..plan.lights.len()).map(Self::Light).chain([Self::Ambient])
+    }
+
+    /// The passes that it runs, in order.
+    pub(crate) fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::SelfShadow => &["self_shadow"],
+            Self::Light(_) | Self::Ambient => &["occlusion", "visibility"],
+        }
+    }
+}
+
+/// What light reaches in one pose.
+pub(crate) struct LightMaps {
+    pub(crate) visibility: visibility::Targets,
+    pub(crate) self_shadow: self_shadow::Targets,
+    /// Replaces what the passes make of the lights.
+    pub(crate) injected: Option<Texture>,
+}
+
+impl LightMaps {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            visibility: visibility::Targets::new(gpu, plan),
+            self_shadow: self_shadow::Targets::new(gpu, plan),
+            injected: None,
+        }
+    }
+}
+
+/// Points over the lights, directions of the ambient light, and what is counted from them.
+pub(crate) struct Lighting {
+    lights: Vec<LightPointsBuffer>,
+    ambient: LightPointsBuffer,
+    n_receivers: u32,
+    atlas: ShadowAtlas,
+    occlusion: occlusion::Targets,
+}
+
+/// A toy in a pose, as a view has it.
+#[derive(Clone, Copy)]
+pub(crate) struct Posed<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pose: &'a PoseBuffers,
+}
+
+impl Lighting {
+    /// `points` are those of each light, receiver by receiver.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan, points: Vec<Vec<Vec4>>) -> Self {
+        let (region_px, ambient_px, n_receivers) = (plan.region.size_px, plan.ambient_px, plan.n_receivers);
+        let on_device =
+            |points, map_px| LightPointsBuffer::new(gpu, points, n_receivers, (map_px, region_px));
+        // Each receiver has its own hemisphere.
+        let directions = ambient_directions(plan.n_ambient_directions).repeat(n_receivers as usize);
+        Self {
+            lights: points
+                .into_iter()
+                .map(|points| on_device(points, region_px))
+                .collect(),
+            ambient: on_device(directions, ambient_px),
+            occlusion: occlusion::Targets::new(gpu, plan),
+            atlas: plan.self_shadow.clone(),
+            n_receivers,
+        }
+    }
+
+    /// The points of each light, receiver by receiver.
+    pub(crate) fn points(&self) -> Vec<Vec<Vec4>> {
+        self.lights.iter().map(|light| light.points.clone()).collect()
+    }
+
+    /// Encodes one step for a toy in a pose.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        step: Step,
+        (posed, maps): (Posed<'_>, &LightMaps),
+    ) {
+        match step {
+            Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
+            Step::Light(channel) => {
+                let targets = (&self.occlusion.lights, &maps.visibility.lights);
+                if let Some(light) = self.lights.get(channel) {
+                    self.encode_visibility(recorder, passes, (posed, light), channel, targets);
+                }
+                if channel + 1 == self.lights.len()
+                    && let Some(injected) = &maps.injected
+                {
+                    recorder.copy(&injected.raw, &maps.visibility.lights.raw);
+                }
+            }
+            Step::Ambient => {
+                let targets = (&self.occlusion.ambient, &maps.visibility.ambient);
+                self.encode_visibility(recorder, passes, (posed, &self.ambient), 0, targets);
+            }
+        }
+    }
+
+    fn encode_visibility(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        (posed, light): (Posed<'_>, &LightPointsBuffer),
+        channel: usize,
+        (counted, map): (&CountingTargets, &Texture),
+    ) {
+        let Posed { globals, toy, pose } = posed;
+        let inputs = occlusion::Inputs {
+            globals,
+            n_receivers: self.n_receivers,
+            toy,
+            pose,
+            light,
+        };
+        passes.occlusion.encode(recorder, &inputs, counted);
+        let inputs = visibility::Inputs {
+            hidden: &counted.count.view,
+            n_points: light.n_points,
+        };
+        passes.visibility.encode(recorder, &inputs, (map, channel));
+    }
+
+    fn encode_self_shadow(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        posed: Posed<'_>,
+        maps: &LightMaps,
+    ) {
+        let light_points: Vec<&[Vec4]> = self.lights.iter().map(LightPointsBuffer::in_anchor).collect();
+        let inputs = self_shadow::Inputs {
+            toy: posed.toy,
+            pose: posed.pose,
+            light_points: &light_points,
+            atlas: &self.atlas,
+        };
+        passes.self_shadow.encode(recorder, &inputs, &maps.self_shadow);
+    }
+}

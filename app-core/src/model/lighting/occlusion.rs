@@ -1,0 +1,176 @@
+//! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
+
+use std::ops::Range;
+
+use glam::{UVec2, Vec4};
+use wgpu::{CompareFunction, Face, VertexFormat};
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shared::shared_struct;
+use crate::model::plan::Plan;
+use crate::passes::counting::{CountingTargets, counting, not_counting, ordered};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::FLATTEN;
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use crate::scene::MAX_RECEIVERS;
+
+/// What one hidden light point adds.
+pub(crate) const HIDDEN: Part = part!("common/hidden");
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FLATTEN,
+    &HIDDEN,
+    &part!("lighting/occlusion", structs: [LightPoints]),
+]);
+const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
+const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
+/// Most light points of one pass: each adds three codes, and 255 is the last.
+pub(crate) const MAX_LIGHT_POINTS: usize = 64;
+
+shared_struct! {
+    /// Points of a light, receiver by receiver.
+    pub(crate) struct LightPoints {
+        pub points: [[f32; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+        pub texel_px: [f32; 2],
+        pub n_points: u32,
+        pub _pad: u32,
+    }
+}
+
+impl LightPoints {
+    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are 4 or a multiple of 16, up to 64, in the
+    /// space of the first receiver, then those of the next.
+    fn new(points: &[Vec4], n_points: u32, (size_px, region_px): (UVec2, UVec2)) -> Self {
+        let mut light_points = Self {
+            points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+            texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
+            n_points,
+            _pad: 0,
+        };
+        for (slot, point) in light_points.points.iter_mut().zip(points) {
+            *slot = point.to_array();
+        }
+        light_points
+    }
+}
+
+/// The points of one light, on the device.
+pub(crate) struct LightPointsBuffer {
+    /// Those in the space of the first receiver, then those of the next.
+    pub(crate) points: Vec<Vec4>,
+    /// Points of the light; each is in `points` once a receiver.
+    pub(crate) n_points: u32,
+    uniform: wgpu::Buffer,
+}
+
+impl LightPointsBuffer {
+    /// For maps of `size_px` texels over a region of `region_px` pixels.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        points: Vec<Vec4>,
+        n_receivers: u32,
+        (size_px, region_px): (UVec2, UVec2),
+    ) -> Self {
+        let n_points = u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1);
+        let uniform = LightPoints::new(&points, n_points, (size_px, region_px));
+        Self {
+            uniform: gpu.uniform("light points", &uniform),
+            points,
+            n_points,
+        }
+    }
+
+    /// The points in stage space, which is that of the first receiver.
+    pub(crate) fn in_anchor(&self) -> &[Vec4] {
+        &self.points[..self.n_points as usize]
+    }
+}
+
+/// What hides how many points: all lights use the same, one after the other.
+pub(crate) struct Targets {
+    pub(crate) lights: CountingTargets,
+    pub(crate) ambient: CountingTargets,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            lights: CountingTargets::new(gpu, "occlusion", plan.region.size_px),
+            ambient: CountingTargets::new(gpu, "occlusion", plan.ambient_px),
+        }
+    }
+}
+
+pub(crate) struct Pass {
+    cover: Draw,
+    /// Shuts out pixels that show another receiver, where there are several.
+    route: Draw,
+}
+
+/// A posed toy, and the points of a light that it hides.
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) n_receivers: u32,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pose: &'a PoseBuffers,
+    pub(crate) light: &'a LightPointsBuffer,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let cover = DrawSpec {
+            vertex: "vs_flatten",
+            streams: STREAMS,
+            targets: vec![counting()],
+            depth: Some(ordered(CompareFunction::Greater)),
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            culled: Some(Face::Back),
+            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
+        };
+        let route = DrawSpec {
+            vertex: "vs_route",
+            targets: vec![not_counting()],
+            depth: Some(ordered(CompareFunction::Always)),
+            ..DrawSpec::fullscreen(&SHADER, "fs_route", groups, &[])
+        };
+        Self {
+            cover: gpu.draw(&cover),
+            route: gpu.draw(&route),
+        }
+    }
+
+    /// Draws the caster from the light's points on each receiver, and leaves what hidden points add up to.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
+        let groups = [
+            recorder.bind(&self.cover, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(&self.cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
+        ];
+        let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
+        let triangles = inputs.triangles();
+        let mut render = targets.render(recorder, SHADER.name);
+        inputs.toy.bind_positions(&mut render.0, &inputs.pose.positions);
+        for receiver in 0..n_receivers {
+            if n_receivers > 1 {
+                render.begin(&self.route, &groups);
+                render.0.draw(0..3, receiver..receiver + 1);
+            }
+            render.begin(&self.cover, &groups);
+            let instances = receiver * n_points..(receiver + 1) * n_points;
+            render.0.draw_indexed(triangles.clone(), 0, instances);
+        }
+    }
+}
+
+impl Inputs<'_> {
+    /// What to draw of the toy, of which only triangles that face the light are seen.
+    fn triangles(&self) -> Range<u32> {
+        let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
+        let is_any = self.light.in_anchor().iter().any(is_within);
+        self.toy.shadow_ranges.seen_from(is_any)
+    }
+}

@@ -1,0 +1,180 @@
+//! The additive model of the receivers at work: the scene state, both paths' targets and passes, and what runs when how much
+//! of a frame is new.
+
+pub(crate) mod capture;
+pub(crate) mod diagnostics;
+pub(crate) mod frame;
+pub(crate) mod lighting;
+pub(crate) mod parts;
+pub(crate) mod plan;
+pub(crate) mod readback;
+pub(crate) mod region;
+pub(crate) mod state;
+
+use glam::Vec4;
+
+use crate::gpu::context::Gpu;
+use crate::gpu::pass_run::Path;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::model::capture::{CapturePath, CaptureTargets};
+use crate::model::frame::{FramePath, FrameTargets};
+use crate::model::lighting::Lighting;
+use crate::model::plan::Plan;
+use crate::model::region::Region;
+use crate::model::state::SceneState;
+use crate::passes::globals::Globals;
+use crate::passes::pictures::Pictures;
+use crate::passes::plate;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::Change;
+use crate::readback::FloatMap;
+use crate::readback::inject::{InjectedVisibility, upload};
+
+/// The additive model at work.
+pub(crate) struct Model {
+    pub(crate) state: SceneState,
+    pub(crate) region: Region,
+    order: Order,
+    lighting: Lighting,
+    captured: CaptureTargets,
+    drawn: FrameTargets,
+    passes: Passes,
+}
+
+/// Every pass of the model.
+struct Passes {
+    light: lighting::Passes,
+    plate: plate::Pass,
+    capture: capture::Passes,
+    frame: frame::Passes,
+}
+
+/// What both paths run, by how much of a frame is new.
+struct Order {
+    capture: [Vec<capture::order::Step>; Change::ALL.len()],
+    frame: Vec<frame::Step>,
+}
+
+impl Order {
+    fn new(plan: &Plan) -> Self {
+        Self {
+            capture: Change::ALL.map(|change| capture::order::order(plan, change)),
+            frame: frame::order(plan),
+        }
+    }
+}
+
+/// The passes that run when that much of a frame is new, each as often as it runs but for the steps of a fit.
+pub fn planned(plan: &Plan, change: Change) -> Vec<(Path, &'static str)> {
+    let order = Order::new(plan);
+    let captured = order.capture[change as usize]
+        .iter()
+        .flat_map(|step| step.passes());
+    let drawn = order.frame.iter().flat_map(|step| step.passes());
+    captured
+        .map(|pass| (capture_path(change), *pass))
+        .chain(drawn.map(|pass| (Path::Frame, *pass)))
+        .collect()
+}
+
+/// What a new picture of a known view needs anew, such as the toy's colours, counts as the frame's.
+fn capture_path(change: Change) -> Path {
+    if change >= Change::View {
+        Path::Capture
+    } else {
+        Path::Frame
+    }
+}
+
+impl Model {
+    /// Allocates what `plan` asks for. `light_points` has the points of each of its lights, receiver by receiver.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        plan: Plan,
+        globals: &Globals,
+        light_points: Vec<Vec<Vec4>>,
+        state: SceneState,
+    ) -> Self {
+        Self {
+            state,
+            order: Order::new(&plan),
+            lighting: Lighting::new(gpu, &plan, light_points),
+            captured: CaptureTargets::new(gpu, &plan),
+            drawn: FrameTargets::new(gpu, &plan),
+            passes: Passes {
+                light: lighting::Passes::new(gpu),
+                plate: plate::Pass::new(gpu),
+                capture: capture::Passes::new(gpu),
+                frame: frame::Passes::new(gpu),
+            },
+            region: Region::new(gpu, plan, globals),
+        }
+    }
+
+    /// Follows the camera to another view; textures stay if they are large enough.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
+        if plan.region.size_px == self.region.rect().size_px && self.captured.serves(&plan) {
+            self.captured.light.injected = None;
+            self.drawn.light.injected = None;
+        } else {
+            gpu.release_groups();
+            self.lighting = Lighting::new(gpu, &plan, self.lighting.points());
+            self.captured = CaptureTargets::new(gpu, &plan);
+            self.drawn = FrameTargets::new(gpu, &plan);
+        }
+        self.order = Order::new(&plan);
+        self.region.follow(gpu, plan, globals);
+    }
+
+    /// The codes of the region's picture.
+    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+        &self.drawn.by_pass.composite.codes
+    }
+
+    /// Encodes the frame path, and before it what the change asks for.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        change: Change,
+    ) {
+        let lighting = (&self.passes.light, &self.lighting);
+        let capture = CapturePath {
+            region: &self.region,
+            captured: &self.captured,
+            passes: &self.passes.capture,
+            plate: &self.passes.plate,
+            lighting,
+            state: &self.state,
+            toy,
+            pictures,
+        };
+        recorder.path = capture_path(change);
+        for step in &self.order.capture[change as usize] {
+            capture.encode(recorder, *step);
+        }
+        let frame = FramePath {
+            region: &self.region,
+            captured: &self.captured,
+            drawn: &self.drawn,
+            passes: &self.passes.frame,
+            lighting,
+            state: &self.state,
+            toy,
+            frame: pictures.frame,
+        };
+        recorder.path = Path::Frame;
+        for step in &self.order.frame {
+            frame.encode(recorder, *step);
+        }
+    }
+
+    /// Replaces visibilities from the next frame on.
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        let upload = |map: &Option<FloatMap>, like: &Texture| map.as_ref().map(|map| upload(gpu, map, like));
+        self.captured.light.injected = upload(&maps.physical, &self.captured.light.visibility.lights);
+        self.drawn.light.injected = upload(&maps.shown, &self.drawn.light.visibility.lights);
+    }
+}

@@ -1,0 +1,35 @@
+//! The work region of the latest view: its plan, and what the shaders know of it.
+
+use crate::geometry::rect::PixelRect;
+use crate::gpu::context::Gpu;
+use crate::model::plan::Plan;
+use crate::passes::globals::Globals;
+
+pub(crate) struct Region {
+    pub(crate) plan: Plan,
+    /// What `globals` holds.
+    pub(crate) uniform: Globals,
+    pub(crate) globals: wgpu::Buffer,
+}
+
+impl Region {
+    pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals) -> Self {
+        Self {
+            plan,
+            uniform: *globals,
+            globals: gpu.uniform("globals", globals),
+        }
+    }
+
+    /// Moves on to another view.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
+        self.plan = plan;
+        self.uniform = *globals;
+        gpu.write(&self.globals, &[*globals]);
+    }
+
+    /// The rectangle of the camera image.
+    pub(crate) fn rect(&self) -> PixelRect {
+        self.plan.region
+    }
+}

@@ -1,0 +1,74 @@
+//! What is learned of a place and of the real toy, in whatever view: it stays when the camera moves.
+
+pub(crate) mod grids;
+pub(crate) mod solution;
+pub(crate) mod tints;
+
+use wgpu::BufferUsages;
+
+use crate::geometry::bounds::Sphere;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::model::state::grids::{CellBuffers, Grids};
+use crate::model::state::solution::accumulated_bytes;
+use crate::model::state::tints::Tints;
+
+/// Fits, residuals, lit colours and tints, with what they are summed from.
+pub(crate) struct SceneState {
+    /// What the fit found.
+    pub(crate) solution: wgpu::Buffer,
+    /// Sums of the fits so far.
+    pub(crate) fit_sums: wgpu::Buffer,
+    /// What `grids` holds.
+    pub(crate) layout: Grids,
+    pub(crate) grids: wgpu::Buffer,
+    pub(crate) residual: CellBuffers,
+    pub(crate) lit: CellBuffers,
+    pub(crate) tints: Tints,
+    n_lights: usize,
+}
+
+impl SceneState {
+    /// Nothing known, on `grids`, of a toy of so many materials within a ball.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        grids: Grids,
+        n_lights: usize,
+        (toy, n_materials): (&Sphere, usize),
+    ) -> Self {
+        Self {
+            solution: gpu.buffer(
+                "fit",
+                bytemuck::bytes_of(&solution::start(n_lights)),
+                BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+            ),
+            fit_sums: gpu.storage(
+                "fit sums",
+                accumulated_bytes(),
+                BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+            ),
+            grids: gpu.uniform("grids", &grids),
+            residual: CellBuffers::new(gpu, "residual cells", &grids),
+            lit: CellBuffers::new(gpu, "lit cells", &grids),
+            tints: Tints::new(gpu, toy, n_materials),
+            layout: grids,
+            n_lights,
+        }
+    }
+
+    /// Forgets everything, so that nothing of what was wrong is left.
+    pub(crate) fn forget(&self, recorder: &mut Recorder<'_>) {
+        recorder
+            .gpu
+            .write(&self.solution, &[solution::start(self.n_lights)]);
+        recorder.clear(&self.residual.accumulated);
+        recorder.clear(&self.tints.accumulated);
+        self.forget_sums(recorder);
+    }
+
+    /// Forgets what fits and lit colours were summed from, and keeps what they found.
+    pub(crate) fn forget_sums(&self, recorder: &mut Recorder<'_>) {
+        recorder.clear(&self.fit_sums);
+        recorder.clear(&self.lit.accumulated);
+    }
+}

@@ -1,0 +1,82 @@
+//! What the fits found, and the sums that they are solved from.
+
+use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::shader::{Part, part};
+use crate::gpu::shared::shared_struct;
+use crate::passes::globals::Globals;
+use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
+
+/// The WGSL that declares it.
+pub(crate) const FIT: Part = part!("common/fit", structs: [ReceiverFit, Fit], constants: [N_COLUMNS]);
+/// What the model's passes share: the globals and the fit.
+pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::Read];
+
+/// Most unknowns of a fit: two, and one a light.
+pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
+/// Sums of a fit in one channel: the upper triangle of the normal equations row by row, and their right-hand side.
+pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
+/// Colour channels.
+pub(crate) const N_CHANNELS: usize = 3;
+/// Weight of the fit's priors against the energy of its first column.
+pub(crate) const PRIOR_WEIGHT: f32 = 1e-4;
+/// What the fit takes a toy to throw back until it knows better.
+pub(crate) const PRIOR_BOUNCE: f32 = 0.27;
+/// What the fit takes all lights' shares to sum to until it knows better.
+pub(crate) const PRIOR_DIRECT_FRACTION: f32 = 0.5;
+
+shared_struct! {
+    /// The fit of a receiver.
+    pub struct ReceiverFit {
+        pub bounce: [f32; 4],
+        pub direct_fraction: [[f32; 4]; MAX_LIGHTS],
+        pub contrast: [f32; 4],
+    }
+}
+
+shared_struct! {
+    /// All fits.
+    pub struct Fit {
+        pub gain: [f32; 4],
+        pub intensity: [[f32; 4]; MAX_LIGHTS],
+        pub receivers: [ReceiverFit; MAX_RECEIVERS],
+        pub toy: [[f32; 4]; N_COLUMNS],
+    }
+}
+
+/// What [`SCENE_SLOTS`] hold.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) solution: &'a wgpu::Buffer,
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn resources(&self) -> [Resource<'a>; 2] {
+        [self.globals.into(), self.solution.into()]
+    }
+}
+
+/// A solution to start from, which also stands where a frame gives no evidence at all.
+pub(crate) fn start(n_lights: usize) -> Fit {
+    #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
+    let direct_fraction = PRIOR_DIRECT_FRACTION / n_lights.max(1) as f32;
+    let mut receiver = ReceiverFit {
+        bounce: [PRIOR_BOUNCE; 4],
+        direct_fraction: [[0.0; 4]; MAX_LIGHTS],
+        contrast: [0.0; 4],
+    };
+    receiver.direct_fraction[..n_lights.min(MAX_LIGHTS)].fill([direct_fraction; 4]);
+    let mut fit = Fit {
+        gain: [1.0; 4],
+        intensity: [[1.0; 4]; MAX_LIGHTS],
+        receivers: [receiver; MAX_RECEIVERS],
+        toy: [[0.0; 4]; N_COLUMNS],
+    };
+    fit.toy[0] = [0.5; 4];
+    fit
+}
+
+/// Bytes of the sums that are kept: for each receiver and the toy.
+pub(crate) const fn accumulated_bytes() -> u64 {
+    (size_of::<f32>() * N_FIT_SUMS * N_CHANNELS * (MAX_RECEIVERS + 1)) as u64
+}

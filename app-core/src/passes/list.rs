@@ -1,0 +1,63 @@
+//! The list of a path's passes, from which follow its modules, its pipelines, its targets and its shaders.
+
+use crate::gpu::context::Gpu;
+
+/// For passes that write to what others own.
+pub(crate) struct NoTargets;
+
+impl NoTargets {
+    pub(crate) fn new<P>(_: &Gpu, _: &P) -> Self {
+        Self
+    }
+}
+
+/// A pass's name, and what compiles it.
+pub(crate) type WarmUp = (&'static str, fn(&Gpu));
+
+/// Declares the modules of a path's passes, in the order in which they first run, and of each its `Pass` and its `SHADER`;
+/// after the type of a plan, its `Targets` as well.
+macro_rules! passes {
+    ($plan:ty: $($pass:ident),* $(,)?) => {
+        $crate::passes::list::passes!($($pass),*);
+
+        /// What the path's passes draw to, of each those of its own.
+        #[allow(dead_code, reason = "there are passes that write to what others own")]
+        pub(crate) struct Targets {
+            $(pub(crate) $pass: $pass::Targets,)*
+        }
+
+        impl Targets {
+            /// Allocates what `plan` asks for.
+            pub(crate) fn new(gpu: &$crate::gpu::context::Gpu, plan: &$plan) -> Self {
+                Self {
+                    $($pass: $pass::Targets::new(gpu, plan),)*
+                }
+            }
+        }
+    };
+    ($($pass:ident),* $(,)?) => {
+        $(pub(crate) mod $pass;)*
+
+        /// Every pass of the path.
+        pub(crate) struct Passes {
+            $(pub(crate) $pass: $pass::Pass,)*
+        }
+
+        impl Passes {
+            pub(crate) fn new(gpu: &$crate::gpu::context::Gpu) -> Self {
+                Self {
+                    $($pass: $pass::Pass::new(gpu),)*
+                }
+            }
+        }
+
+        /// The passes' shaders.
+        pub(crate) const SHADERS: &[&$crate::gpu::shader::Shader] = &[$(&$pass::SHADER),*];
+
+        /// Compiles one pass each, to be found compiled when the path is made.
+        pub(crate) const WARM_UPS: &[$crate::passes::list::WarmUp] =
+            &[$((stringify!($pass), |gpu| drop($pass::Pass::new(gpu)))),*];
+    };
+}
+
+pub(crate) use passes;

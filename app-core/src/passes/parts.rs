@@ -1,0 +1,18 @@
+//! Parts of WGSL that shaders of several rooms join, and that share nothing with the host.
+
+use crate::gpu::shader::{Part, part};
+
+/// Whether a receiver hides the toy.
+pub(crate) const BEHIND: Part = part!("common/behind");
+/// Largest and smallest channel.
+pub(crate) const CHANNELS: Part = part!("common/channels");
+/// Reversed depth, and which depths are of one surface.
+pub(crate) const DEPTH: Part = part!("common/depth");
+/// Points flattened from a light onto a receiver.
+pub(crate) const FLATTEN: Part = part!("common/flatten");
+/// One triangle over the whole target.
+pub(crate) const FULLSCREEN: Part = part!("common/fullscreen");
+/// Whether a point of the toy has moved on the screen.
+pub(crate) const MOVED: Part = part!("common/moved");
+/// Which 8-bit codes can be relied on.
+pub(crate) const PIXEL: Part = part!("common/pixel");

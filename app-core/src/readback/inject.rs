@@ -1,0 +1,55 @@
+//! Visibilities from outside, in place of those that the passes make.
+
+use glam::UVec2;
+
+use crate::gpu::context::Gpu;
+use crate::gpu::texture::Texture;
+use crate::readback::FloatMap;
+
+/// Maps of the work region with the visibility of each light, light 0 in r, each in [0, 1].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InjectedVisibility {
+    /// With the physical toy; none leaves it to the passes.
+    pub physical: Option<FloatMap>,
+    /// With the shown toy; none leaves it to the passes.
+    pub shown: Option<FloatMap>,
+}
+
+/// The same, on the device.
+#[derive(Debug, Default)]
+pub(crate) struct Injected {
+    pub(crate) physical: Option<Texture>,
+    pub(crate) shown: Option<Texture>,
+}
+
+/// A texture of the size and format of `like`, which has halves, with what `map` says.
+pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
+    let format = like.raw.format();
+    let size_px = UVec2::new(like.raw.width(), like.raw.height());
+    let texture = Texture::target(gpu, "injected visibility", size_px, format);
+    let n_channels = usize::from(format.components());
+    let halves: Vec<u8> = map
+        .texels
+        .iter()
+        .flat_map(|texel| &texel[..n_channels])
+        .flat_map(|value| f16_from_f32(value.clamp(0.0, 1.0)).to_le_bytes())
+        .collect();
+    texture.write(gpu, &halves);
+    texture
+}
+
+/// The IEEE 754 half next to a number in [0, 1].
+fn f16_from_f32(value: f32) -> u16 {
+    const SMALLEST_NORMAL: f32 = 1.0 / 16384.0;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at most 0x3c00"
+    )]
+    if value < SMALLEST_NORMAL {
+        (value * 16_777_216.0).round() as u16
+    } else {
+        // Exponents are biased by 127 and 15; half of the last place rounds.
+        ((value.to_bits() + 0x1000 - (112 << 23)) >> 13) as u16
+    }
+}

@@ -1,0 +1,234 @@
+//! Turns numbers from a file, a tracker or a caller into values that the rest of the core may trust.
+//!
+//! The limits are far outside any real scene. They keep the 32-bit arithmetic on the GPU finite.
+
+use std::ops::RangeInclusive;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use thiserror::Error;
+
+use super::{Camera, Intrinsics, Light};
+
+/// A value that is refused, and where it stands.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{field}: {reason}")]
+pub struct InputError {
+    /// Path of the field, as in `receivers[1].half_extent_m`.
+    pub field: String,
+    /// Why it is refused.
+    pub reason: FieldError,
+}
+
+impl InputError {
+    /// Names the field that a check refused.
+    pub(crate) fn at<T>(field: &str, checked: Result<T, FieldError>) -> Result<T, Self> {
+        checked.map_err(|reason| Self {
+            field: field.to_owned(),
+            reason,
+        })
+    }
+}
+
+/// Why the value of a field is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// A number that is too small, too large or not a number.
+    #[error("{value} is not from {min} to {max}")]
+    Range {
+        /// The number as written.
+        value: f64,
+        /// Smallest allowed.
+        min: f64,
+        /// Largest allowed.
+        max: f64,
+    },
+    /// A list that needs an entry.
+    #[error("the list is empty, but needs at least one entry")]
+    Empty,
+    /// A field that this kind of entry needs.
+    #[error("missing, but needed for this kind")]
+    Missing,
+    /// A vector without a direction.
+    #[error("the vector is too short to have a direction")]
+    NoDirection,
+    /// A direction of another length than 1.
+    #[error("the vector is not of length 1")]
+    NotAUnitVector,
+    /// A matrix whose last row is not 0 0 0 1.
+    #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
+    NotAffine,
+    /// A matrix that does more than rotate and move.
+    #[error("the matrix is not rigid: its axes must be of length 1 and at right angles")]
+    NotRigid,
+    /// A matrix that stretches or shears.
+    #[error("the matrix scales its axes differently or shears: only one scale for all is allowed")]
+    NotUniform,
+    /// A matrix that turns right hands into left ones.
+    #[error("the matrix mirrors: its axes must be right-handed")]
+    Mirrored,
+    /// Pictures that would take more memory than a session may.
+    #[error("the pictures hold more than {max_pixels} pixels in all")]
+    TooManyPixels {
+        /// Limit for the sum over all pictures.
+        max_pixels: u64,
+    },
+}
+
+/// Distances and coordinates, in metres.
+pub(crate) const COORDINATE_M: RangeInclusive<f64> = -1e6..=1e6;
+/// Lengths of things that must have an extent, in metres.
+pub(crate) const EXTENT_M: RangeInclusive<f64> = 1e-6..=1e6;
+/// Lengths of things that may be points, in metres.
+pub(crate) const RADIUS_M: RangeInclusive<f64> = 0.0..=1e6;
+/// Focal lengths, in pixels.
+pub(crate) const FOCAL_PX: RangeInclusive<f64> = 1e-3..=1e6;
+/// Positions in a picture or beside it, in pixels.
+pub(crate) const POSITION_PX: RangeInclusive<f64> = -1e6..=1e6;
+/// Times of frames, in seconds: three hundred years either way.
+pub(crate) const TIME_SECS: RangeInclusive<f64> = -1e10..=1e10;
+/// Times within a clip, in seconds.
+pub(crate) const CLIP_TIME_SECS: RangeInclusive<f64> = 0.0..=1e10;
+/// Half the angle of a light's disc, in degrees: less than half the sky.
+pub(crate) const ANGULAR_RADIUS_DEG: RangeInclusive<f64> = 0.0..=89.999;
+/// Exposures of pictures, relative to one that is the same for all of a scene.
+pub(crate) const EXPOSURE: RangeInclusive<f64> = 1e-9..=1e9;
+/// Exposure of a darker picture over that of a frame.
+pub(crate) const EXPOSURE_RATIO: RangeInclusive<f64> = 1e-6..=1.0;
+const SCALE: RangeInclusive<f64> = 1e-6..=1e6;
+
+/// How far a rotation's axes may be from unit length and right angles: what rounding to a few
+/// digits does, and not what a wrong convention does.
+const AXES_TOLERANCE: f64 = 1e-3;
+
+/// A number within a range, ends included. Infinities and NaN never are.
+pub(crate) fn number(value: f64, range: &RangeInclusive<f64>) -> Result<f64, FieldError> {
+    if range.contains(&value) {
+        Ok(value)
+    } else {
+        Err(FieldError::Range {
+            value,
+            min: *range.start(),
+            max: *range.end(),
+        })
+    }
+}
+
+/// A point, in metres.
+pub(crate) fn point(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
+    for value in numbers {
+        number(value, &COORDINATE_M)?;
+    }
+    Ok(DVec3::from_array(numbers))
+}
+
+/// A direction of any length, made a unit vector.
+pub(crate) fn direction(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
+    let vector = point(numbers)?;
+    if vector.length() < 1e-9 {
+        return Err(FieldError::NoDirection);
+    }
+    vector.try_normalize().ok_or(FieldError::NoDirection)
+}
+
+/// A transform that only rotates and moves.
+pub(crate) fn rigid(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
+    let matrix = affine(column_major)?;
+    let axes = DMat3::from_mat4(matrix);
+    if !has_unit_axes(axes) {
+        return Err(FieldError::NotRigid);
+    }
+    if axes.determinant() < 0.0 {
+        return Err(FieldError::Mirrored);
+    }
+    Ok(matrix)
+}
+
+/// A transform that rotates, moves and scales all axes alike.
+pub(crate) fn similarity(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
+    let matrix = affine(column_major)?;
+    let axes = DMat3::from_mat4(matrix);
+    let scale = number(axes.x_axis.length(), &SCALE)?;
+    let rotation = axes * scale.recip();
+    if !has_unit_axes(rotation) {
+        return Err(FieldError::NotUniform);
+    }
+    if rotation.determinant() < 0.0 {
+        return Err(FieldError::Mirrored);
+    }
+    Ok(matrix)
+}
+
+fn affine(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
+    for value in column_major {
+        number(value, &COORDINATE_M)?;
+    }
+    let matrix = DMat4::from_cols_array(&column_major);
+    let last_row = matrix.row(3);
+    if last_row.abs_diff_eq(glam::DVec4::W, 1e-6) {
+        Ok(matrix)
+    } else {
+        Err(FieldError::NotAffine)
+    }
+}
+
+fn has_unit_axes(axes: DMat3) -> bool {
+    (axes.transpose() * axes).abs_diff_eq(DMat3::IDENTITY, AXES_TOLERANCE)
+}
+
+/// A camera, whose fields are below `field`.
+pub(crate) fn camera(field: &str, camera: &Camera) -> Result<(), InputError> {
+    intrinsics(&format!("{field}.intrinsics"), &camera.intrinsics)?;
+    let world_from_camera = rigid(camera.world_from_camera.to_cols_array());
+    InputError::at(&format!("{field}.world_from_camera"), world_from_camera)?;
+    Ok(())
+}
+
+fn intrinsics(field: &str, intrinsics: &Intrinsics) -> Result<(), InputError> {
+    let Intrinsics {
+        fx_px,
+        fy_px,
+        cx_px,
+        cy_px,
+    } = *intrinsics;
+    let numbers = [
+        ("fx_px", fx_px, FOCAL_PX),
+        ("fy_px", fy_px, FOCAL_PX),
+        ("cx_px", cx_px, POSITION_PX),
+        ("cy_px", cy_px, POSITION_PX),
+    ];
+    for (name, value, range) in numbers {
+        InputError::at(&format!("{field}.{name}"), number(value, &range))?;
+    }
+    Ok(())
+}
+
+/// A light, whose fields are below `field`.
+pub(crate) fn light(field: &str, light: &Light) -> Result<(), InputError> {
+    match *light {
+        Light::Sphere {
+            position_in_world,
+            radius_m,
+        } => {
+            let position = point(position_in_world.to_array());
+            InputError::at(&format!("{field}.position_in_world"), position)?;
+            InputError::at(&format!("{field}.radius_m"), number(radius_m, &RADIUS_M))?;
+        }
+        Light::Directional {
+            direction_to_light_in_world,
+            angular_radius_rad,
+        } => {
+            let is_unit = direction_to_light_in_world.is_normalized();
+            let unit = if is_unit {
+                Ok(())
+            } else {
+                Err(FieldError::NotAUnitVector)
+            };
+            InputError::at(&format!("{field}.direction_to_light_in_world"), unit)?;
+            let degrees = number(angular_radius_rad.to_degrees(), &ANGULAR_RADIUS_DEG);
+            InputError::at(&format!("{field}.angular_radius_rad, in degrees"), degrees)?;
+        }
+    }
+    Ok(())
+}

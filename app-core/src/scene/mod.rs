@@ -1,0 +1,187 @@
+//! The place a toy stands in: everything that stays the same for a whole session.
+//!
+//! World space is right-handed, +Y up, in metres.
+//! Camera space is +X right, +Y up and looks along -Z.
+
+pub(crate) mod check;
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec2, DVec3};
+
+use crate::toy::Toy;
+
+pub use crate::toy::Pose;
+pub use check::{FieldError, InputError};
+
+/// Lights whose shadows are moved; those of further ones stay as photographed, with a warning.
+pub const MAX_LIGHTS: usize = 4;
+/// Receivers that shadows are moved on; on further ones they stay as photographed, with a warning.
+pub const MAX_RECEIVERS: usize = 4;
+
+/// What is known before the first frame: toy, receivers, lights, plates.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name for people; may be empty.
+    pub name: String,
+    /// Width of every camera picture of the session.
+    pub width_px: u32,
+    /// Height of every camera picture of the session.
+    pub height_px: u32,
+    /// The toy's model.
+    pub toy: Arc<Toy>,
+    /// Where the real toy stands at first; frames bring where it stands then. From the model's scene space to world: a
+    /// rotation, a translation and one positive scale.
+    pub world_from_object: DMat4,
+    /// The pose the real toy was made in.
+    pub physical_pose: Pose,
+    /// Planes that catch the shadow; at least one.
+    pub receivers: Vec<Receiver>,
+    /// Known lights, unless a frame brings its own. Empty when they are to be estimated.
+    pub lights: Vec<Light>,
+    /// Pictures of the place without the toy. May be empty.
+    pub plates: Vec<Plate>,
+    /// A light probe lying in the scene, where there is one.
+    pub probe: Option<FresnelLens>,
+}
+
+impl Scene {
+    /// Refuses what no frame could be made of.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        let similarity = check::similarity(self.world_from_object.to_cols_array());
+        InputError::at("world_from_object", similarity)?;
+        if self.receivers.is_empty() {
+            return InputError::at("receivers", Err(FieldError::Empty));
+        }
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            receiver.check(&format!("receivers[{index}]"))?;
+        }
+        for (index, light) in self.lights.iter().enumerate() {
+            check::light(&format!("lights[{index}]"), light)?;
+        }
+        for (index, plate) in self.plates.iter().enumerate() {
+            check::camera(&format!("plates[{index}].camera"), &plate.camera)?;
+        }
+        Ok(())
+    }
+}
+
+impl Receiver {
+    fn check(&self, field: &str) -> Result<(), InputError> {
+        let world_from_plane = check::rigid(self.world_from_plane.to_cols_array());
+        InputError::at(&format!("{field}.world_from_plane"), world_from_plane)?;
+        for extent_m in self.half_extent_m.to_array() {
+            let extent_m = check::number(extent_m, &check::EXTENT_M);
+            InputError::at(&format!("{field}.half_extent_m"), extent_m)?;
+        }
+        Ok(())
+    }
+}
+
+/// How a receiver looks, which decides how its shadow may be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// One colour all over.
+    Uniform,
+    /// Colour changes from place to place.
+    Textured,
+}
+
+/// A rectangle that catches shadows: local y = 0 with its normal along local +Y.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Receiver {
+    /// Name for people.
+    pub name: String,
+    /// Rigid transform from the plane's space to world.
+    pub world_from_plane: DMat4,
+    /// The rectangle is `|x| <= half_extent_m.x`, `|z| <= half_extent_m.y`; both positive.
+    pub half_extent_m: DVec2,
+    /// How the receiver looks.
+    pub surface: Surface,
+}
+
+/// A light whose direct shadow is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// A bulb. A radius of zero is a point.
+    Sphere {
+        /// Centre of the bulb, in metres.
+        position_in_world: DVec3,
+        /// Radius of the bulb, zero or more.
+        radius_m: f64,
+    },
+    /// A light too far away for its distance to matter.
+    Directional {
+        /// Unit vector from the scene towards the light.
+        direction_to_light_in_world: DVec3,
+        /// Half the angle that the light's disc fills, from 0 to just under 90 degrees.
+        angular_radius_rad: f64,
+    },
+}
+
+/// Pinhole projection, in pixels of the picture.
+///
+/// Pixel (0, 0) is top left and its centre lies at (0.5, 0.5). The point (x, y, z) in camera
+/// space lands at `u = cx_px + fx_px * x / -z`, `v = cy_px - fy_px * y / -z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    /// Focal length along the picture's rows; positive.
+    pub fx_px: f64,
+    /// Focal length along the picture's columns; positive.
+    pub fy_px: f64,
+    /// Principal point, from the left border.
+    pub cx_px: f64,
+    /// Principal point, from the top border.
+    pub cy_px: f64,
+}
+
+/// A pinhole camera in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Its projection.
+    pub intrinsics: Intrinsics,
+    /// Rigid transform: where it stands.
+    pub world_from_camera: DMat4,
+}
+
+/// A picture: sRGB-encoded, 8 bit, four bytes a pixel, rows from the top without padding.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels in a row; at least one.
+    pub width_px: u32,
+    /// Rows; at least one.
+    pub height_px: u32,
+    /// `width_px * height_px * 4` bytes. Alpha is 255 unless the picture says what else it means.
+    pub rgba8: Vec<u8>,
+}
+
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Image({} x {} px)", self.width_px, self.height_px)
+    }
+}
+
+/// A picture of the place before the toy was put there.
+#[derive(Clone, Debug)]
+pub struct Plate {
+    /// The camera that took it.
+    pub camera: Camera,
+    /// The picture, of the session's size.
+    pub image: Arc<Image>,
+}
+
+/// A flat reflective Fresnel lens that shows the lights: a mirror ball pressed flat.
+///
+/// At disc position (x, z) / radius its normal is that of the hemisphere above that point.
+#[derive(Clone, Debug)]
+pub struct FresnelLens {
+    /// Rigid transform from the lens (a disc in local y = 0) to world.
+    pub world_from_lens: DMat4,
+    /// Radius of the disc; positive.
+    pub radius_m: f64,
+    /// The lens seen by the first frame's camera, underexposed.
+    pub image: Arc<Image>,
+    /// Exposure of `image` over that of a frame, above 0 and at most 1.
+    pub exposure_ratio: f64,
+}

@@ -1,0 +1,108 @@
+//! Dispatches to the additive model or to the baseline.
+
+use crate::baseline::{self, Baseline};
+use crate::frame::warning::Warning;
+use crate::geometry::rect::PixelRect;
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::recorder::Recorder;
+use crate::model::{self, Model};
+use crate::passes;
+use crate::passes::list::WarmUp;
+use crate::passes::pictures::Pictures;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::{Change, LeftOut};
+use crate::preset::{Preset, Settings};
+use crate::readback::inject::InjectedVisibility;
+use crate::readback::{FloatMap, Map};
+
+/// Everything that the frames of a preset run, to be compiled.
+pub(crate) fn warm_ups(preset: Preset) -> Vec<WarmUp> {
+    let of_method = match preset.settings() {
+        Settings::Model(_) => [
+            model::lighting::WARM_UPS,
+            model::capture::WARM_UPS,
+            model::frame::WARM_UPS,
+        ]
+        .concat(),
+        Settings::Baseline(_) => baseline::WARM_UPS.to_vec(),
+    };
+    [of_method.as_slice(), passes::WARM_UPS].concat()
+}
+
+/// A method at work on a scene.
+pub(crate) enum Method {
+    /// The additive model of the receivers.
+    Model(Box<Model>),
+    /// The published method.
+    Baseline(Box<Baseline>),
+}
+
+impl Method {
+    pub(crate) fn region(&self) -> PixelRect {
+        match self {
+            Self::Model(model) => model.region.rect(),
+            Self::Baseline(baseline) => baseline.plan.region,
+        }
+    }
+
+    pub(crate) fn left_out(&self) -> &[LeftOut] {
+        match self {
+            Self::Model(model) => &model.region.plan.left_out,
+            Self::Baseline(baseline) => &baseline.plan.left_out,
+        }
+    }
+
+    /// The codes of the region's picture.
+    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+        match self {
+            Self::Model(model) => model.picture(),
+            Self::Baseline(baseline) => baseline.picture(),
+        }
+    }
+
+    /// The model, where it is at work.
+    pub(crate) fn model(&self) -> Option<&Model> {
+        match self {
+            Self::Model(model) => Some(model),
+            Self::Baseline(_) => None,
+        }
+    }
+
+    /// Encodes the frame path, and before it what the change asks for.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        change: Change,
+    ) {
+        match self {
+            Self::Model(model) => model.encode(recorder, toy, pictures, change),
+            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, change),
+        }
+    }
+
+    /// Replaces visibilities from the next frame on; see [`Core::inject_visibility`](crate::core::Core).
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        match self {
+            Self::Model(model) => model.inject(gpu, maps),
+            Self::Baseline(baseline) => baseline.inject(gpu, maps),
+        }
+    }
+
+    /// Waits for the device and returns a map, where this method makes it.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        match self {
+            Self::Model(model) => model.read_map(gpu, map),
+            Self::Baseline(baseline) => baseline.read_map(gpu, map),
+        }
+    }
+
+    /// Waits for the device and returns what the baseline lacks; the model tells by its fit.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+        match self {
+            Self::Model(_) => Ok(Vec::new()),
+            Self::Baseline(baseline) => baseline.read_warnings(gpu),
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Makes what was learned fit the frame: starts from nothing, follows the camera, or leaves it as it is.
+
+use std::mem;
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use super::footprint::Footprint;
+use super::method::Method;
+use super::{MethodState, Stage, is_same_image};
+use crate::baseline::Baseline;
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::{Baseline as Uniform, uniform};
+use crate::frame::input::FrameInput;
+use crate::frame::warning::Warning;
+use crate::geometry::light_points::light_points;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::gpu::context::Gpu;
+use crate::model::Model;
+use crate::model::plan::Plan;
+use crate::model::state::SceneState;
+use crate::model::state::grids::{grids_over, holds};
+use crate::passes::globals::{Globals, globals};
+use crate::passes::plate::PlateViews;
+use crate::plan::{Change, SceneFacts};
+use crate::plates::choice::{SAME_CAMERA, covered_fraction, exposed};
+use crate::plates::exposure::match_frame;
+use crate::preset::{BaselineSettings, ModelSettings, Settings};
+use crate::scene::{Light, Plate};
+
+/// Sizes of the region under a moving camera, so that it keeps one for a while.
+const REGION_STEP_PX: u32 = 64;
+
+/// What a frame asks of what was learned.
+enum Step {
+    /// It does not fit: learn from nothing.
+    Start,
+    /// It fits, but its inputs were replaced: learn from nothing with the same textures.
+    Again,
+    /// The view is new.
+    Follow,
+    /// The picture is new.
+    Look,
+    Nothing,
+}
+
+impl Stage {
+    /// Makes what was learned fit the frame; tells how much of it is new.
+    pub(super) fn update_method(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) -> Change {
+        self.plates.load(gpu, &self.scene, &footprint.choice.indices);
+        self.reached_rects = united(&self.reached_rects, &footprint.plane_rects);
+        match self.step(input, footprint) {
+            Step::Start => {
+                self.start(gpu, input, footprint);
+                Change::Scene
+            }
+            Step::Again => Change::Scene,
+            Step::Follow => {
+                self.follow(gpu, input, footprint);
+                Change::View
+            }
+            Step::Look => Change::Picture,
+            Step::Nothing => Change::Pose,
+        }
+    }
+
+    fn step(&mut self, input: &FrameInput, footprint: &Footprint) -> Step {
+        let Some(state) = &mut self.state else {
+            return Step::Start;
+        };
+        let has_grids = match &state.method {
+            Method::Model(model) => holds(&model.state.layout, &footprint.plane_rects),
+            Method::Baseline(_) => true,
+        };
+        let is_same_camera = state.camera.intrinsics == input.camera.intrinsics
+            && state
+                .camera
+                .world_from_camera
+                .abs_diff_eq(input.camera.world_from_camera, SAME_CAMERA);
+        let is_within = is_same_camera && state.method.region().contains(&footprint.region);
+        if !has_grids {
+            Step::Start
+        } else if !is_within {
+            Step::Follow
+        } else if mem::take(&mut state.is_stale) {
+            Step::Again
+        } else if is_same_image(state.image.as_ref(), &input.image) {
+            Step::Nothing
+        } else {
+            Step::Look
+        }
+    }
+
+    /// Starts from nothing.
+    fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        let method = match self.preset.settings() {
+            Settings::Model(settings) => {
+                let plan = Plan::new(&self.facts(footprint, footprint.region), &self.settings(settings));
+                self.model(gpu, plan, footprint)
+            }
+            Settings::Baseline(settings) => {
+                let (plan, globals, uniform) = self.baseline_parts(&settings, footprint.region, footprint);
+                Method::Baseline(Box::new(Baseline::new(gpu, plan, &globals, &uniform)))
+            }
+        };
+        self.state = Some(MethodState {
+            camera: input.camera,
+            method,
+            is_stale: false,
+            image: None,
+        });
+    }
+
+    /// Takes what is known to another view.
+    fn follow(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        let Some(mut state) = self.state.take() else {
+            return;
+        };
+        state.camera = input.camera;
+        let size_px = moving_size(
+            state.method.region().size_px,
+            &footprint.region,
+            footprint.view.image_px,
+        );
+        let region = footprint.region.within(size_px, footprint.view.image_px);
+        match self.preset.settings() {
+            Settings::Model(settings) => {
+                if let Method::Model(model) = &mut state.method {
+                    let plan = model
+                        .region
+                        .plan
+                        .for_view(&self.facts(footprint, region), &self.settings(settings));
+                    model.follow(gpu, plan, &globals(&footprint.view, &region, &self.layout()));
+                }
+            }
+            Settings::Baseline(settings) => {
+                if let Method::Baseline(baseline) = &mut state.method {
+                    let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
+                    baseline.follow(gpu, plan, &globals, &uniform);
+                }
+            }
+        }
+        self.state = Some(state);
+    }
+
+    fn settings(&self, preset: ModelSettings) -> ModelSettings {
+        ModelSettings {
+            is_shadow_withheld: self.is_shadow_withheld,
+            ..preset
+        }
+    }
+
+    fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let widest_px = |light: &Light| {
+            let widths = self.receivers.iter().map(|receiver| {
+                let plane_from_anchor = receiver.world_from_plane.inverse() * world_from_anchor;
+                let toy = footprint.bounds.transformed(&plane_from_anchor);
+                footprint
+                    .view
+                    .penumbra_px(light, &receiver.world_from_plane, &toy)
+            });
+            widths.fold(0.0, f64::max)
+        };
+        #[allow(clippy::cast_possible_truncation, reason = "at most four")]
+        let n_receivers = self.receivers.len() as u32;
+        SceneFacts {
+            region,
+            penumbra_px: self.lights.iter().map(widest_px).collect(),
+            n_receivers,
+            is_plate_complete: self.is_plate_complete(footprint, &region),
+        }
+    }
+
+    /// One plate or several show all of the region, which may be larger than the frame asks for.
+    fn is_plate_complete(&self, footprint: &Footprint, region: &PixelRect) -> bool {
+        let Footprint { view, choice, .. } = footprint;
+        let fraction = if *region == footprint.region {
+            footprint.plate_fraction
+        } else {
+            covered_fraction(&self.scene, &self.layout(), view, region, choice)
+        };
+        fraction == 1.0
+    }
+
+    pub(super) fn plate_warning(&self, footprint: &Footprint) -> Option<Warning> {
+        if self.scene.plates.is_empty() {
+            return Some(Warning::PlateEstimated);
+        }
+        let fraction = footprint.plate_fraction;
+        (fraction < 1.0).then_some(Warning::PlatePartial { fraction })
+    }
+
+    /// The plates as the baseline takes them; the model fits the exposure with the light.
+    pub(super) fn plate_views_at_exposure_of(&self, input: &FrameInput, footprint: &Footprint) -> PlateViews {
+        let frame = Plate {
+            camera: input.camera,
+            image: Arc::clone(&input.image),
+        };
+        let plates = (&footprint.choice.indices[..], &self.plates.gains[..]);
+        let gain = match_frame((&self.scene, &self.receivers), &frame, plates, &footprint.region);
+        exposed(&footprint.plate_views, gain)
+    }
+
+    fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
+        let globals = globals(&footprint.view, &plan.region, &self.layout());
+        let toy = (&self.toy.physical.around, self.toy.n_materials());
+        let state = SceneState::new(gpu, grids_over(&self.reached_rects), self.lights.len(), toy);
+        let points = self.lights.iter().zip(&plan.lights);
+        let points = points
+            .map(|(light, planned)| self.points_of(light, planned.n_points))
+            .collect();
+        Method::Model(Box::new(Model::new(gpu, plan, &globals, points, state)))
+    }
+
+    /// Points over a light in the space of each receiver in turn: the same ones, so that shadows meet where receivers do.
+    fn points_of(&self, light: &Light, n_points: usize) -> Vec<glam::Vec4> {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let target = self.physical_bounds.centre();
+        let points = light_points(light, &world_from_anchor.inverse(), target, n_points);
+        let planes = self
+            .receivers
+            .iter()
+            .map(|receiver| receiver.world_from_plane.inverse() * world_from_anchor);
+        planes
+            .flat_map(|plane_from_anchor| {
+                points
+                    .iter()
+                    .map(move |p| (plane_from_anchor * p.as_dvec4()).as_vec4())
+            })
+            .collect()
+    }
+
+    /// What the baseline is made of in a view.
+    fn baseline_parts(
+        &self,
+        settings: &BaselineSettings,
+        region: PixelRect,
+        footprint: &Footprint,
+    ) -> (BaselinePlan, Globals, Uniform) {
+        let globals = globals(&footprint.view, &region, &self.layout());
+        let uniform = uniform(&self.layout(), &footprint.bounds, settings);
+        let plan = BaselinePlan::new(&self.facts(footprint, region), settings);
+        (plan, globals, uniform)
+    }
+}
+
+/// The size a region takes under a moving camera: as it is while that is enough, else the next step.
+fn moving_size(current_px: UVec2, needed: &PixelRect, image_px: UVec2) -> UVec2 {
+    let step = |side_px: u32| side_px.div_ceil(REGION_STEP_PX) * REGION_STEP_PX;
+    let stepped = UVec2::new(step(needed.size_px.x), step(needed.size_px.y)).min(image_px);
+    if needed.size_px.cmple(current_px).all() {
+        current_px
+    } else {
+        stepped.max(current_px)
+    }
+}
+
+/// What either reaches of each receiver, so that going back and forth between clips starts nothing anew.
+fn united(known: &[PlaneRect], new: &[PlaneRect]) -> Vec<PlaneRect> {
+    if known.is_empty() {
+        return new.to_vec();
+    }
+    let pairs = known.iter().zip(new);
+    pairs
+        .map(|(a, b)| PlaneRect {
+            min: a.min.min(b.min),
+            max: a.max.max(b.max),
+        })
+        .collect()
+}

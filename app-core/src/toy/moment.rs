@@ -1,0 +1,73 @@
+//! What pose a toy is asked for: as authored, at a moment of a clip, or by the transforms of its nodes.
+
+use std::sync::Arc;
+
+use super::Toy;
+use super::clip::ClipId;
+use super::error::ToyError;
+use super::graph::Trs;
+
+/// A pose to be taken.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Pose {
+    /// The nodes as they were authored.
+    #[default]
+    Authored,
+    /// A moment of an animation clip.
+    Clip {
+        /// The clip.
+        clip: ClipId,
+        /// Time within it; beyond its end it shows its end.
+        time_secs: f64,
+    },
+    /// The nodes as the caller sets them: by physics, by a rig of the app's own.
+    Nodes(Arc<NodePose>),
+}
+
+/// Number of a node within its toy, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(pub(super) usize);
+
+/// Transforms of nodes, joints among them, and weights of morph targets; what is not named stays as authored.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodePose {
+    /// From a node to its parent.
+    pub parent_from_node: Vec<(NodeId, Trs)>,
+    /// One for each morph target of the node's mesh.
+    pub morph_weights: Vec<(NodeId, Vec<f64>)>,
+}
+
+impl Pose {
+    /// The clip that it is a moment of.
+    #[must_use]
+    pub fn clip(&self) -> Option<ClipId> {
+        match self {
+            Self::Clip { clip, .. } => Some(*clip),
+            Self::Authored | Self::Nodes(_) => None,
+        }
+    }
+}
+
+impl Toy {
+    /// Finds a node by the name that it was authored with, the first of several.
+    ///
+    /// # Errors
+    /// [`ToyError::UnknownNode`], which lists the names that there are.
+    pub fn find_node(&self, name: &str) -> Result<NodeId, ToyError> {
+        let names = &self.rig.graph.names;
+        let found = names.iter().position(|one| one.as_deref() == Some(name));
+        found.map(NodeId).ok_or_else(|| ToyError::UnknownNode {
+            file: self.file.clone(),
+            name: name.to_owned(),
+            known: names.iter().flatten().cloned().collect(),
+        })
+    }
+
+    /// The transform that a node was authored with; none where that is a matrix.
+    ///
+    /// # Errors
+    /// A node of another toy.
+    pub fn authored_transform(&self, node: NodeId) -> Result<Option<Trs>, ToyError> {
+        Ok(self.node(node)?.rest.decomposed())
+    }
+}

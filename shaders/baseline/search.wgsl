@@ -1,0 +1,139 @@
+// The shadow term of each texel of the new shadows: the warped sample where the same lights are shadowed there, else the
+// closest such sample.
+//
+// Where no sample of the receiver has the same lights, the closest of those sets that differ least will do, and where it
+// has no sample at all another receiver's: the papers name this as where their method fails.
+//
+// Reads: warp of each light, mask 3c and the sets that occur in it, frame, plate. Writes: term (ratio to the plate, or
+// colour), and the texel's label, 0 where nothing was found; taps taken.
+// CPU reference: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a ring, the
+// closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio stands the right way up here: shadow
+// over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
+
+@group(1) @binding(0) var warp: texture_2d_array<f32>;
+@group(1) @binding(1) var eligible: texture_2d<u32>;
+@group(1) @binding(2) var frame: texture_2d<f32>;
+@group(1) @binding(3) var plate: texture_2d<f32>;
+@group(1) @binding(4) var<storage, read> seen_sets: array<u32, MAX_RECEIVERS>;
+
+struct Term {
+  @location(0) term: vec4f,
+  @location(1) taps: vec4f,
+}
+
+struct Found {
+  texel: vec2i,
+  is_found: bool,
+  taps: u32,
+}
+
+// What will do as a sample: its receiver, and bit s where the set s will.
+struct Wanted {
+  receiver: u32,
+  sets: u32,
+}
+
+fn is_eligible(texel: vec2i, wanted: Wanted) -> bool {
+  let size = vec2i(textureDimensions(eligible));
+  if any(texel < vec2i(0)) || any(texel >= size) { return false; }
+  let label = textureLoad(eligible, texel, 0).r;
+  return label / N_SETS == wanted.receiver && ((wanted.sets >> (label % N_SETS)) & 1u) != 0u;
+}
+
+fn ratio_at(texel: vec2i) -> vec3f {
+  let shaded = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
+  let lit = textureLoad(plate, texel, 0).rgb;
+  // Black in the plate tells nothing of the shadow: no change. Nor does a shadow add light: noise in the dark would.
+  return select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0));
+}
+
+// The term for a texel of `receiver` from a sample, of that receiver or `borrowed` from another.
+fn term_at(texel: vec2i, found: vec2i, receiver: u32, borrowed: bool) -> vec3f {
+  if ((baseline.textured_receivers >> receiver) & 1u) != 0u { return ratio_at(found); }
+  if borrowed { return ratio_at(found) * textureLoad(plate, texel, 0).rgb; }
+  return textureLoad(frame, found + vec2i(globals.region_origin_px), 0).rgb;
+}
+
+// Of the sets in `remaining`, those least unlike `wanted`.
+fn closest_sets(wanted: u32, remaining: u32) -> u32 {
+  var least = 0xffffffffu;
+  var accepted = 0u;
+  for (var lights = 1u; lights < 1u << globals.n_lights; lights++) {
+    if ((remaining >> lights) & 1u) == 0u { continue; }
+    let far = unlikeness(wanted, lights);
+    if far < least { accepted = 0u; }
+    least = min(least, far);
+    if far == least { accepted |= 1u << lights; }
+  }
+  return accepted;
+}
+
+// Rings around a point that have a part in the region; of those beyond, its farthest corner is on none.
+fn n_rings_around(at: vec2f) -> u32 {
+  let farthest_px = length(max(abs(at), abs(globals.region_size_px - at)));
+  return min(baseline.n_rings, u32(farthest_px / baseline.ring_step_px));
+}
+
+// Where the shadow of each light of the set came from, and rings around.
+fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
+  var n_rings = 0u;
+  for (var light = 0u; light < globals.n_lights; light++) {
+    if ((lights >> light) & 1u) == 0u { continue; }
+    let warped = textureLoad(warp, texel, light, 0).xy;
+    let start = vec2i(floor(warped));
+    if is_eligible(start, wanted) { return Found(start, true, 0u); }
+    n_rings = max(n_rings, n_rings_around(warped));
+  }
+  var taps = 0u;
+  for (var ring = 1u; ring <= n_rings; ring++) {
+    var best = 1e9;
+    var found = vec2i(0);
+    for (var light = 0u; light < globals.n_lights; light++) {
+      if ((lights >> light) & 1u) == 0u { continue; }
+      let warped = textureLoad(warp, texel, light, 0).xy;
+      for (var k = 0u; k < baseline.n_ring_directions; k++) {
+        // Every other ring is turned by half a step, so that rays are not left out altogether.
+        let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(baseline.n_ring_directions) * 6.2831853;
+        let candidate = vec2i(floor(warped + f32(ring) * baseline.ring_step_px * vec2f(cos(turn), sin(turn))));
+        taps++;
+        if is_eligible(candidate, wanted) {
+          let away = distance(vec2f(candidate) + 0.5, warped);
+          if away < best {
+            best = away;
+            found = candidate;
+          }
+        }
+      }
+    }
+    if best < 1e9 { return Found(found, true, taps); }
+  }
+  return Found(vec2i(0), false, taps);
+}
+
+@fragment
+fn fs_search(@builtin(position) at: vec4f) -> Term {
+  let texel = vec2i(at.xy);
+  var lights = 0u;
+  for (var light = 0u; light < globals.n_lights; light++) {
+    if textureLoad(warp, texel, light, 0).a > 0.0 { lights |= 1u << light; }
+  }
+  if lights == 0u { return Term(vec4f(0.0), vec4f(0.0)); }
+  let receiver = receiver_at(texel);
+  var taps = 0u;
+  for (var k = 0u; k < globals.n_receivers; k++) {
+    let source = (receiver + k) % globals.n_receivers;
+    // A set that occurs may still be out of reach, so that others get their turn.
+    var remaining = seen_sets[source];
+    while remaining != 0u {
+      let sets = closest_sets(lights, remaining);
+      let found = search(texel, lights, Wanted(source, sets));
+      taps += found.taps;
+      if found.is_found {
+        let term = term_at(texel, found.texel, receiver, source != receiver);
+        return Term(vec4f(term, f32(label_of(receiver, lights))), vec4f(f32(taps)));
+      }
+      remaining &= ~sets;
+    }
+  }
+  return Term(vec4f(0.0), vec4f(f32(taps)));
+}

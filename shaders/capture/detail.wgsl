@@ -1,0 +1,75 @@
+// What each pixel knows of its own residual, with the noise of the shadow taken out.
+//
+// A shadow is the noisiest part of a photograph, and the plate has the same texture without: the residual is smoothed over
+// a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not in
+// shadow keeps its pixels as they are.
+//
+// Reads: frame, plate, evidence, visibility, ambient. Writes: r, in plates. CPU reference: reference/detail.rs.
+// Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
+// out the texture, as in Eisemann and Durand 2004.
+
+@group(1) @binding(0) var frame: texture_2d<f32>;
+@group(1) @binding(1) var plate: texture_2d<f32>;
+@group(1) @binding(2) var validity: texture_2d<f32>;
+@group(1) @binding(3) var visibility: texture_2d<f32>;
+@group(1) @binding(4) var ambient: texture_2d<f32>;
+@group(1) @binding(5) var ambient_sampler: sampler;
+
+const RADIUS_PX: i32 = 3;
+// Detail, in plates, up to which it is noise, and from which none of it is.
+const NOISE: f32 = 0.03;
+const DETAIL: f32 = 0.08;
+// Light left, in plates, below which a pixel is in shadow, and from which it is not.
+const SHADOW: f32 = 0.85;
+const LIT: f32 = 0.98;
+
+struct Own {
+  // Plate times residual, and plate, squared; 0 where the frame does not show the receiver.
+  product: vec3f,
+  energy: vec3f,
+  model: vec3f,
+}
+
+fn own(texel: vec2i, receiver: u32) -> Own {
+  let nothing = Own(vec3f(0.0), vec3f(0.0), vec3f(1.0));
+  let at = vec2f(texel) + 0.5;
+  if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return nothing; }
+  let point = receiver_point(at);
+  let b = textureLoad(plate, texel, 0);
+  if point.receiver != receiver || textureLoad(validity, texel, 0).r == 0.0 || b.a < 1.0 { return nothing; }
+  let f = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb / fit.gain.rgb;
+  let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
+  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
+  // What is nearly black in the plate tells nothing.
+  let lit = select(vec3f(0.0), b.rgb, b.rgb >= vec3f(DARKEST_USABLE));
+  return Own(lit * (f - b.rgb * model), lit * lit, model);
+}
+
+fn ratio(product: vec3f, energy: vec3f) -> vec3f {
+  return select(vec3f(0.0), product / energy, energy > vec3f(0.0));
+}
+
+@fragment
+fn fs_separate(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2i(position.xy);
+  let receiver = receiver_point(position.xy).receiver;
+  if receiver == MAX_RECEIVERS { return vec4f(0.0); }
+  let here = own(texel, receiver);
+  let exact = ratio(here.product, here.energy);
+  let left = largest(here.model);
+  if left >= LIT { return vec4f(exact, 1.0); }
+  var product = vec3f(0.0);
+  var energy = vec3f(0.0);
+  for (var y = -RADIUS_PX; y <= RADIUS_PX; y++) {
+    for (var x = -RADIUS_PX; x <= RADIUS_PX; x++) {
+      let other = own(texel + vec2i(x, y), receiver);
+      product += other.product;
+      energy += other.energy;
+    }
+  }
+  let smooth_residual = ratio(product, energy);
+  let detail = exact - smooth_residual;
+  let size = largest(abs(detail));
+  let filtered = smooth_residual + detail * smoothstep(NOISE, DETAIL, size);
+  return vec4f(mix(filtered, exact, smoothstep(SHADOW, LIT, left)), 1.0);
+}

@@ -1,0 +1,40 @@
+// The plate, with an estimate where no plate shows the place.
+//
+// At first the estimate is smooth, so that the fit can find the shadow in it. Then a pixel that shows the receiver tells
+// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into,
+// stays smooth.
+// Reads: plate, frame, evidence, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
+// photographed, less where it is an estimate. CPU reference: reference/estimate.rs.
+
+@group(1) @binding(1) var<storage, read> cells: array<vec4f>;
+@group(1) @binding(2) var plate: texture_2d<f32>;
+@group(1) @binding(3) var frame: texture_2d<f32>;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var visibility: texture_2d<f32>;
+@group(1) @binding(6) var ambient: texture_2d<f32>;
+@group(1) @binding(7) var ambient_sampler: sampler;
+
+override IS_FINAL: bool = false;
+
+// Weight of an estimated pixel in the fit, and how it is told from a photographed one.
+const ESTIMATED: f32 = 0.25;
+// Light left, in plates, from which a pixel tells its own plate in full, and below which not at all.
+const TELLS_ALL: f32 = 0.3;
+const TELLS_NONE: f32 = 0.1;
+
+@fragment
+fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(position.xy);
+  let photographed = textureLoad(plate, texel, 0);
+  let point = receiver_point(position.xy);
+  if photographed.a == 1.0 || !is_hit(point) { return photographed; }
+  let smooth_color = cell_at(point).rgb;
+  if !IS_FINAL || textureLoad(validity, texel, 0).b == 0.0 { return vec4f(smooth_color, ESTIMATED); }
+  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
+  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
+  let left = smallest(model);
+  if left <= TELLS_NONE { return vec4f(smooth_color, ESTIMATED); }
+  let own = f / (fit.gain.rgb * model);
+  return vec4f(mix(smooth_color, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), ESTIMATED);
+}

@@ -1,0 +1,181 @@
+// Sums of the weighted normal equations, for a receiver, for the toy, or for the levels of the light.
+//
+// Receiver: frame / gain = plate c (A + bounce A (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
+// is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
+// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i level_i max(n.l_i, 0) V_i), V_i with its shadow on itself.
+// Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
+// Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
+// before. Sums run over pixels here and over workgroups in `fit_solve`.
+//
+// Reads: frame, plate, evidence, visibility, ambient, object. Writes: rows of 27 sums, one a workgroup and channel.
+// CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
+
+@group(1) @binding(0) var<uniform> step: FitStep;
+@group(1) @binding(1) var<storage, read_write> rows: array<f32>;
+@group(1) @binding(2) var frame: texture_2d<f32>;
+@group(1) @binding(3) var plate: texture_2d<f32>;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var visibility: texture_2d<f32>;
+@group(1) @binding(6) var ambient: texture_2d<f32>;
+@group(1) @binding(7) var ambient_sampler: sampler;
+@group(1) @binding(8) var gbuffer_base: texture_2d<f32>;
+@group(1) @binding(9) var gbuffer_normal: texture_2d<f32>;
+// Each light's cosine times its visibility.
+@group(1) @binding(10) var gbuffer_received: texture_2d<f32>;
+
+const WORKGROUP: u32 = 256u;
+// Upper triangle of the symmetric matrix row by row, then the right-hand side.
+const N_SUMS: u32 = 27u;
+// Sums are reduced in three parts to stay within 16 KiB of workgroup memory.
+const N_PART: u32 = 9u;
+const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
+// Residual, as a fraction of plate or base, at which a pixel counts half.
+const CAUCHY_SCALE: f32 = 0.03;
+// As above for the toy, of whose light from itself and curved faces the model does not know.
+const TOY_CAUCHY_SCALE: f32 = 0.12;
+
+var<workgroup> partial: array<f32, N_PARTIAL>;
+
+struct Equation {
+  columns: array<f32, N_COLUMNS>,
+  value: f32,
+  weight: f32,
+}
+
+fn cauchy_weight(residual: f32, scale: f32) -> f32 {
+  if scale == 0.0 { return 0.0; }
+  let r = residual / scale;
+  return 1.0 / (1.0 + r * r);
+}
+
+fn frame_at(texel: vec2u) -> vec3f {
+  return textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+}
+
+// What a pixel of a receiver shows, all that its equations are made of.
+struct Observation {
+  point: ReceiverPoint,
+  frame: vec3f,
+  plate: vec3f,
+  ambient: f32,
+  visibility: vec4f,
+  // 0 where it is no evidence.
+  weight: vec3f,
+  // The plate there is an estimate, made with the levels as they were.
+  is_estimated: bool,
+}
+
+fn observe(texel: vec2u) -> Observation {
+  var seen: Observation;
+  let at = vec2f(texel) + 0.5;
+  let evident = textureLoad(validity, texel, 0).r;
+  seen.point = receiver_point(at);
+  if evident == 0.0 || !is_hit(seen.point) { return seen; }
+  let plate_texel = textureLoad(plate, texel, 0);
+  seen.frame = frame_at(texel);
+  seen.plate = plate_texel.rgb;
+  seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
+  seen.visibility = textureLoad(visibility, texel, 0);
+  seen.is_estimated = plate_texel.a < 1.0;
+  seen.weight = evident * plate_texel.a * is_usable(seen.frame, seen.plate);
+  return seen;
+}
+
+fn receiver_equation(seen: Observation, channel: u32) -> Equation {
+  var eq: Equation;
+  if seen.weight[channel] == 0.0 || seen.point.receiver != step.receiver { return eq; }
+  let b = seen.plate[channel];
+  let total = plate_falloff(seen.point)[channel];
+  eq.value = seen.frame[channel] / fit.gain[channel];
+  eq.columns[0] = b * seen.ambient;
+  eq.columns[1] = b * bounced(seen.ambient);
+  var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce[channel] * eq.columns[1];
+  for (var i = 0u; i < globals.n_lights; i++) {
+    let visible = fit.intensity[i][channel] * seen.visibility[i] - seen.ambient;
+    eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
+    predicted += fit.receivers[step.receiver].direct_fraction[i][channel] * eq.columns[2u + i];
+  }
+  eq.weight = seen.weight[channel];
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }
+  return eq;
+}
+
+fn intensity_equation(seen: Observation, channel: u32) -> Equation {
+  var eq: Equation;
+  if seen.weight[channel] == 0.0 { return eq; }
+  let b = seen.plate[channel];
+  eq.value = seen.frame[channel];
+  eq.columns[0] = b * ambient_model(seen.point, seen.ambient)[channel];
+  var predicted = eq.columns[0];
+  for (var i = 0u; i < globals.n_lights; i++) {
+    let column = b * light_fraction(i, seen.point)[channel] * seen.visibility[i];
+    predicted += fit.intensity[i][channel] * column;
+    if !seen.is_estimated { eq.columns[2u + i] = column; }
+  }
+  // It tells the exposure alone.
+  if seen.is_estimated { eq.columns[0] = predicted; }
+  let gain = fit.gain[channel];
+  eq.weight = seen.weight[channel];
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
+  return eq;
+}
+
+fn toy_equation(texel: vec2u, channel: u32) -> Equation {
+  var eq: Equation;
+  let base = textureLoad(gbuffer_base, texel, 0).rgb;
+  let f = frame_at(texel);
+  if textureLoad(validity, texel, 0).g == 0.0 { return eq; }
+  let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
+  eq.value = f[channel] / fit.gain[channel];
+  let received = textureLoad(gbuffer_received, texel, 0);
+  eq.columns[0] = base[channel];
+  eq.columns[1] = base[channel] * normal.y;
+  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i]; }
+  let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
+  eq.weight = is_usable(f, f)[channel];
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
+  return eq;
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cs_accumulate(
+  @builtin(workgroup_id) group: vec3u,
+  @builtin(local_invocation_index) lane: u32,
+) {
+  let size = vec2u(globals.region_size_px) / step.stride_px;
+  let channel = group.z;
+  var sums: array<f32, N_SUMS>;
+  for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
+    let texel = vec2u(index % size.x, index / size.x) * step.stride_px;
+    var eq: Equation;
+    switch step.subject {
+      case SUBJECT_RECEIVER: { eq = receiver_equation(observe(texel), channel); }
+      case SUBJECT_INTENSITIES: { eq = intensity_equation(observe(texel), channel); }
+      default: { eq = toy_equation(texel, channel); }
+    }
+    if eq.weight == 0.0 { continue; }
+    var k = 0u;
+    for (var i = 0u; i < N_COLUMNS; i++) {
+      for (var j = i; j < N_COLUMNS; j++) {
+        sums[k] += eq.weight * eq.columns[i] * eq.columns[j];
+        k++;
+      }
+      sums[21u + i] += eq.weight * eq.columns[i] * eq.value;
+    }
+  }
+  let row = (group.x * 3u + channel) * N_SUMS;
+  for (var part = 0u; part < N_SUMS; part += N_PART) {
+    for (var k = 0u; k < N_PART; k++) { partial[k * WORKGROUP + lane] = sums[part + k]; }
+    workgroupBarrier();
+    for (var half = WORKGROUP / 2u; half > 0u; half /= 2u) {
+      if lane < half {
+        for (var k = 0u; k < N_PART; k++) {
+          partial[k * WORKGROUP + lane] += partial[k * WORKGROUP + lane + half];
+        }
+      }
+      workgroupBarrier();
+    }
+    if lane < N_PART { rows[row + part + lane] = partial[lane * WORKGROUP]; }
+    workgroupBarrier();
+  }
+}

@@ -1,0 +1,210 @@
+// Solves the normal equations that `fit` summed, per channel, with weak priors that decide what the frame does not show.
+//
+// Reads: rows of sums, and those kept of frames before, since place and toy stay the same when the camera moves.
+// Writes: the solution, and in the last step the sums to keep.
+// CPU reference: reference/fit.rs.
+
+@group(1) @binding(0) var<uniform> step: FitStep;
+@group(1) @binding(1) var<storage, read> rows: array<f32>;
+@group(1) @binding(2) var<storage, read_write> solution: Fit;
+// 81 sums for each receiver, then for the toy.
+@group(1) @binding(3) var<storage, read_write> accumulated: array<f32>;
+
+const N_SUMS: u32 = 27u;
+// Weight of the priors against the energy of the first column.
+const PRIOR_WEIGHT: f32 = 1e-4;
+// Weight by which a light keeps the power it had, against the energy of the ambient light.
+const INTENSITY_WEIGHT: f32 = 1e-3;
+// Weight by which further receivers keep the gain that the first one tells: there is one exposure.
+const SAME_GAIN_WEIGHT: f32 = 10.0;
+// Sums of frames before weigh at most as much as this many frames like the latest.
+const MAX_FRAMES: f32 = 8.0;
+// Weight of the three channels' common solution, for the toy, against their common energy.
+const WHITE_WEIGHT: f32 = 0.003;
+// Bounce of a toy of middle grey: the mean over channels of what sessions of the bundled toy show.
+const PRIOR_BOUNCE: f32 = 0.27;
+// All lights together, half of the plate's radiance; each as if it gave as much as the others at one metre.
+const PRIOR_DIRECT_FRACTION: f32 = 0.5;
+// Shares sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
+const MAX_DIRECT_FRACTION: f32 = 0.98;
+const MAX_BOUNCE: f32 = 1.0;
+
+var<workgroup> sums: array<f32, 81>;
+var<private> matrix: array<f32, 36>;
+var<private> unknowns: array<f32, N_COLUMNS>;
+
+// Irradiance of a light on a receiver's reference point, up to a factor that is the light's own.
+fn irradiance(receiver: u32, i: u32) -> f32 {
+  let light = globals.receivers[receiver].lights[i];
+  if light.y <= 0.0 { return 0.0; }
+  if light.w == 0.0 { return light.y; }
+  let reference = globals.receivers[receiver].reference_in_plane;
+  let distance_m = distance(light.xyz, vec3f(reference.x, 0.0, reference.y));
+  return light.y / (distance_m * distance_m * distance_m);
+}
+
+// What a light's irradiance on the receiver that is fitted is, over that on the first.
+fn of_first(i: u32) -> f32 {
+  let first = irradiance(0u, i);
+  return select(0.0, irradiance(step.receiver, i) / first, first > 0.0);
+}
+
+// A light's share of the first receiver's radiance, before any is seen.
+fn first_share(light: u32) -> f32 {
+  var total = 0.0;
+  for (var i = 0u; i < step.n_columns - 2u; i++) { total += irradiance(0u, i); }
+  if total == 0.0 { return 0.0; }
+  return PRIOR_DIRECT_FRACTION * irradiance(0u, light) / total;
+}
+
+// What is expected of a receiver before it is seen in shadow. Of the first, common values; of the others, that the same
+// lights shine on them, amid as much ambient light.
+fn receiver_prior(column: u32, channel: u32) -> f32 {
+  if column == 0u { return 1.0; }
+  if column == 1u { return select(solution.receivers[0].bounce[channel], PRIOR_BOUNCE, step.receiver == 0u); }
+  if step.receiver == 0u { return first_share(column - 2u); }
+  var total = 1.0;
+  for (var i = 0u; i < step.n_columns - 2u; i++) { total += solution.receivers[0].direct_fraction[i][channel] * (of_first(i) - 1.0); }
+  // A light behind the first receiver tells nothing there.
+  if irradiance(0u, column - 2u) == 0.0 {
+    return select(0.0, PRIOR_DIRECT_FRACTION / f32(step.n_columns - 2u), irradiance(step.receiver, column - 2u) > 0.0);
+  }
+  return solution.receivers[0].direct_fraction[column - 2u][channel] * of_first(column - 2u) / total;
+}
+
+fn load_equations(first_channel: u32, n_channels: u32) {
+  for (var i = 0u; i < N_COLUMNS; i++) {
+    unknowns[i] = 0.0;
+    for (var j = 0u; j < N_COLUMNS; j++) { matrix[i * N_COLUMNS + j] = 0.0; }
+  }
+  for (var channel = first_channel; channel < first_channel + n_channels; channel++) {
+    var k = channel * N_SUMS;
+    for (var i = 0u; i < N_COLUMNS; i++) {
+      unknowns[i] += sums[channel * N_SUMS + 21u + i];
+      for (var j = i; j < N_COLUMNS; j++) {
+        matrix[i * N_COLUMNS + j] += sums[k];
+        if j > i { matrix[j * N_COLUMNS + i] += sums[k]; }
+        k++;
+      }
+    }
+  }
+}
+
+fn add_prior(column: u32, weight: f32, value: f32) {
+  matrix[column * N_COLUMNS + column] += weight;
+  unknowns[column] += weight * value;
+}
+
+// Gauss-Jordan without pivoting: the matrix is symmetric positive definite by its priors.
+fn solve() {
+  for (var p = 0u; p < step.n_columns; p++) {
+    let pivot = matrix[p * N_COLUMNS + p];
+    for (var i = 0u; i < step.n_columns; i++) {
+      if i == p { continue; }
+      let factor = matrix[i * N_COLUMNS + p] / pivot;
+      for (var j = p; j < step.n_columns; j++) {
+        matrix[i * N_COLUMNS + j] -= factor * matrix[p * N_COLUMNS + j];
+      }
+      unknowns[i] -= factor * unknowns[p];
+    }
+  }
+  for (var p = 0u; p < step.n_columns; p++) { unknowns[p] /= matrix[p * N_COLUMNS + p]; }
+}
+
+fn store_receiver(channel: u32, contrast: f32) {
+  let correction = unknowns[0];
+  if step.receiver == 0u { solution.gain[channel] *= correction; }
+  solution.receivers[step.receiver].bounce[channel] = clamp(unknowns[1] / correction, 0.0, MAX_BOUNCE);
+  var total = 0.0;
+  for (var i = 2u; i < step.n_columns; i++) {
+    unknowns[i] = max(unknowns[i] / correction, 0.0);
+    total += unknowns[i];
+  }
+  let scale = min(1.0, MAX_DIRECT_FRACTION / max(total, MAX_DIRECT_FRACTION));
+  for (var i = 2u; i < step.n_columns; i++) {
+    solution.receivers[step.receiver].direct_fraction[i - 2u][channel] = scale * unknowns[i];
+  }
+  solution.receivers[step.receiver].contrast[channel] = contrast;
+}
+
+fn store_toy(channel: u32) {
+  for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
+}
+
+fn solve_receiver(channel: u32) {
+  load_equations(channel, 1u);
+  let energy = matrix[0];
+  var light_energy = 0.0;
+  for (var i = 2u; i < step.n_columns; i++) { light_energy += matrix[i * N_COLUMNS + i]; }
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, receiver_prior(i, channel)); }
+  if step.receiver > 0u { add_prior(0u, SAME_GAIN_WEIGHT * energy, 1.0); }
+  solve();
+  if unknowns[0] > 0.0 { store_receiver(channel, light_energy / energy); }
+}
+
+// Nothing is seen of the receiver: it is as expected.
+fn assume_receiver(channel: u32) {
+  for (var i = 0u; i < step.n_columns; i++) { unknowns[i] = receiver_prior(i, channel); }
+  store_receiver(channel, 0.0);
+}
+
+fn solve_intensities(channel: u32) {
+  load_equations(channel, 1u);
+  let weight = INTENSITY_WEIGHT * matrix[0];
+  let gain = solution.gain[channel];
+  add_prior(0u, weight, gain);
+  add_prior(1u, weight, 0.0);
+  for (var i = 2u; i < step.n_columns; i++) { add_prior(i, weight, gain * solution.intensity[i - 2u][channel]); }
+  solve();
+  if unknowns[0] <= 0.0 { return; }
+  solution.gain[channel] = unknowns[0];
+  for (var i = 2u; i < step.n_columns; i++) { solution.intensity[i - 2u][channel] = max(unknowns[i] / unknowns[0], 0.0); }
+}
+
+// A channel in which the toy is dark follows the others: light is nearly white, base colours are not.
+fn solve_toy(channel: u32) {
+  load_equations(0u, 3u);
+  let energy = matrix[0];
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, 0.0); }
+  solve();
+  let white = unknowns;
+  load_equations(channel, 1u);
+  for (var i = 0u; i < step.n_columns; i++) { add_prior(i, WHITE_WEIGHT * energy, white[i]); }
+  solve();
+  store_toy(channel);
+}
+
+fn total_sum(lane: u32) -> f32 {
+  var total = 0.0;
+  for (var row = 0u; row < step.n_rows; row++) { total += rows[row * 81u + lane]; }
+  return total;
+}
+
+@compute @workgroup_size(96)
+fn cs_solve(@builtin(local_invocation_index) lane: u32) {
+  var fresh = 0.0;
+  let slot = 81u * select(step.receiver, MAX_RECEIVERS, step.subject == SUBJECT_TOY) + lane;
+  let is_accumulated = step.subject != SUBJECT_INTENSITIES;
+  if lane < 81u {
+    fresh = total_sum(lane);
+    sums[lane] = fresh;
+  }
+  workgroupBarrier();
+  let fresh_energy = sums[0] + sums[N_SUMS] + sums[2u * N_SUMS];
+  workgroupBarrier();
+  if lane < 81u && is_accumulated { sums[lane] = fresh + accumulated[slot]; }
+  workgroupBarrier();
+  let energy = sums[0] + sums[N_SUMS] + sums[2u * N_SUMS];
+  if lane < 81u && is_accumulated && step.is_last == 1u && fresh_energy > 0.0 {
+    accumulated[slot] = sums[lane] * min(1.0, MAX_FRAMES * fresh_energy / energy);
+  }
+  if lane >= 3u { return; }
+  // Without any evidence the starting values stay.
+  if step.subject == SUBJECT_TOY {
+    if energy > 0.0 { solve_toy(lane); }
+  } else if sums[lane * N_SUMS] > 0.0 {
+    if step.subject == SUBJECT_INTENSITIES { solve_intensities(lane); } else { solve_receiver(lane); }
+  } else if step.subject == SUBJECT_RECEIVER && step.receiver > 0u {
+    assume_receiver(lane);
+  }
+}

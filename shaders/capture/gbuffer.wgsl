@@ -1,0 +1,39 @@
+// The toy in its physical pose as the camera sees it: base colour, normal, what it receives of each light, and depth.
+//
+// Reads: physical positions and normals in stage space, materials, depth maps from the lights. Writes: base colour (linear,
+// alpha 1 on the toy), unit normal in stage space and the material's number, each light's cosine times its visibility,
+// reversed depth.
+
+struct Vertex {
+  @location(0) in_anchor: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+}
+
+struct Surface {
+  @builtin(position) clip: vec4f,
+  @location(0) normal: vec3f,
+  @location(1) uv: vec2f,
+  @location(2) color: vec4f,
+  @location(3) in_anchor: vec3f,
+}
+
+@vertex
+fn vs_project(in: Vertex) -> Surface {
+  return Surface(globals.clip_from_anchor * vec4f(in.in_anchor, 1.0), in.normal, in.uv, in.color, in.in_anchor);
+}
+
+struct GbufferTexel {
+  @location(0) base: vec4f,
+  @location(1) normal: vec4f,
+  @location(2) received: vec4f,
+}
+
+@fragment
+fn fs_describe(in: Surface) -> GbufferTexel {
+  let base = vec4f(base_color(in.uv, in.color), 1.0);
+  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
+  let normal = unit_normal(in.normal);
+  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in.in_anchor));
+}

@@ -1,0 +1,37 @@
+// What the receivers look like where light falls on them, pooled on coarse grids: what a missing plate is made of.
+//
+// B = frame / (gain M) where the receiver is seen and little of its light is missing.
+// Reads: frame, evidence, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
+// CPU reference: reference/lit.rs.
+
+@group(1) @binding(3) var frame: texture_2d<f32>;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var visibility: texture_2d<f32>;
+@group(1) @binding(6) var ambient: texture_2d<f32>;
+@group(1) @binding(7) var ambient_sampler: sampler;
+
+// Power of the light that is left: shadow counts little, since its depth may not be known yet.
+const LIT_POWER: f32 = 8.0;
+
+fn lit_color(point: ReceiverPoint) -> vec4f {
+  let at = region_px_of(point);
+  if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return vec4f(0.0); }
+  let texel = vec2u(at);
+  let here = receiver_point(vec2f(texel) + 0.5);
+  let seen = textureLoad(validity, texel, 0).b;
+  if seen == 0.0 || here.receiver != point.receiver { return vec4f(0.0); }
+  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
+  let model = receiver_model(here, a, textureLoad(visibility, texel, 0));
+  let left = smallest(model);
+  if left <= 0.0 { return vec4f(0.0); }
+  return vec4f(f / (fit.gain.rgb * model), 1.0) * pow(min(left, 1.0), LIT_POWER);
+}
+
+@compute @workgroup_size(8, 8)
+fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
+  if !is_cell(cell.z, cell.xy) { return; }
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < N_POINTS * N_POINTS; k++) { sum += lit_color(point_of_cell(cell.z, cell.xy, k)); }
+  accumulate(cell.z, cell.xy, select(vec3f(0.0), sum.rgb / sum.a, sum.a > 0.0), sum.a);
+}

@@ -1,0 +1,57 @@
+// What the model leaves unexplained, pooled on coarse grids: reflected colour, a faint second light, uneven ambient.
+//
+// r = sum w plate (frame / gain - plate M) / sum w plate^2, never a division by one dark pixel.
+//
+// Reads: frame, plate, evidence, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of the
+// pyramids. CPU reference: reference/residual.rs.
+
+@group(1) @binding(3) var frame: texture_2d<f32>;
+@group(1) @binding(4) var plate: texture_2d<f32>;
+@group(1) @binding(5) var validity: texture_2d<f32>;
+@group(1) @binding(6) var visibility: texture_2d<f32>;
+@group(1) @binding(7) var ambient: texture_2d<f32>;
+@group(1) @binding(8) var ambient_sampler: sampler;
+
+// A residual this large, in plates, is something the model does not know, such as a hand: it counts half.
+const CAUCHY_SCALE: f32 = 0.03;
+
+struct Sums {
+  product: vec3f,
+  energy: vec3f,
+  // Points that are evidence, whether the model explains them or not: a hand is known to be there.
+  n_points: f32,
+}
+
+fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
+  let at = region_px_of(point);
+  if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return sums; }
+  let texel = vec2u(at);
+  let seen = textureLoad(validity, texel, 0).r;
+  if seen == 0.0 || receiver_point(vec2f(texel) + 0.5).receiver != point.receiver { return sums; }
+  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let b = textureLoad(plate, texel, 0);
+  let brightness = dot(b.rgb, b.rgb);
+  // An estimated plate was made from this very frame.
+  if brightness == 0.0 || b.a < 1.0 { return sums; }
+  let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
+  let v = textureLoad(visibility, texel, 0);
+  // At the pixel's centre, where the visibilities are those of.
+  let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
+  let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
+  let usable = seen * is_usable(f, b.rgb);
+  let weight = usable / (1.0 + relative);
+  return Sums(
+    sums.product + weight * b.rgb * e,
+    sums.energy + weight * b.rgb * b.rgb,
+    sums.n_points + dot(usable, vec3f(1.0 / 3.0)),
+  );
+}
+
+@compute @workgroup_size(8, 8)
+fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
+  if !is_cell(cell.z, cell.xy) { return; }
+  var sums = Sums(vec3f(0.0), vec3f(0.0), 0.0);
+  for (var k = 0u; k < N_POINTS * N_POINTS; k++) { sums = add_point(sums, point_of_cell(cell.z, cell.xy, k)); }
+  let r = select(vec3f(0.0), sums.product / sums.energy, sums.energy > vec3f(0.0));
+  accumulate(cell.z, cell.xy, r, sums.n_points);
+}

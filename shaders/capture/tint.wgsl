@@ -1,0 +1,49 @@
+// What the toy's visible surface tells of its paint, summed in cells.
+//
+// Each pixel that shows one surface of the toy, and is not clipped, adds what it shows, and what base colour, gain and
+// fitted light give there, to the cell that its point lies in. Sums are of integers: their order does not matter.
+//
+// Reads: frame, evidence, the physical toy, the light on it. Writes: sums of the finest cells. CPU reference: reference/tint.rs.
+
+// Every how many pixels, along each side, one is taken: so few in all that no sum overflows.
+@group(1) @binding(0) var<uniform> stride_px: u32;
+@group(1) @binding(1) var<uniform> tint_grid: TintGrid;
+@group(1) @binding(2) var<storage, read_write> sums: array<atomic<u32>>;
+@group(1) @binding(3) var frame: texture_2d<f32>;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var gbuffer_depth: texture_depth_2d;
+// Its w is the material.
+@group(1) @binding(6) var gbuffer_normal: texture_2d<f32>;
+@group(1) @binding(7) var gbuffer_received: texture_2d<f32>;
+@group(1) @binding(8) var gbuffer_base: texture_2d<f32>;
+
+// More than this would be clipped in the photograph, whatever the paint; of that many pixels sums hold no more.
+const MOST_EXPECTED: f32 = 3.0;
+
+// The point seen at a pixel: on its ray, at its depth. The plane of the first receiver is y = 0 of the stage.
+fn seen_in_anchor(at: vec2f, depth: f32) -> vec3f {
+  let depth_m = globals.clip_from_anchor[3].z / depth;
+  let on_plane = globals.receivers[0].plane_from_region_px * vec3f(at, 1.0);
+  let ray = vec3f(on_plane.x, 0.0, on_plane.y) - globals.camera_in_anchor * on_plane.z;
+  return globals.camera_in_anchor + depth_m * ray;
+}
+
+@compute @workgroup_size(8, 8)
+fn cs_add(@builtin(global_invocation_id) id: vec3u) {
+  let texel = id.xy * stride_px;
+  if any(vec2f(texel) >= globals.region_size_px) { return; }
+  if textureLoad(validity, texel, 0).g < 1.0 { return; }
+  let surface = textureLoad(gbuffer_normal, texel, 0);
+  let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, texel, 0));
+  let expected = fit.gain.rgb * textureLoad(gbuffer_base, texel, 0).rgb * lit;
+  let shown = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  if largest(shown) > BRIGHTEST_USABLE { return; }
+  let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, texel, 0)));
+  let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
+  let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
+  for (var channel = 0u; channel < 3u; channel++) {
+    atomicAdd(&sums[first + channel], u32(shown[channel] * TINT_UNIT));
+    atomicAdd(&sums[first + 3u + channel], u32(min(expected[channel], MOST_EXPECTED) * TINT_UNIT));
+  }
+  atomicAdd(&sums[first + 6u], 1u);
+}

@@ -1,0 +1,57 @@
+// Which pixels of the frame show what: r is 1 where it is clear of the toy, g where it shows one surface of the toy, b
+// where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
+//
+// Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are evidence of neither.
+// Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: reference/validity.rs.
+
+@group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
+
+// Distance kept from the toy's outline on the receiver.
+const EDGE_PX: i32 = 2;
+// The same where a pixel is to tell its own plate, looked at in steps.
+const BLEED_PX: i32 = 8;
+const BLEED_STEP_PX: i32 = 2;
+
+fn depth_at(texel: vec2i) -> f32 {
+  let last = vec2i(textureDimensions(gbuffer_depth)) - 1;
+  return textureLoad(gbuffer_depth, clamp(texel, vec2i(0), last), 0);
+}
+
+fn is_clear_of_toy(texel: vec2i) -> bool {
+  for (var y = -EDGE_PX; y <= EDGE_PX; y++) {
+    for (var x = -EDGE_PX; x <= EDGE_PX; x++) {
+      if depth_at(texel + vec2i(x, y)) > 0.0 { return false; }
+    }
+  }
+  return true;
+}
+
+fn is_well_clear_of_toy(texel: vec2i) -> bool {
+  for (var y = -BLEED_PX; y <= BLEED_PX; y += BLEED_STEP_PX) {
+    for (var x = -BLEED_PX; x <= BLEED_PX; x += BLEED_STEP_PX) {
+      if depth_at(texel + vec2i(x, y)) > 0.0 { return false; }
+    }
+  }
+  return true;
+}
+
+// The depths on both sides of `here` lie on one line with it, or nearly: a fold passes, a step does not.
+fn is_straight(texel: vec2i, side: vec2i, here: f32) -> bool {
+  let before = depth_at(texel - side);
+  let after = depth_at(texel + side);
+  return min(before, after) > 0.0 && abs(before + after - 2.0 * here) <= DEPTH_BEND * here;
+}
+
+fn is_one_surface(texel: vec2i) -> bool {
+  let here = depth_at(texel);
+  return here > 0.0 && is_straight(texel, vec2i(1, 0), here) && is_straight(texel, vec2i(0, 1), here)
+    && is_straight(texel, vec2i(1, 1), here) && is_straight(texel, vec2i(1, -1), here);
+}
+
+@fragment
+fn fs_mark(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2i(at.xy);
+  let is_clear = is_clear_of_toy(texel);
+  let marks = vec3<bool>(is_clear, is_one_surface(texel), is_clear && is_well_clear_of_toy(texel));
+  return vec4f(select(vec3f(0.0), vec3f(1.0), marks), 1.0);
+}

@@ -1,0 +1,204 @@
+// The picture: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
+//
+//   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
+//   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
+//                                     passes; also where the frame shows what the model cannot explain
+//
+// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes: linear
+// colour, opaque. CPU reference: reference/composite.rs.
+
+struct Drawing {
+  // Number of draws of the toy, 1 or 4.
+  n_toy_draws: u32,
+  // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
+  has_detail: u32,
+}
+
+@group(1) @binding(1) var<storage, read> cells: array<vec4f>;
+@group(1) @binding(2) var frame: texture_2d<f32>;
+@group(1) @binding(3) var plate: texture_2d<f32>;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var physical_visibility: texture_2d<f32>;
+@group(1) @binding(6) var physical_ambient: texture_2d<f32>;
+@group(1) @binding(7) var visibility: texture_2d<f32>;
+@group(1) @binding(8) var ambient: texture_2d<f32>;
+@group(1) @binding(9) var linear_sampler: sampler;
+// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
+@group(1) @binding(10) var toy_0: texture_2d<f32>;
+@group(1) @binding(11) var toy_1: texture_2d<f32>;
+@group(1) @binding(12) var toy_2: texture_2d<f32>;
+@group(1) @binding(13) var toy_3: texture_2d<f32>;
+// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+@group(1) @binding(14) var toy_moved: texture_2d<f32>;
+@group(1) @binding(15) var moved_mask: texture_2d<f32>;
+// Each pixel's own residual, in plates.
+@group(1) @binding(16) var detail: texture_2d<f32>;
+// COVERED_POSITION for each position that the shown toy covers.
+@group(1) @binding(17) var covered: texture_2d<f32>;
+@group(1) @binding(18) var<uniform> drawing: Drawing;
+
+// Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
+const KEEP_ALL: f32 = 0.02;
+const KEEP_NONE: f32 = 0.15;
+// Change of the model from which the pooled residual no longer holds at half its size.
+const RESIDUAL_HALF: f32 = 0.5;
+// Pooled residual, in plates, from which something unknown is seen, such as a hand or the shadow of a light that is not
+// listed, and from which nothing else counts: what the camera saw stays.
+const OUTLIER_NONE: f32 = 0.15;
+const OUTLIER_ALL: f32 = 0.3;
+// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own colour.
+const SHADOW_EVENNESS: f32 = 0.4;
+const OBJECT_EVENNESS: f32 = 0.2;
+// Distance over which the toy's colours bleed into a pixel beside it.
+const BLEED_PX: f32 = 6.0;
+// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from which it is
+// what bled into it.
+const BLED_NONE: f32 = 0.03;
+const BLED_ALL: f32 = 0.1;
+
+// 1 inside, falling to 0 at an inner border of the region.
+fn inside_border(region_px: vec2f) -> f32 {
+  let to_edge = vec4f(region_px, globals.region_size_px - region_px);
+  let fade = select(vec4f(1.0), to_edge / globals.border_px, globals.border_px > vec4f(0.0));
+  return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
+}
+
+// Whether the toy's surface beside this pixel is no longer in its place.
+fn has_moved_beside(texel: vec2i) -> bool {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var k = 0u; k < 16u; k++) {
+    let turn = f32(k) * 0.78539816;
+    let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
+    let tap = clamp(texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
+    most = max(most, textureLoad(moved_mask, tap, 0).r);
+  }
+  return most > 0.0;
+}
+
+// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
+fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
+  if evident.r == 0.0 { return 0.0; }
+  if !has_moved { return 1.0; }
+  return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
+}
+
+// Whether a residual may be a shadow: all channels are darker, and none much more than the others.
+fn shadow_likeness(residual: vec3f) -> f32 {
+  let least = -largest(residual);
+  let most = largest(-residual);
+  if least <= 0.0 { return 0.0; }
+  return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
+}
+
+struct Receiver {
+  color: vec3f,
+  frame: vec3f,
+  // By what the model has changed since the frame, where the receiver shows.
+  change: vec3f,
+  // How far the frame may stand where it shows the toy as well: 1 where the change is little.
+  keep_mixed: f32,
+}
+
+fn receiver(position: vec4f) -> Receiver {
+  let texel = vec2u(position.xy);
+  let at = position.xy;
+  let image_texel = texel + vec2u(globals.region_origin_px);
+  let f = textureLoad(frame, image_texel, 0).rgb;
+  let point = receiver_point(at);
+  let b = textureLoad(plate, texel, 0);
+  let lit = fit.gain.rgb * b.rgb;
+  let evident = textureLoad(validity, texel, 0);
+  // Nothing is known of what is behind.
+  if b.a == 0.0 { return Receiver(f, f, vec3f(0.0), 1.0); }
+  // Beyond the receivers nothing changes but that the real toy goes.
+  if !is_hit(point) { return Receiver(mix(lit, f, evident.r), f, vec3f(0.0), 1.0 - evident.r); }
+  let uv = at / globals.region_size_px;
+  let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
+    textureLoad(physical_visibility, texel, 0));
+  let after = receiver_model(point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
+    textureLoad(visibility, texel, 0));
+  let most = largest(abs(after - before));
+  let pooled = cell_at(point).rgb;
+  let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
+  let is_outlier = smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
+  let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
+  let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
+  let has_moved = evident.b == 0.0 && has_moved_beside(vec2i(texel));
+  let seen = own_share(evident, has_moved, deviation);
+  let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
+  let made = lit * max(after + residual, vec3f(0.0));
+  var own = f + lit * (after - before);
+  if drawing.has_detail == 1u && b.a == 1.0 {
+    // What is nearly black in the plate tells nothing.
+    own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_USABLE));
+  }
+  let kept = mix(own, f, is_object);
+  let keep = seen * max(is_near, is_outlier);
+  let inside = max(inside_border(at), 1.0 - seen);
+  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
+    select(1.0 - evident.r, 0.0, has_moved || evident.a < 1.0) * is_near);
+}
+
+fn drawn_toy(texel: vec2u) -> vec4f {
+  let first = textureLoad(toy_0, texel, 0);
+  if drawing.n_toy_draws == 1u { return first; }
+  return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
+}
+
+// Part of a pixel that the toy covers.
+fn coverage(texel: vec2u) -> f32 {
+  return round(textureLoad(covered, texel, 0).r / COVERED_POSITION) / f32(N_POSITIONS);
+}
+
+// The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
+fn toy_color(texel: vec2u) -> vec4f {
+  let own = drawn_toy(texel);
+  if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
+  let last = vec2i(globals.region_size_px) - 1;
+  var sum = vec4f(0.0);
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      sum += drawn_toy(vec2u(clamp(vec2i(texel) + vec2i(x, y), vec2i(0), last)));
+    }
+  }
+  if sum.a == 0.0 { return vec4f(0.0); }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// The toy over what is behind it: premultiplied colour, and its coverage.
+fn toy_layer(texel: vec2u) -> vec4f {
+  let part = coverage(texel);
+  if part == 0.0 { return vec4f(0.0); }
+  return part * toy_color(texel);
+}
+
+// 1 where everything in and around a pixel is as the camera saw it.
+fn stillness(texel: vec2i) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var most = 0.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(moved_mask, other, 0).r));
+    }
+  }
+  return 1.0 - most;
+}
+
+@fragment
+fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(position.xy);
+  let toy = toy_layer(texel);
+  if toy.a == 1.0 {
+    let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+    return vec4f(mix(toy.rgb, frame_color, stillness(vec2i(texel))), 1.0);
+  }
+  let behind = receiver(position);
+  let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
+  if behind.keep_mixed == 0.0 { return vec4f(laid, 1.0); }
+  let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  let still = stillness(vec2i(texel));
+  return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
+}

@@ -1,0 +1,22 @@
+// Where the surface that the camera saw of the real toy is no longer in its place.
+//
+// Reads: both poses. Writes: 1 where the surface has moved, as part of the pixel.
+
+struct Surface {
+  @builtin(position) clip: vec4f,
+  @location(0) shown_clip: vec4f,
+  @location(1) physical_clip: vec4f,
+}
+
+@vertex
+fn vs_physical(@location(0) physical_in_anchor: vec3f, @location(1) in_anchor: vec3f) -> Surface {
+  let shown = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
+  let physical = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
+  return Surface(physical, shown, physical);
+}
+
+@fragment
+fn fs_moved(in: Surface) -> @location(0) vec4f {
+  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
+  return vec4f(moved(region_px(in.shown_clip), region_px(in.physical_clip)));
+}

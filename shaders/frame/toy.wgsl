@@ -1,0 +1,156 @@
+// The toy in the pose to be shown, drawn with its camera pixels.
+//
+// Its surface takes the camera's pixels where the camera saw that point in the physical pose, scaled by how the fitted light
+// falls on the turned surface; what was hidden takes the model's base colour under the fitted light, tinted as the paint
+// beside it is.
+// Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
+//
+// Reads: both poses, materials, the toy's own colours and the light they were seen under, the physical toy, the fit, depth
+// maps from the lights, tints. Writes: linear radiance, premultiplied, alpha what the samples meet;
+// where it shows what the camera did not see there.
+
+// By which the whole picture is moved, in pixels to the right and down.
+@group(1) @binding(0) var<uniform> offset_px: vec2f;
+@group(1) @binding(1) var appearance: texture_2d<f32>;
+@group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(3) var appearance_base: texture_2d<f32>;
+@group(1) @binding(4) var appearance_lit: texture_2d<f32>;
+@group(1) @binding(5) var<uniform> tint_grid: TintGrid;
+@group(1) @binding(6) var<storage, read> tints: array<vec4f>;
+
+// A turned surface is never made more than this much brighter or darker than its camera pixel.
+const MAX_TURN: f32 = 4.0;
+// Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
+// a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
+const STRETCH_ALL: f32 = 0.3;
+const STRETCH_NONE: f32 = 0.1;
+// Difference of base colours, against the lighter one, from which two points of the model are of two materials.
+const OTHER_MATERIAL: f32 = 0.25;
+// Change of the light on a surface, against the light, that does not show, and that does.
+const SAME_LIGHT: f32 = 0.02;
+const OTHER_LIGHT: f32 = 0.08;
+// Weight of colours carried past the outline, against those of the surface itself.
+const CARRIED_WEIGHT: f32 = 1e-3;
+
+struct Vertex {
+  @location(0) in_anchor: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_anchor: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+struct Surface {
+  @builtin(position) clip: vec4f,
+  @location(0) in_anchor: vec3f,
+  @location(1) normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_anchor: vec3f,
+  @location(5) physical_normal: vec3f,
+}
+
+@vertex
+fn vs_toy(in: Vertex) -> Surface {
+  var clip = globals.clip_from_anchor * vec4f(in.in_anchor, 1.0);
+  clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
+  return Surface(clip, in.in_anchor, in.normal, in.uv, in.color, in.physical_in_anchor, in.physical_normal);
+}
+
+// Whether the camera's colour at `texel` is of another material of the model.
+fn is_other_material(texel: vec2u, base: vec3f) -> bool {
+  let other = textureLoad(appearance_base, texel, 0).rgb;
+  return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
+}
+
+// A camera pixel as it would be under the light `lit`, both over base colour.
+fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
+  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
+  return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
+}
+
+struct PhysicalPoint {
+  depth: f32,
+  region_px: vec2f,
+  base: vec3f,
+}
+
+// The camera's colour of a point of the physical toy under the light `lit`, alpha 0 where something hides it.
+//
+// Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
+// outline where `appearance` carried its colours.
+fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
+  let at = point.region_px - 0.5;
+  let low = floor(at);
+  let t = at - low;
+  let last = globals.region_size_px - 1.0;
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < 4u; k++) {
+    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
+    let tap = low + corner;
+    if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
+    let texel = vec2u(tap);
+    let surface = textureLoad(gbuffer_depth, texel, 0);
+    if surface > point.depth && !is_same_surface(surface, point.depth) { continue; }
+    if is_other_material(texel, point.base) { continue; }
+    let color = textureLoad(appearance, texel, 0);
+    let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
+    let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
+    sum += weight * vec4f(relit(color.rgb, lit, textureLoad(appearance_lit, texel, 0).rgb), 1.0);
+  }
+  if sum.a == 0.0 { return sum; }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}
+
+// Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
+fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
+  let across = cross(dpdx(in_anchor), dpdy(in_anchor));
+  let outward = unit_normal(across * sign(dot(across, normal)));
+  return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
+}
+
+// How far the light on a surface is from what it was. A pixel at a fold shows several sides: that of them counts which is
+// most alike.
+fn light_change(texel: vec2i, lit: vec3f) -> f32 {
+  let last = vec2i(globals.region_size_px) - 1;
+  var least = 1.0;
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let was_lit = textureLoad(appearance_lit, clamp(texel + vec2i(x, y), vec2i(0), last), 0).rgb;
+      let brighter = max(largest(was_lit), largest(lit));
+      if brighter > 0.0 { least = min(least, largest(abs(lit - was_lit)) / brighter); }
+    }
+  }
+  return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
+}
+
+// How the real toy's paint differs from its model's at a point of the physical pose.
+fn tint(physical_in_anchor: vec3f) -> vec3f {
+  return between_tints(TINT_PYRAMID * tint_grid_of(material.index), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
+}
+
+struct Drawn {
+  @location(0) radiance: vec4f,
+  // Where it shows what the camera did not see in this place.
+  @location(1) moved: vec4f,
+}
+
+@fragment
+fn fs_toy(in: Surface) -> Drawn {
+  let base = base_color(in.uv, in.color);
+  let normal = unit_normal(in.normal);
+  let physical_normal = unit_normal(in.physical_normal);
+  let physical_facing = facing(in.physical_in_anchor, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in.in_anchor, normal), physical_facing), physical_facing > 0.0);
+  let clip = globals.clip_from_anchor * vec4f(in.physical_in_anchor, 1.0);
+  let physical_px = region_px(clip);
+  let lit = toy_radiance_over_base(normal, light_received(normal, in.in_anchor));
+  let unseen = fit.gain.rgb * base * tint(in.physical_in_anchor) * lit;
+  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
+  let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
+  if is_behind_receiver(in.clip.xy - offset_px, in.clip.w) { discard; }
+  let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in.in_anchor, 1.0)), physical_px);
+  let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
+  return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
+}

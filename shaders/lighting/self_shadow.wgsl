@@ -1,0 +1,13 @@
+// Depth maps of the posed toy from points of each light, all of them tiles of one atlas.
+//
+// Each instance draws the toy into a tile that is made to hold all of it, so nothing is clipped between tiles.
+// Reads: posed positions. Writes: reversed depth.
+// CPU reference: reference/self_shadow.rs.
+
+@vertex
+fn vs_light(@location(0) in_anchor: vec3f, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
+  return self_shadow.atlas_from_anchor[tile] * vec4f(in_anchor, 1.0);
+}
+
+@fragment
+fn fs_depth() {}

@@ -1,0 +1,164 @@
+// The plate as this camera would have taken it: the place without the toy, from plates of this or other cameras.
+//
+// Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
+// best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
+//
+// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: reference/plate.rs.
+// Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
+
+const MAX_PLATES: u32 = 4u;
+
+struct PlateView {
+  // Homographies: (u, v, w) in the plate's pixels of a receiver's point (x, z, 1), w > 0 in front of its camera.
+  plate_px_from_plane: array<mat3x3f, MAX_RECEIVERS>,
+  // The plate's camera in each receiver's space.
+  camera_in_plane: array<vec4f, MAX_RECEIVERS>,
+  // What brings the plate to the exposure of the first.
+  gain: vec4f,
+}
+
+struct PlateViews {
+  plates: array<PlateView, MAX_PLATES>,
+  // This camera in each receiver's space.
+  camera_in_plane: array<vec4f, MAX_RECEIVERS>,
+  n_plates: u32,
+  // 1: the first plate was taken from this very camera.
+  is_same_view: u32,
+  _pad: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> views: PlateViews;
+@group(1) @binding(1) var plates: texture_2d_array<f32>;
+
+// Distance from a plate's border over which another takes over.
+const FEATHER_PX: f32 = 32.0;
+// Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is blurred.
+const ANGLE_POWER: f32 = 4.0;
+const CHOICE_POWER: f32 = 6.0;
+// Cosine of the angle from which a plate is no worse for being seen from farther round: it may be the only one.
+const LEAST_COSINE: f32 = 0.1;
+// Weight against that of the best below which a plate is not looked at.
+const LEAST_WEIGHT: f32 = 0.02;
+
+struct Candidate {
+  plate_px: vec2f,
+  // How well the plate saw the point: positive wherever it did.
+  quality: f32,
+  // 1 well inside the plate, 0 at its border.
+  inside: f32,
+}
+
+const UNSEEN: Candidate = Candidate(vec2f(0.0), 0.0, 0.0);
+
+fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
+  return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
+}
+
+// Where a receiver's point is in the space of another receiver.
+fn in_other_plane(point: ReceiverPoint, other: u32) -> vec3f {
+  let own_from_anchor = globals.receivers[point.receiver].plane_from_anchor;
+  let rotation = mat3x3f(own_from_anchor[0].xyz, own_from_anchor[1].xyz, own_from_anchor[2].xyz);
+  let in_anchor = transpose(rotation) * (vec3f(point.in_plane.x, 0.0, point.in_plane.y) - own_from_anchor[3].xyz);
+  return (globals.receivers[other].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
+}
+
+// Whether another receiver stands between plate `k`'s camera and a point.
+fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
+  for (var other = 0u; other < globals.n_receivers; other++) {
+    if other == point.receiver { continue; }
+    let camera = views.plates[k].camera_in_plane[other].xyz;
+    let end = in_other_plane(point, other);
+    if camera.y * end.y >= 0.0 { continue; }
+    let crossing = mix(camera.xz, end.xz, camera.y / (camera.y - end.y));
+    if is_within(globals.receivers[other].rect, crossing) { return true; }
+  }
+  return false;
+}
+
+// Plate pixels per pixel here, by area, of which fewer than one lose detail: a homography of determinant D scales areas
+// by D / w^3, and two in a row by the product.
+fn detail(k: u32, point: ReceiverPoint, region_px: vec2f, plate_w: f32) -> f32 {
+  let here = globals.receivers[point.receiver].plane_from_region_px;
+  let here_w = (here * vec3f(region_px, 1.0)).z;
+  let there = views.plates[k].plate_px_from_plane[point.receiver];
+  let scale = determinant(here) / (here_w * here_w * here_w) * determinant(there) / (plate_w * plate_w * plate_w);
+  return min(abs(scale), 1.0);
+}
+
+// What plate `k` has of the point seen at `region_px`.
+fn candidate(k: u32, point: ReceiverPoint, region_px: vec2f) -> Candidate {
+  let at = views.plates[k].plate_px_from_plane[point.receiver] * vec3f(point.in_plane, 1.0);
+  if at.z <= 0.0 { return UNSEEN; }
+  let px = at.xy / at.z;
+  let size = vec2f(textureDimensions(plates));
+  let to_border = min(px, size - px);
+  let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
+  let own = views.camera_in_plane[point.receiver];
+  let camera = views.plates[k].camera_in_plane[point.receiver];
+  let is_same_side = camera.y * own.y > 0.0;
+  if inside == 0.0 || !is_same_side || is_hidden(k, point) { return UNSEEN; }
+  let cosine = dot(direction_to(camera, point.in_plane), direction_to(own, point.in_plane));
+  return Candidate(px, detail(k, point, region_px, at.z) * pow(max(cosine, LEAST_COSINE), ANGLE_POWER), inside);
+}
+
+// Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
+fn cubic(t: f32) -> vec4f {
+  let s = t * t;
+  let c = s * t;
+  return 0.5 * vec4f(2.0 * s - t - c, 2.0 - 5.0 * s + 3.0 * c, t + 4.0 * s - 3.0 * c, c - s);
+}
+
+fn sharp_color(k: u32, px: vec2f) -> vec3f {
+  let at = px - 0.5;
+  let low = floor(at);
+  let wx = cubic(at.x - low.x);
+  let wy = cubic(at.y - low.y);
+  let last = vec2i(textureDimensions(plates)) - 1;
+  var sum = vec3f(0.0);
+  for (var j = 0; j < 4; j++) {
+    for (var i = 0; i < 4; i++) {
+      let texel = clamp(vec2i(low) + vec2i(i - 1, j - 1), vec2i(0), last);
+      sum += wx[i] * wy[j] * textureLoad(plates, texel, k, 0).rgb;
+    }
+  }
+  return max(sum, vec3f(0.0)) * views.plates[k].gain.rgb;
+}
+
+// The point of a receiver's front or back at a pixel; beyond all receivers the first one's plane goes on.
+fn point_beyond(region_px: vec2f) -> ReceiverPoint {
+  let point = surface_point(region_px);
+  if is_hit(point) { return point; }
+  let p = globals.receivers[0].plane_from_region_px * vec3f(region_px, 1.0);
+  if p.z <= 0.0 { return point; }
+  return ReceiverPoint(0u, p.xy / p.z);
+}
+
+@fragment
+fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  if views.is_same_view == 1u {
+    let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
+    return vec4f(textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb, 1.0);
+  }
+  let point = point_beyond(at.xy);
+  if !is_hit(point) { return vec4f(0.0); }
+  var candidates: array<Candidate, MAX_PLATES>;
+  var best_quality = 0.0;
+  for (var k = 0u; k < views.n_plates; k++) {
+    candidates[k] = candidate(k, point, at.xy);
+    best_quality = max(best_quality, candidates[k].quality);
+  }
+  if best_quality == 0.0 { return vec4f(0.0); }
+  // Against the best one, so that powers of what is poor do not underflow where there is nothing better.
+  var weights: array<f32, MAX_PLATES>;
+  var best = 0.0;
+  for (var k = 0u; k < views.n_plates; k++) {
+    weights[k] = candidates[k].inside * pow(candidates[k].quality / best_quality, CHOICE_POWER);
+    best = max(best, weights[k]);
+  }
+  var sum = vec4f(0.0);
+  for (var k = 0u; k < views.n_plates; k++) {
+    if weights[k] == 0.0 || weights[k] < LEAST_WEIGHT * best { continue; }
+    sum += weights[k] * vec4f(sharp_color(k, candidates[k].plate_px), 1.0);
+  }
+  return vec4f(sum.rgb / sum.a, 1.0);
+}

@@ -1,0 +1,72 @@
+//! CPU reference of `validity.wgsl`: which pixels of the frame show what.
+
+use glam::{IVec2, UVec2};
+
+use super::raster::Raster;
+use super::{ConstantError, shader_constant};
+
+/// What the shader fixes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValidityConstants {
+    /// Distance kept from the toy on the receiver, along each side.
+    pub edge_px: i32,
+    /// The same where a pixel is to tell its own plate.
+    pub bleed_px: i32,
+    /// Steps in which that is looked at.
+    pub bleed_step_px: i32,
+    /// Relative second difference of depth up to which a surface goes on.
+    pub depth_bend: f64,
+}
+
+impl ValidityConstants {
+    /// Reads them from the shader.
+    ///
+    /// # Errors
+    /// When it has no such constant.
+    pub fn from_shader() -> Result<Self, ConstantError> {
+        Ok(Self {
+            edge_px: shader_constant("validity", "EDGE_PX")?,
+            bleed_px: shader_constant("validity", "BLEED_PX")?,
+            bleed_step_px: shader_constant("validity", "BLEED_STEP_PX")?,
+            depth_bend: shader_constant("validity", "DEPTH_BEND")?,
+        })
+    }
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Marks {
+    /// It is clear of the toy.
+    pub is_clear: bool,
+    /// It shows one surface of the toy.
+    pub is_one_surface: bool,
+    /// It is well clear of the toy.
+    pub is_well_clear: bool,
+}
+
+/// Marks a texel by the reversed depth of the physical toy around it, which is 0 where the toy is not and goes on beyond
+/// the border as it is there.
+#[must_use]
+pub fn mark(depth: &Raster<f64>, constants: &ValidityConstants, texel: UVec2) -> Marks {
+    let last = depth.size().as_ivec2() - 1;
+    let at = |offset: IVec2| depth.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
+    let is_free = |reach_px: i32, step_px: usize| {
+        let steps = || (-reach_px..=reach_px).step_by(step_px);
+        let mut offsets = steps().flat_map(|y| steps().map(move |x| IVec2::new(x, y)));
+        offsets.all(|offset| at(offset) == 0.0)
+    };
+    let here = at(IVec2::ZERO);
+    // A slope is straight in reversed depth, a step between two surfaces is not.
+    let is_straight = |side: IVec2| {
+        let (before, after) = (at(-side), at(side));
+        before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= constants.depth_bend * here
+    };
+    let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
+    let is_clear = is_free(constants.edge_px, 1);
+    let bleed_step_px = usize::try_from(constants.bleed_step_px).unwrap_or(1);
+    Marks {
+        is_clear,
+        is_one_surface: here > 0.0 && sides.into_iter().all(is_straight),
+        is_well_clear: is_clear && is_free(constants.bleed_px, bleed_step_px),
+    }
+}

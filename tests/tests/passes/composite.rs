@@ -1,0 +1,95 @@
+//! `composite` where it shows the receiver, in codes of the finished picture.
+
+use app_core::internals::PixelRect;
+use app_core::toy::PosedMesh;
+use glam::{DVec2, DVec4, UVec2};
+use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
+use harness::reference::model::centre_px;
+use harness::reference::raster::Raster;
+
+use crate::errors::Errors;
+use crate::photo::unrounded_code;
+use crate::run::{Run, runs};
+use crate::stand::Stand;
+
+/// Whether the toy in a pose is, or may by rounding be, on any of the samples of a pixel of `rect`.
+pub(crate) fn shows_toy(stand: &Stand, posed: &PosedMesh, rect: &PixelRect) -> Raster<bool> {
+    let occluder = stand.occluder(posed);
+    Raster::from_fn(rect.size_px, |texel| {
+        let around = [-0.5, 0.0, 0.5].map(|dy| [-0.5, 0.0, 0.5].map(|dx| DVec2::new(dx, dy)));
+        around.as_flattened().iter().any(|offset| {
+            let at = centre_px(rect.origin_px + texel) + *offset;
+            let (origin, direction) = stand.camera_ray(at);
+            occluder.nearest(origin, direction).is_some()
+        })
+    })
+}
+
+#[test]
+fn receiver_in_codes() {
+    let constants = CompositeConstants::from_shader().unwrap();
+    for run in runs() {
+        let shown = Shown {
+            visibility: run.shown_visibility.clone(),
+            ambient: run.shown_ambient.clone(),
+            solution: run.solution.clone(),
+            residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
+            grids: run.grids.clone(),
+        };
+        let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
+        let texels = Raster::from_fn(run.region.size_px, |texel| texel);
+        let pairs = texels
+            .texels()
+            .iter()
+            .filter(|texel| !hidden.at(**texel))
+            .flat_map(|texel| {
+                let expected = receiver_color(&run.region, &run.pictures, &shown, &constants, *texel);
+                let actual = run.picture.at(*texel);
+                assert_eq!(actual[3], 255, "alpha at {texel}");
+                (0..3).map(move |channel| {
+                    let (actual, [a, b]) = (
+                        f64::from(actual[channel]),
+                        expected.map(|c| unrounded_code(c[channel])),
+                    );
+                    // How still the toy is decides between the two.
+                    (actual, actual.clamp(a.min(b), a.max(b)))
+                })
+            });
+        // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
+        // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a
+        // graphics card are 1/512 of the difference between two texels.
+        Errors::between(pairs).check(&format!("{}, codes", run.stand.setup.name), (0.5, 0.1), 0.7);
+    }
+}
+
+/// Comparisons on setups that never meet a branch say nothing about it.
+#[test]
+fn setups_meet_every_branch() {
+    type Condition = fn(&Run, UVec2) -> bool;
+    let conditions: [(&str, Condition); 4] = [
+        ("on a second receiver", |run, texel| {
+            let point = run.region.receiver_point(centre_px(texel));
+            point.is_some_and(|point| point.receiver == 1)
+        }),
+        ("beside the receiver", |run, texel| {
+            run.region.receiver_point(centre_px(texel)).is_none()
+        }),
+        ("away from every border", |run, texel| {
+            inside_border(&run.region, texel) == 1.0
+        }),
+        ("seen at an inner border", |run, texel| {
+            inside_border(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
+        }),
+    ];
+    for (what, is_met) in conditions {
+        let is_met_somewhere = runs().iter().any(|run| {
+            let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
+            let texels = Raster::from_fn(run.region.size_px, |texel| texel);
+            texels
+                .texels()
+                .iter()
+                .any(|texel| !hidden.at(*texel) && is_met(run, *texel))
+        });
+        assert!(is_met_somewhere, "no pixel is {what}");
+    }
+}

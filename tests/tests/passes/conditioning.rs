@@ -1,0 +1,63 @@
+//! Which lights' strengths the real shadow tells, and what is taken for the others.
+
+use app_core::frame::Warning;
+use app_core::preset::Preset;
+use app_core::scene::Light;
+use glam::DVec3;
+
+use crate::photo::Photo;
+use crate::run::{core_on, input, scene};
+use crate::setups::{SETUPS, Setup};
+use crate::stand::Stand;
+
+const BULB: Light = bulb(0.32);
+const TOGETHER: [Light; 2] = [BULB; 2];
+const APART: [Light; 2] = [BULB, bulb(-0.32)];
+
+const fn bulb(x_m: f64) -> Light {
+    Light::Sphere {
+        position_in_world: DVec3::new(x_m, 0.62, 0.02),
+        radius_m: 0.02,
+    }
+}
+
+/// Shares of the two lights in green, and the lights that are said not to be told.
+fn told(lights: &'static [Light]) -> (Vec<f32>, Option<Vec<usize>>) {
+    let stand = Stand::new(Setup { lights, ..SETUPS[0] });
+    let photo = Photo::plain(2);
+    let mut core = core_on(scene(&stand, &photo.plate(&stand)), Preset::Balanced).unwrap();
+    core.frame(&input(&stand, &photo.frame(&stand, &stand.physical)))
+        .unwrap();
+    let direct_fractions = core.read_fit().unwrap().unwrap().receivers[0].direct_fraction;
+    let warnings = core.read_fit_warnings().unwrap().into_iter();
+    let mut lights = warnings.filter_map(|warning| match warning {
+        Warning::LightsUnderConstrained { lights } => Some(lights),
+        _ => None,
+    });
+    (
+        direct_fractions[..2]
+            .iter()
+            .map(|direct_fraction| direct_fraction[1])
+            .collect(),
+        lights.next(),
+    )
+}
+
+#[test]
+fn of_shadows_that_fall_together_only_the_sum_is_told() {
+    let (direct_fractions, not_told) = told(&TOGETHER);
+    assert_eq!(not_told, Some(vec![0, 1]), "{direct_fractions:?}");
+    // 0.38 and 0.2 in the picture.
+    assert!(
+        direct_fractions
+            .iter()
+            .all(|direct_fraction| (direct_fraction - 0.29).abs() < 0.02),
+        "{direct_fractions:?}"
+    );
+    let (direct_fractions, not_told) = told(&APART);
+    assert_eq!(not_told, None, "{direct_fractions:?}");
+    assert!(
+        (direct_fractions[0] - 0.38).abs() < 0.02 && (direct_fractions[1] - 0.2).abs() < 0.02,
+        "{direct_fractions:?}"
+    );
+}

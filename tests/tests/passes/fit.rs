@@ -1,0 +1,155 @@
+//! `fit` with `fit_solve`: sums of 32 bits over workgroups against sums of 64.
+
+use app_core::scene::MAX_RECEIVERS;
+use glam::{DVec3, UVec2};
+use harness::reference::fit::{
+    FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_radiance,
+};
+use harness::reference::model::{ReceiverSolution, Solution, centre_px};
+use harness::reference::raster::Raster;
+
+use crate::errors::Errors;
+use crate::photo::truth;
+use crate::run::{Run, runs};
+
+/// What the core starts from.
+fn start(n_lights: usize) -> Solution {
+    let constants = FitConstants::from_shaders().unwrap();
+    let direct_fraction = constants.prior_direct_fraction / f64::from(u32::try_from(n_lights).unwrap());
+    let receiver = ReceiverSolution {
+        bounce: DVec3::splat(constants.prior_bounce),
+        direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
+        contrast: DVec3::ZERO,
+    };
+    Solution {
+        gain: DVec3::ONE,
+        intensities: vec![DVec3::ONE; n_lights],
+        receivers: vec![receiver; MAX_RECEIVERS],
+        toy: vec![DVec3::ZERO; 2 + n_lights],
+    }
+}
+
+fn receiver_values(solution: &Solution, receiver: usize) -> impl Iterator<Item = f64> + '_ {
+    let of_receiver = &solution.receivers[receiver];
+    let colors = [solution.gain, of_receiver.bounce, of_receiver.contrast].into_iter();
+    colors
+        .chain(of_receiver.direct_fractions.iter().copied())
+        .flat_map(|color| color.to_array())
+}
+
+#[test]
+fn receiver() {
+    let constants = FitConstants::from_shaders().unwrap();
+    for run in runs() {
+        let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
+        let mut expected = start(run.region.lights.len());
+        for receiver in 0..run.stand.receivers.len() {
+            let of_receiver = (receiver, &samples[..]);
+            expected = fit_receiver(
+                &run.region,
+                of_receiver,
+                &expected,
+                &constants,
+                run.plan.n_fit_steps,
+            );
+            let values = |solution| receiver_values(solution, receiver);
+            let errors = Errors::between(values(&run.solution).zip(values(&expected)));
+            // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and
+            // 8 bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits:
+            // 4e-6.
+            errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
+        }
+    }
+}
+
+/// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.
+#[test]
+fn receiver_finds_the_light_that_was_there() {
+    for run in runs() {
+        let truth = truth(run.region.lights.len());
+        let pairs = |colors: [DVec3; 2]| (0..3).map(move |channel| (colors[0][channel], colors[1][channel]));
+        // Codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map, and the faint light that no list
+        // names. Measured: 8e-3 and 8e-4.
+        let n_receivers = run.stand.receivers.len();
+        let direct_fractions = |solution: &Solution| -> Vec<DVec3> {
+            let receivers = solution.receivers[..n_receivers].iter();
+            receivers
+                .flat_map(|receiver| receiver.direct_fractions.clone())
+                .collect()
+        };
+        let direct_fractions = direct_fractions(&run.solution)
+            .into_iter()
+            .zip(direct_fractions(&truth))
+            .flat_map(|(a, b)| pairs([a, b]));
+        Errors::between(direct_fractions)
+            .check_all(&format!("{}, true direct_fractions", run.stand.setup.name), 0.02);
+        Errors::between(pairs([run.solution.gain, truth.gain])).check_all("true gain", 0.01);
+    }
+}
+
+/// Pixels that the device took for one surface of the toy, with normals from rays.
+fn toy_samples(run: &Run) -> Vec<ToySample> {
+    let (stand, stride_px) = (&run.stand, run.plan.fit_stride_px);
+    let occluder = stand.occluder(&stand.physical);
+    let taken = Raster::from_fn(run.region.size_px / stride_px, |texel| texel * stride_px);
+    let sample = |texel: &UVec2| {
+        let (origin, direction) = stand.camera_ray(centre_px(run.plan.region.origin_px + *texel));
+        let hit = occluder
+            .nearest(origin, direction)
+            .filter(|_| run.validity.at(*texel).y > 0.0)?;
+        Some(ToySample {
+            frame: run.pictures.frame.at(*texel),
+            base: run.gbuffer_base.at(*texel),
+            normal: stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3(),
+            received: run.gbuffer_received.at(*texel),
+        })
+    };
+    taken.texels().iter().filter_map(sample).collect()
+}
+
+#[test]
+fn toy() {
+    let constants = FitConstants::from_shaders().unwrap();
+    for run in runs() {
+        let samples = toy_samples(run);
+        assert!(samples.len() > 80, "the toy is too small");
+        // The exposure is that of the receivers.
+        let start = Solution {
+            gain: run.solution.gain,
+            ..start(run.region.lights.len())
+        };
+        let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+        // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
+        let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
+            toy_radiance(solution, sample.normal, sample.received)
+        };
+        let pairs = samples.iter().flat_map(|sample| {
+            let (actual, expected) = (light(&run.solution, sample), light(&expected, sample));
+            (0..3).map(move |channel| (actual[channel], expected[channel]))
+        });
+        // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.
+        Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), 1e-3);
+    }
+}
+
+/// The map is worked out in 32 bits from the fit that the references are fed with.
+#[test]
+fn share_of_the_lights_over_the_receiver() {
+    for run in runs() {
+        let size = run.direct_fraction.size();
+        let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
+        let expected = Raster::from_fn(size, |texel| {
+            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
+                return DVec3::ZERO;
+            };
+            let lights = 0..run.region.lights.len();
+            lights
+                .map(|i| run.solution.light_fraction(&run.region, i, point))
+                .sum()
+        });
+        for (actual, expected) in run.direct_fraction.texels().iter().zip(expected.texels()) {
+            let error = (actual - expected).abs().max_element();
+            assert!(error < 1e-4, "{}: {actual}, not {expected}", run.stand.setup.name);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The light and the exposure of one picture against those of another: what changes is followed, and nothing else.
+
+use app_core::core::Core;
+use app_core::internals::linear_from_srgb;
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use glam::{DVec3, UVec2};
+use harness::reference::model::centre_px;
+
+use crate::composite::shows_toy;
+use crate::errors::Errors;
+use crate::photo::Photo;
+use crate::run::{core_on, input, scene, solution, texel_of};
+use crate::setups::{SETUPS, Setup, WALL};
+use crate::stand::Stand;
+
+/// Codes of the picture of the shown pose, and those of a photograph of it, where neither pose hides the receivers.
+pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f64, f64)> {
+    pairs_beside(
+        stand,
+        &core.read_picture().unwrap(),
+        &photo.frame(stand, &stand.shown),
+    )
+}
+
+/// Codes of two pictures where neither pose hides the receivers.
+pub(crate) fn pairs_beside(stand: &Stand, actual: &Image, expected: &Image) -> Vec<(f64, f64)> {
+    let hidden = [&stand.physical, &stand.shown].map(|posed| shows_toy(stand, posed, &stand.whole_image()));
+    let UVec2 { x: width, y: height } = stand.setup.image_px;
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y)));
+    let beside = texels.filter(|texel| hidden.iter().all(|hidden| !hidden.at(*texel)));
+    beside
+        .flat_map(|texel| {
+            let codes = [actual, expected].map(|image| texel_of(image, texel));
+            (0..3).map(move |channel| (f64::from(codes[0][channel]), f64::from(codes[1][channel])))
+        })
+        .collect()
+}
+
+/// The light at the second moment: exposure and each light's power.
+fn dimmed(photo: &Photo, exposure: DVec3, powers: &[f64]) -> Photo {
+    let mut photo = photo.clone();
+    photo.solution.gain *= exposure;
+    for (i, power) in powers.iter().enumerate() {
+        photo.solution.intensities[i] *= *power;
+    }
+    photo
+}
+
+#[test]
+fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
+    for setup in [SETUPS[1], WALL] {
+        let stand = Stand::new(Setup {
+            image_px: UVec2::new(195, 131),
+            ..setup
+        });
+        let photo = Photo::plain(2);
+        let (plate, first) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
+        for (what, exposure, powers) in [
+            ("exposure", DVec3::new(0.7, 0.8, 0.95), [1.0, 1.0]),
+            ("power", DVec3::ONE, [1.0, 0.35]),
+            ("both", DVec3::new(1.1, 0.95, 0.85), [0.6, 1.2]),
+        ] {
+            let later = dimmed(&photo, exposure, &powers);
+            let mut core = core_on(scene(&stand, &plate), Preset::Balanced).unwrap();
+            core.frame(&input(&stand, &first)).unwrap();
+            let before = codes_beside(&core, &stand, &photo);
+            let second = later.frame(&stand, &stand.physical);
+            let report = core.frame(&input(&stand, &second)).unwrap();
+            assert!(
+                report
+                    .skipped
+                    .iter()
+                    .any(|left_out| left_out.what == "capture path"),
+                "{what}: the place was learned again"
+            );
+            let fitted = solution(&core.read_fit().unwrap().unwrap(), 2);
+            let name = format!("{}, {what}", setup.name);
+            let values = |solution: &harness::reference::model::Solution| {
+                let colors = solution.intensities.iter().chain([&solution.gain]);
+                colors.flat_map(|color| color.to_array()).collect::<Vec<_>>()
+            };
+            let pairs = values(&fitted).into_iter().zip(values(&later.solution));
+            // What a light is known by is its power times its share, which is 0.14 at least. Measured: 0.036.
+            Errors::between(pairs).check_all(&format!("{name}, intensities"), 0.05);
+            // Edges of 64 light points against flattened meshes, and rounding of both pictures. Measured: 0.25 % beyond a
+            // code and a half, 5 codes at worst, before and after alike.
+            Errors::between(before).check(&format!("{name}, codes before"), (1.5, 0.005), 8.0);
+            let after = codes_beside(&core, &stand, &later);
+            Errors::between(after).check(&format!("{name}, codes after"), (1.5, 0.005), 8.0);
+        }
+    }
+}
+
+/// Texels that show sides of the shown toy which are turned away in the physical pose.
+fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
+    let occluder = stand.occluder(&stand.shown);
+    let size = stand.setup.image_px;
+    let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+    let is_hidden = |texel: &UVec2| {
+        let (origin, direction) = stand.camera_ray(centre_px(*texel));
+        occluder.nearest(origin, direction).is_some_and(|hit| {
+            let corner = stand.toy.indices()[3 * hit.triangle] as usize;
+            let to_camera = origin - stand.physical.positions[corner].as_dvec3();
+            stand.physical.normals[corner].as_dvec3().dot(to_camera) < 0.0
+        })
+    };
+    texels.filter(is_hidden).collect()
+}
+
+/// What the camera never saw of the toy is dimmed with the light that it turns to.
+#[test]
+fn hidden_sides_of_the_toy_follow_a_light() {
+    // So that the head turns what is hidden to camera and light.
+    let stand = Stand::seen_from(
+        Setup {
+            image_px: UVec2::new(391, 263),
+            lights: &SETUPS[0].lights[..1],
+            ..SETUPS[0]
+        },
+        DVec3::new(0.26, 0.2, 0.15),
+    );
+    let photo = Photo::plain(1);
+    let later = dimmed(&photo, DVec3::ONE, &[0.4]);
+    let texels = texels_of_hidden_sides(&stand);
+    assert!(texels.len() > 300, "{} texels", texels.len());
+    let mean = |image: &Image| -> DVec3 {
+        let codes = texels.iter().map(|texel| texel_of(image, *texel));
+        let linear = codes.map(|[r, g, b, _]| {
+            DVec3::from([r, g, b].map(|code| f64::from(linear_from_srgb(f32::from(code) / 255.0))))
+        });
+        linear.sum()
+    };
+    let mut core = core_on(scene(&stand, &photo.plate(&stand)), Preset::Balanced).unwrap();
+    let pictures = [&photo, &later].map(|photo| {
+        let frame = photo.frame(&stand, &stand.physical);
+        core.frame(&input(&stand, &frame)).unwrap();
+        core.read_picture().unwrap()
+    });
+    let expected = [&photo, &later].map(|photo| photo.frame(&stand, &stand.shown));
+    let dimmed_to = mean(&pictures[1]) / mean(&pictures[0]);
+    let should = mean(&expected[1]) / mean(&expected[0]);
+    eprintln!("dimmed to {dimmed_to}, should be {should}");
+    // Measured: 0.0096, and 0.11 where the fitted light does not follow.
+    assert!(
+        (dimmed_to - should).abs().max_element() < 0.02,
+        "{dimmed_to}, not {should}"
+    );
+    assert!(
+        should.max_element() < 0.9,
+        "little of it is in the light: {should}"
+    );
+}

@@ -1,0 +1,111 @@
+//! `lit` on scrambled inputs, and onto what was known before.
+
+use glam::{DVec4, UVec2};
+use harness::reference::grid::accumulate;
+use harness::reference::lit::{LitConstants, pool};
+use harness::reference::shader_constant;
+
+use app_core::internals::MAX_CELLS;
+use app_core::wgpu;
+
+use crate::alone::{check_faults, source};
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::numbers::number;
+use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
+
+/// Cells of the largest grid, in workgroups of 8 x 8.
+const WORKGROUPS: [u32; 3] = [8, 8, 2];
+
+/// What rounding makes.
+const ALLOWED: f64 = 1e-5;
+
+/// Sums of values times certainties, and of certainties: of some cells nothing, of some more than is kept.
+fn kept_before() -> Vec<[f32; 4]> {
+    let cell = |k: u32| {
+        let at = UVec2::new(k % 64, k / 64);
+        let certainty = (12.0 * number(at, 70) - 3.0).max(0.0);
+        let value = [71, 72, 73].map(|seed| number(at, seed));
+        let sum = DVec4::from([value[0], value[1], value[2], 1.0]) * certainty;
+        sum.as_vec4().to_array()
+    };
+    (0..u32::try_from(N_CELLS).unwrap()).map(cell).collect()
+}
+
+/// How far cells and sums are off that `source` makes.
+fn errors(source: &str) -> Errors {
+    let (device, scene) = (Device::open(), Scrambled::new());
+    let kept_before = kept_before();
+    let pools = [
+        device.uniform(&scene.grids()),
+        device.storage(bytemuck::cast_slice(&vec![[f32::NAN; 4]; N_CELLS])),
+        device.storage(bytemuck::cast_slice(&kept_before)),
+    ];
+    let maps = [
+        device.map(&scene.image),
+        device.map(&scene.validity),
+        device.map(&scene.visibility),
+        device.filterable(&scene.ambient),
+    ];
+    let linear = device.linear_sampler();
+    let mut own = buffers(0, &pools);
+    own.extend(views(3, &maps));
+    own.push((7, wgpu::BindingResource::Sampler(&linear)));
+    let shared = scene.shared(&device);
+    device.compute(source, "cs_pool", [&buffers(0, &shared), &own], WORKGROUPS);
+    let [cells, accumulated] = [1, 2].map(|k: usize| device.read(&pools[k]));
+
+    let constants = LitConstants::from_shader().unwrap();
+    let max_frames: f64 = shader_constant("lit", "MAX_FRAMES").unwrap();
+    let pictures = scene.pictures(2);
+    let mut pairs = Vec::new();
+    for (receiver, grid) in scene.plane_grids().iter().enumerate() {
+        let fresh = pool(
+            &scene.region,
+            &pictures,
+            &scene.solution,
+            &constants,
+            (receiver, grid),
+        );
+        let n_some = fresh.texels().iter().filter(|cell| cell.certainty > 0.0).count();
+        assert!(
+            n_some > 30 && n_some < fresh.texels().len(),
+            "{n_some} cells are seen"
+        );
+        let first = scene.grids().grids[receiver].first_cell as usize;
+        for (k, fresh) in fresh.texels().iter().enumerate() {
+            let slot = receiver * MAX_CELLS + k;
+            let before = DVec4::from(kept_before[slot].map(f64::from));
+            let (cell, sums) = accumulate(before, *fresh, max_frames);
+            let expected = (cell.value * cell.certainty).extend(cell.certainty);
+            for channel in 0..4 {
+                pairs.push((f64::from(cells[first + k][channel]), expected[channel]));
+                pairs.push((f64::from(accumulated[slot][channel]), sums[channel]));
+            }
+        }
+    }
+    Errors::between(pairs)
+}
+
+#[test]
+fn lit_colours_are_pooled_onto_what_was_known() {
+    // A cell's point within rounding of two pixels may take the other, whose numbers are others. Measured: none does, and
+    // 1e-6 of values up to 8.
+    errors(&source("lit")).check("lit cells and sums", (ALLOWED, 0.01), 4.0);
+}
+
+#[test]
+fn a_fault_in_the_pooling_is_found() {
+    let faults = [
+        ("LIT_POWER: f32 = 8.0", "LIT_POWER: f32 = 7.0"),
+        ("validity, texel, 0).b", "validity, texel, 0).r"),
+        ("f / (fit.gain.rgb * model)", "f / model"),
+        ("smallest(model)", "largest(model)"),
+        ("FULL_SHARE: f32 = 0.25", "FULL_SHARE: f32 = 0.24"),
+        ("MAX_FRAMES: f32 = 8.0", "MAX_FRAMES: f32 = 7.0"),
+        ("sum / max(sum.a, 1.0)", "sum"),
+        ("(vec2f(texel) + 0.5) / globals", "vec2f(texel) / globals"),
+        ("seen == 0.0 || here.receiver != point.receiver", "seen == 0.0"),
+    ];
+    check_faults("lit", &faults, ALLOWED, errors);
+}

@@ -1,0 +1,44 @@
+//! The device against the references, each stage fed with the device's own inputs of that stage, so that errors do not
+//! add up. Small synthetic scenes of odd sizes, whose truth is known.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod alone;
+mod appearance;
+mod baseline;
+mod behind;
+mod casters;
+mod composite;
+mod conditioning;
+mod coverage;
+mod detail;
+mod device;
+mod errors;
+mod estimate;
+mod exposure;
+mod fill;
+mod fit;
+mod inject;
+mod intensities;
+mod lit;
+mod moving;
+mod numbers;
+mod occlusion;
+mod outliers;
+mod overlap;
+mod photo;
+mod plate;
+mod plates;
+mod residual;
+mod resources;
+mod retarget;
+mod run;
+mod scrambled;
+mod search;
+mod self_shadow;
+mod setups;
+mod stand;
+mod tint;
+mod toy;
+mod validity;
+mod withheld;

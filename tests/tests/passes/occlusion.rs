@@ -1,0 +1,87 @@
+//! `occlusion` with `visibility`: flattened meshes against rays.
+
+use app_core::toy::PosedMesh;
+use glam::DVec4;
+use harness::reference::occlusion::Caster;
+use harness::reference::raster::Raster;
+use harness::reference::visibility::visibility_map;
+
+use crate::errors::Errors;
+use crate::run::{Run, runs};
+
+/// Share of a region's texels that may differ by more than half a step of one light point.
+///
+/// Rasterisers snap corners to 1/256 pixel (`subPixelPrecisionBits` of Vulkan), which moves an edge by half of that.
+/// Along the outline of one light point's shadow, one texel in some 200 has a sample that close to it; outlines of 64
+/// light points are some 10^3 texels long in a region of 10^4. Measured: 0.09 %.
+const MAX_LIGHT_SHARE: f64 = 0.005;
+/// The same for a coarse ambient map, where the outlines of 64 directions cross most texels. Measured: 1.3 %.
+const MAX_AMBIENT_SHARE: f64 = 0.03;
+/// Light points that may fall on the other side of an edge in one texel. Measured: 1.
+const MAX_POINTS: f64 = 2.0;
+/// What is stored in 16-bit floats below 1 is off by 2^-12 at most.
+const STORED: f64 = 1.0 / 4096.0;
+
+fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_direct_fraction): (&str, f64)) {
+    let expected = visibility_map(casters, &run.region, actual.size());
+    assert!(
+        expected.texels().iter().any(|visibility| *visibility < 0.5),
+        "{what}: there is no shadow"
+    );
+    let errors = Errors::between(
+        actual
+            .texels()
+            .iter()
+            .copied()
+            .zip(expected.texels().iter().copied()),
+    );
+    let step = 1.0 / f64::from(u32::try_from(casters[0].light_points.len()).unwrap());
+    let what = format!("{}, {what}", run.stand.setup.name);
+    errors.check(
+        &what,
+        (0.5 * step, max_direct_fraction),
+        MAX_POINTS * step + STORED,
+    );
+}
+
+#[test]
+fn visibility_of_each_light() {
+    for run in runs() {
+        let stand = &run.stand;
+        for (i, light) in run.plan.lights.iter().enumerate() {
+            let casters = |posed: &PosedMesh| stand.light_casters(posed, i, light.n_points);
+            let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
+            compare(
+                run,
+                &casters(&stand.physical),
+                &channel(&run.pictures.visibility),
+                ("physical light", MAX_LIGHT_SHARE),
+            );
+            compare(
+                run,
+                &casters(&stand.shown),
+                &channel(&run.shown_visibility),
+                ("shown light", MAX_LIGHT_SHARE),
+            );
+        }
+    }
+}
+
+#[test]
+fn visibility_of_the_ambient_light() {
+    for run in runs() {
+        let (stand, n_directions) = (&run.stand, run.plan.n_ambient_directions);
+        compare(
+            run,
+            &stand.ambient_casters(&stand.physical, n_directions),
+            &run.pictures.ambient,
+            ("physical ambient", MAX_AMBIENT_SHARE),
+        );
+        compare(
+            run,
+            &stand.ambient_casters(&stand.shown, n_directions),
+            &run.shown_ambient,
+            ("shown ambient", MAX_AMBIENT_SHARE),
+        );
+    }
+}

@@ -1,0 +1,212 @@
+//! Plate and frame of a stand, made from the model itself: the fit has an answer that is known.
+
+use std::sync::Arc;
+
+use app_core::scene::Image;
+use app_core::toy::PosedMesh;
+use glam::{DVec2, DVec3, DVec4, UVec2};
+use harness::reference::fit::toy_radiance;
+use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
+use harness::reference::raster::Raster;
+use harness::reference::self_shadow::received;
+use harness::reference::visibility::visibility_map;
+
+use crate::stand::Stand;
+use crate::toy;
+
+const N_POINTS: usize = 64;
+
+/// What the pictures are made with.
+pub(crate) fn truth(n_lights: usize) -> Solution {
+    // On the table, then on the wall, where the second light is behind it.
+    let direct_fractions = [
+        [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)],
+        [DVec3::new(0.7, 0.66, 0.58), DVec3::ZERO],
+    ];
+    let bounces = [DVec3::new(0.25, 0.15, 0.08), DVec3::new(0.1, 0.18, 0.22)];
+    let receivers = bounces
+        .iter()
+        .zip(direct_fractions)
+        .map(|(bounce, direct_fractions)| ReceiverSolution {
+            bounce: *bounce,
+            direct_fractions: direct_fractions[..n_lights].to_vec(),
+            contrast: DVec3::ZERO,
+        });
+    let light = [DVec3::new(0.55, 0.5, 0.48), DVec3::new(0.35, 0.36, 0.4)];
+    Solution {
+        gain: DVec3::new(1.04, 1.0, 0.96),
+        intensities: vec![DVec3::ONE; n_lights],
+        receivers: receivers.collect(),
+        toy: [DVec3::splat(0.4), DVec3::splat(0.15)]
+            .into_iter()
+            .chain(light)
+            .take(2 + n_lights)
+            .collect(),
+    }
+}
+
+/// A point of a receiver, or where the picture goes on beyond all of them: the table without end.
+fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
+    let at = centre_px(texel);
+    let beyond = || ReceiverPoint {
+        receiver: 0,
+        in_plane: region.receivers[0].plane_point(at).unwrap_or_default(),
+    };
+    region.receiver_point(at).unwrap_or_else(beyond)
+}
+
+/// Plate and frame of wood under the true light, with a little that no model explains.
+pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
+    let photo = Photo {
+        solution: truth(stand.setup.lights.len()),
+        albedo: wood,
+        unmodelled: faint_light,
+        paint: |_| DVec3::ONE,
+    };
+    [photo.plate(stand), photo.frame(stand, &stand.physical)]
+}
+
+/// How pictures of a stand are made.
+#[derive(Clone, Debug)]
+pub(crate) struct Photo {
+    pub(crate) solution: Solution,
+    pub(crate) albedo: fn(ReceiverPoint) -> DVec3,
+    /// What comes to the frame alone, in plates.
+    pub(crate) unmodelled: fn(ReceiverPoint) -> DVec3,
+    /// Factor on the toy's base colour, of a triangle.
+    pub(crate) paint: fn(usize) -> DVec3,
+}
+
+impl Photo {
+    /// A smooth table under the true light, and nothing else.
+    pub(crate) fn plain(n_lights: usize) -> Self {
+        Self {
+            solution: truth(n_lights),
+            albedo: smooth,
+            unmodelled: |_| DVec3::ZERO,
+            paint: |_| DVec3::ONE,
+        }
+    }
+
+    /// The place without the toy, linear.
+    pub(crate) fn plate_at(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
+        (self.albedo)(point) * self.solution.plate_falloff(region, point)
+    }
+
+    pub(crate) fn plate(&self, stand: &Stand) -> Arc<Image> {
+        self.exposed_plate(stand, DVec3::ONE)
+    }
+
+    /// The plate at another exposure and white balance.
+    pub(crate) fn exposed_plate(&self, stand: &Stand, gain: DVec3) -> Arc<Image> {
+        let region = stand.region(&stand.whole_image());
+        let plate = Raster::from_fn(region.size_px, |texel| {
+            gain * self.plate_at(&region, point_seen(&region, texel))
+        });
+        Arc::new(image(&plate))
+    }
+
+    /// The toy in a pose, with its shadows.
+    pub(crate) fn frame(&self, stand: &Stand, posed: &PosedMesh) -> Arc<Image> {
+        self.frame_casting(stand, posed, |_| posed)
+    }
+
+    /// The toy in a pose, with each light's shadow of another.
+    pub(crate) fn frame_casting<'a>(
+        &self,
+        stand: &Stand,
+        posed: &PosedMesh,
+        caster_of: impl Fn(usize) -> &'a PosedMesh,
+    ) -> Arc<Image> {
+        let region = stand.region(&stand.whole_image());
+        let size = region.size_px;
+        let light = |i| stand.light_casters(caster_of(i), i, N_POINTS);
+        let lights: Vec<Raster<f64>> = (0..region.lights.len())
+            .map(|i| visibility_map(&light(i), &region, size))
+            .collect();
+        let ambient = visibility_map(&stand.ambient_casters(posed, N_POINTS), &region, size);
+        let occluder = stand.occluder(posed);
+        let light_points: Vec<_> = (0..region.lights.len())
+            .map(|i| stand.light_points(i, N_POINTS))
+            .collect();
+        let frame = Raster::from_fn(size, |texel| {
+            let (origin, direction) = stand.camera_ray(centre_px(texel));
+            if let Some(hit) = occluder.nearest(origin, direction) {
+                let normal = posed.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
+                let at = origin + hit.distance * direction;
+                let received = received(&region, &occluder, &light_points, at, normal);
+                let light = toy_radiance(&self.solution, normal, received);
+                return self.solution.gain
+                    * (self.paint)(hit.triangle)
+                    * toy::base_color(hit.triangle)
+                    * light;
+            }
+            let at = point_seen(&region, texel);
+            let mut visibility = DVec4::ZERO;
+            lights
+                .iter()
+                .enumerate()
+                .for_each(|(i, light)| visibility[i] = light.at(texel));
+            let model = self
+                .solution
+                .receiver_model(&region, at, ambient.at(texel), visibility);
+            self.solution.gain * self.plate_at(&region, at) * (model + (self.unmodelled)(at))
+        });
+        Arc::new(image(&frame))
+    }
+}
+
+/// A place of slow changes of colour, which keep their edges out of comparisons.
+fn smooth(point: ReceiverPoint) -> DVec3 {
+    let at = point.in_plane;
+    let colors = [DVec3::new(0.42, 0.36, 0.3), DVec3::new(0.3, 0.34, 0.4)];
+    colors[point.receiver] * (1.0 + 0.2 * (25.0 * at.x).sin() * (21.0 * at.y).cos())
+}
+
+/// Wood, more or less: grain, knots and a speckle.
+fn wood(point: ReceiverPoint) -> DVec3 {
+    let at = point.in_plane;
+    let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
+    let speckle = (9000.0 * at.x).sin() * (8000.0 * at.y).sin();
+    let colors = [DVec3::new(0.55, 0.42, 0.3), DVec3::new(0.35, 0.4, 0.45)];
+    colors[point.receiver] * (1.0 + 0.22 * grain + 0.08 * speckle)
+}
+
+/// A faint light that no list names.
+fn faint_light(point: ReceiverPoint) -> DVec3 {
+    let middles = [DVec2::new(0.08, 0.03), DVec2::new(-0.03, 0.01)];
+    let from_middle = point.in_plane - middles[point.receiver];
+    0.012 * (-from_middle.length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
+}
+
+fn image(linear: &Raster<DVec3>) -> Image {
+    let code = |color: DVec3| [code(color.x), code(color.y), code(color.z), 255];
+    let rgba8 = linear.texels().iter().flat_map(|color| code(*color)).collect();
+    Image {
+        width_px: linear.size().x,
+        height_px: linear.size().y,
+        rgba8,
+    }
+}
+
+/// The 8-bit code of a linear value.
+pub(crate) fn code(linear: f64) -> u8 {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 255"
+    )]
+    let code = unrounded_code(linear).round() as u8;
+    code
+}
+
+/// The same, before it is rounded. Source: IEC 61966-2-1.
+pub(crate) fn unrounded_code(linear: f64) -> f64 {
+    let linear = linear.clamp(0.0, 1.0);
+    255.0
+        * if linear <= 0.003_130_8 {
+            12.92 * linear
+        } else {
+            1.055 * linear.powf(1.0 / 2.4) - 0.055
+        }
+}

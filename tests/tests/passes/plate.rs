@@ -1,0 +1,171 @@
+//! `plate` against its reference: cameras all around a table and a wall, and pictures of nothing but detail.
+
+use app_core::internals::{PlateView, PlateViews};
+use app_core::scene::MAX_RECEIVERS;
+use glam::{DMat3, DVec3, DVec4, UVec2};
+use harness::reference::plate::{PlateConstants, PlatePhoto, Viewpoint, choose};
+use harness::reference::raster::Raster;
+
+use app_core::internals::PixelRect;
+use app_core::wgpu;
+
+use crate::alone::{Bindings, Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::numbers::numbers;
+use crate::setups::{Setup, WALL};
+use crate::stand::Stand;
+
+/// Before the wall, and behind it.
+const BEFORE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
+const BEHIND: DVec3 = DVec3::new(0.1, 0.25, -0.45);
+/// Beside the first, far to the side, closer, and behind the wall as well.
+const PLATES: [DVec3; 4] = [
+    DVec3::new(0.26, 0.36, 0.34),
+    DVec3::new(-0.4, 0.42, 0.12),
+    DVec3::new(0.05, 0.2, 0.26),
+    DVec3::new(0.0, 0.3, -0.5),
+];
+
+fn stand(offset: DVec3) -> Stand {
+    let setup = Setup {
+        image_px: UVec2::new(161, 123),
+        ..WALL
+    };
+    Stand::seen_from(setup, offset)
+}
+
+fn viewpoint(stand: &Stand, rect: &PixelRect) -> Viewpoint {
+    Viewpoint {
+        region: stand.region(rect),
+        centre_in_anchor: stand.view().camera_in(&stand.anchored[0].world_from_plane),
+    }
+}
+
+fn plates() -> Vec<(Stand, PlatePhoto)> {
+    let plate = |(seed, offset): (u32, &DVec3)| {
+        let stand = stand(*offset);
+        let photo = PlatePhoto {
+            camera: viewpoint(&stand, &stand.whole_image()),
+            picture: numbers(stand.setup.image_px, seed).map(DVec4::truncate),
+            // So that it is told which one a colour is from.
+            gain: DVec3::new(1.0, 0.5, 0.25) * f64::from(seed - 29),
+        };
+        (stand, photo)
+    };
+    (30..).zip(&PLATES).map(plate).collect()
+}
+
+/// What the shader is told, worked out from the cameras.
+fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
+    let cameras = |stand: &Stand| {
+        let mut cameras = [[0.0; 4]; MAX_RECEIVERS];
+        let slots = cameras.iter_mut().zip(&stand.anchored);
+        slots.for_each(|(slot, receiver)| {
+            let camera = stand.view().camera_in(&receiver.world_from_plane);
+            *slot = camera.extend(1.0).as_vec4().to_array();
+        });
+        cameras
+    };
+    let columns = |m: DMat3| m.as_mat3().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
+    let mut views: PlateViews = bytemuck::Zeroable::zeroed();
+    for (slot, (stand, photo)) in views.plates.iter_mut().zip(plates) {
+        let mut plate: PlateView = bytemuck::Zeroable::zeroed();
+        plate.gain = photo.gain.extend(1.0).as_vec4().to_array();
+        plate.camera_in_plane = cameras(stand);
+        let homographies = plate.plate_px_from_plane.iter_mut().zip(&stand.anchored);
+        homographies.for_each(|(slot, receiver)| {
+            *slot = columns(stand.view().image_px_from_plane(&receiver.world_from_plane));
+        });
+        *slot = plate;
+    }
+    PlateViews {
+        camera_in_plane: cameras(here),
+        n_plates: u32::try_from(plates.len()).unwrap(),
+        is_same_view: 0,
+        ..views
+    }
+}
+
+/// How far colours and alpha are off that `source` makes: of all plates, or of one from the other side of the wall.
+fn errors(source: &str) -> Errors {
+    let (device, plates) = (Device::open(), plates());
+    let views = [
+        (BEFORE, &plates[..]),
+        (BEHIND, &plates[..]),
+        (BEFORE, &plates[3..]),
+        (BEHIND, &plates[..1]),
+    ];
+    let of_views = views.map(|(offset, plates)| pairs(&device, source, offset, plates));
+    Errors::between(of_views.concat())
+}
+
+/// Colours and alpha of a view's plate, as they are and as they should be.
+fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePhoto)]) -> Vec<(f64, f64)> {
+    let constants = PlateConstants::from_shader().unwrap();
+    let pictures: Vec<Raster<DVec4>> = plates
+        .iter()
+        .map(|(_, photo)| photo.picture.map(|color| color.extend(1.0)))
+        .collect();
+    let pictures = device.layers(&pictures.iter().collect::<Vec<_>>());
+    let array = pictures.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    });
+    let photos: Vec<PlatePhoto> = plates.iter().map(|(_, photo)| photo.clone()).collect();
+    let here = stand(offset);
+    let rect = PixelRect {
+        origin_px: UVec2::new(9, 4),
+        size_px: UVec2::new(141, 110),
+    };
+    let globals = device.uniform(&here.globals(&rect));
+    let views = device.uniform(&plate_views(&here, plates));
+    let shared: Bindings<'_> = vec![(0, globals.as_entire_binding())];
+    let own: Bindings<'_> = vec![
+        (0, views.as_entire_binding()),
+        (1, wgpu::BindingResource::TextureView(&array)),
+    ];
+    let draw = Draw {
+        source,
+        fragment: "fs_choose",
+        constants: &[],
+        output: 0,
+        size: rect.size_px,
+    };
+    let actual = device.draw(draw, [&shared, &own]);
+    let view = viewpoint(&here, &rect);
+    let expected = Raster::from_fn(rect.size_px, |texel| choose(&view, &photos, &constants, texel));
+    let n_shown = expected.texels().iter().filter(|texel| texel.w == 1.0).count();
+    assert!(
+        n_shown > 1000 && n_shown < expected.texels().len(),
+        "{n_shown} are shown"
+    );
+    let both = actual.texels().iter().zip(expected.texels());
+    both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k])))
+        .collect()
+}
+
+/// A place in a plate is off by some 1e-5 of a pixel, and neighbours by up to 4. Measured: 1.1e-4.
+const ALLOWED: f64 = 1e-3;
+
+#[test]
+fn the_best_of_plates_all_around() {
+    errors(&source("plate")).check_all("plates all around", ALLOWED);
+}
+
+#[test]
+fn a_fault_in_the_choice_is_found() {
+    let faults = [
+        ("FEATHER_PX: f32 = 32.0", "FEATHER_PX: f32 = 31.0"),
+        ("LEAST_COSINE: f32 = 0.1", "LEAST_COSINE: f32 = 0.5"),
+        ("ANGLE_POWER: f32 = 4.0", "ANGLE_POWER: f32 = 3.0"),
+        ("LEAST_WEIGHT: f32 = 0.02", "LEAST_WEIGHT: f32 = 0.03"),
+        ("determinant(there)", "1.0"),
+        ("!is_same_side ||", ""),
+        ("|| is_hidden(k, point)", ""),
+        ("let point = surface_point", "let point = receiver_point"),
+        ("2.0 - 5.0 * s", "2.0 - 4.9 * s"),
+        ("* views.plates[k].gain.rgb", ""),
+    ];
+    check_faults("plate", &faults, ALLOWED, errors);
+}

@@ -1,0 +1,202 @@
+//! The core on each setup, once for all tests, and everything that it made.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
+use app_core::gpu::AdapterChoice;
+use app_core::internals::PixelRect;
+use app_core::internals::Plan;
+use app_core::internals::{Fit, ReceiverFit};
+use app_core::internals::{FloatMap, Map, TintMap};
+use app_core::preset::Preset;
+use app_core::scene::{Image, Plate, Scene};
+use app_core::wgpu;
+use glam::{DVec3, DVec4, UVec2, Vec4};
+use harness::reference::grid::PlaneGrid;
+use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
+use harness::reference::raster::Raster;
+
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::photo::{code, photograph, unrounded_code};
+use crate::setups::SETUPS;
+use crate::stand::Stand;
+
+/// What the device made of a setup.
+pub(crate) struct Run {
+    pub(crate) stand: Stand,
+    pub(crate) plan: Plan,
+    pub(crate) region: Region,
+    /// What the passes saw, as they saw it.
+    pub(crate) pictures: Pictures,
+    /// r where the frame shows the receiver, g where it shows the toy.
+    pub(crate) validity: Raster<DVec4>,
+    pub(crate) gbuffer_base: Raster<DVec3>,
+    /// What the physical toy receives of each light.
+    pub(crate) gbuffer_received: Raster<DVec4>,
+    pub(crate) shown_visibility: Raster<DVec4>,
+    pub(crate) shown_ambient: Raster<f64>,
+    /// How much of each pixel the shown toy covers.
+    pub(crate) coverage: Raster<f64>,
+    pub(crate) solution: Solution,
+    /// Filled residuals on each receiver, their certainty, and where their cells lie.
+    pub(crate) residuals: Vec<Raster<DVec4>>,
+    pub(crate) grids: Vec<PlaneGrid>,
+    /// Tints of the toy's paint, a grid a material.
+    pub(crate) tints: TintMap,
+    /// The lights' share of the plate's radiance.
+    pub(crate) direct_fraction: Raster<DVec3>,
+    /// Codes of the finished picture, within the region.
+    pub(crate) picture: Raster<[u8; 4]>,
+}
+
+static RUNS: LazyLock<Result<Vec<Run>, String>> = LazyLock::new(|| {
+    let decoded = Device::open().decoded();
+    let run = |setup| Run::new(Stand::new(setup), &decoded).map_err(|error| error.to_string());
+    SETUPS.into_iter().map(run).collect()
+});
+
+/// A run for each setup.
+///
+/// # Panics
+/// Where there is no adapter, with what the core says.
+pub(crate) fn runs() -> &'static [Run] {
+    match &*RUNS {
+        Ok(runs) => runs,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+impl Run {
+    fn new(stand: Stand, decoded: &[f64]) -> Result<Self, CoreError> {
+        let [plate, frame] = photograph(&stand);
+        let mut core = core_on(scene(&stand, &plate), Preset::Balanced)?;
+        let report = core.frame(&input(&stand, &frame))?;
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        let plan = core.plan().expect("the toy moves").clone();
+        let (origin, size) = (plan.region.origin_px, plan.region.size_px);
+        let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the toy moves")));
+        let visible = |map: Raster<DVec4>| map.map(|texel| texel.x);
+        let seen_by_shader = |code: u8| decoded[usize::from(code)];
+        let validity = map(Map::Validity)?;
+        let base = map(Map::GbufferBase)?;
+        let fit = core.read_fit()?.expect("the toy moves");
+        let picture = core.read_picture()?;
+        let residuals = core.read_residuals()?;
+        Ok(Self {
+            region: stand.region(&plan.region),
+            pictures: Pictures {
+                frame: crop(&frame, &plan.region, decoded),
+                plate: map(Map::Plate)?.map(DVec4::truncate),
+                seen: validity.map(|texel| texel.x),
+                visibility: map(Map::PhysicalVisibility)?,
+                ambient: visible(map(Map::PhysicalAmbient)?),
+            },
+            validity,
+            // The map is decoded by the standard, the shader by the driver.
+            gbuffer_base: base.map(|texel| {
+                DVec3::from([texel.x, texel.y, texel.z].map(|linear| seen_by_shader(code(linear))))
+            }),
+            gbuffer_received: map(Map::GbufferReceived)?,
+            shown_visibility: map(Map::Visibility)?,
+            shown_ambient: visible(map(Map::Ambient)?),
+            coverage: visible(map(Map::Coverage)?),
+            solution: solution(&fit, stand.setup.lights.len()),
+            residuals: residuals.iter().map(|(_, residual)| raster(residual)).collect(),
+            grids: residuals.iter().map(|(grid, _)| PlaneGrid::from(grid)).collect(),
+            tints: core.read_tints()?.expect("the toy moves"),
+            direct_fraction: map(Map::DirectFraction)?.map(DVec4::truncate),
+            picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
+            stand,
+            plan,
+        })
+    }
+}
+
+/// A core that has a scene.
+pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<Core, CoreError> {
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+    core.set_scene(scene, preset)?;
+    Ok(core)
+}
+
+/// A frame of a stand, from its camera.
+pub(crate) fn input(stand: &Stand, image: &Arc<Image>) -> FrameInput {
+    FrameInput {
+        image: Arc::clone(image),
+        camera: stand.camera,
+        exposure: 1.0,
+        world_from_object: stand.world_from_object,
+        lights: None,
+        shown_pose: stand.shown_pose.clone(),
+    }
+}
+
+pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
+    Scene {
+        name: stand.setup.name.to_owned(),
+        width_px: stand.setup.image_px.x,
+        height_px: stand.setup.image_px.y,
+        toy: Arc::clone(&stand.toy),
+        world_from_object: stand.world_from_object,
+        physical_pose: stand.physical_pose.clone(),
+        receivers: stand.receivers.clone(),
+        lights: stand.setup.lights.to_vec(),
+        plates: vec![plate_of(stand, plate)],
+        probe: None,
+    }
+}
+
+/// A plate that the stand's camera took.
+pub(crate) fn plate_of(stand: &Stand, image: &Arc<Image>) -> Plate {
+    Plate {
+        camera: stand.camera,
+        image: Arc::clone(image),
+    }
+}
+
+pub(crate) fn raster(map: &FloatMap) -> Raster<DVec4> {
+    let texel = |at: UVec2| Vec4::from(map.texels[(at.y * map.width + at.x) as usize]).as_dvec4();
+    Raster::from_fn(UVec2::new(map.width, map.height), texel)
+}
+
+/// A rectangle of a picture, as shaders see it: `decoded` has the linear value of each code.
+pub(crate) fn crop(image: &Image, rect: &PixelRect, decoded: &[f64]) -> Raster<DVec3> {
+    Raster::from_fn(rect.size_px, |texel| {
+        let [r, g, b, _] = texel_of(image, rect.origin_px + texel).map(|code| decoded[usize::from(code)]);
+        DVec3::new(r, g, b)
+    })
+}
+
+pub(crate) fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {
+    let first = 4 * (at.y * image.width_px + at.x) as usize;
+    [0, 1, 2, 3].map(|channel| image.rgba8[first + channel])
+}
+
+/// What the device fitted, as the references have it.
+pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
+    let color = |value: &[f32; 4]| Vec4::from(*value).truncate().as_dvec3();
+    let receiver = |fit: &ReceiverFit| ReceiverSolution {
+        bounce: color(&fit.bounce),
+        direct_fractions: fit.direct_fraction[..n_lights].iter().map(color).collect(),
+        contrast: color(&fit.contrast),
+    };
+    Solution {
+        gain: color(&fit.gain),
+        intensities: fit.intensity[..n_lights].iter().map(color).collect(),
+        receivers: fit.receivers.iter().map(receiver).collect(),
+        toy: fit.toy[..2 + n_lights].iter().map(color).collect(),
+    }
+}
+
+/// What the input of every stage is worth: how far the driver's decoding is from the standard's.
+#[test]
+fn driver_decodes_srgb_within_half_a_code() {
+    let pairs = (0..=255u8)
+        .zip(Device::open().decoded())
+        .map(|(code, linear)| (unrounded_code(linear), f64::from(code)));
+    // A software driver's polynomial measures as 0.34 of a code at worst.
+    Errors::between(pairs).check_all("codes of decoded codes", 0.5);
+}

@@ -1,0 +1,175 @@
+//! Inputs of the passes that learn which hold everything that can be, in neighbouring pixels: what is seen and what is not,
+//! light and none, photographed or estimated.
+
+use app_core::internals::PixelRect;
+use app_core::internals::{Fit, Grid, Grids, MAX_CELLS, N_COLUMNS, ReceiverFit};
+use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};
+use app_core::wgpu;
+use glam::{DVec3, DVec4, UVec2};
+use harness::reference::grid::PlaneGrid;
+use harness::reference::model::{Pictures, Region, Solution};
+use harness::reference::raster::Raster;
+
+use crate::alone::Bindings;
+use crate::device::Device;
+use crate::numbers::{number, numbers};
+use crate::photo::truth;
+use crate::setups::{Setup, WALL};
+use crate::stand::Stand;
+
+/// Pixels of the region for a texel of the ambient map.
+const AMBIENT_DIVISOR: u32 = 5;
+
+/// A work region within the picture of a table and a wall under two lights.
+pub(crate) struct Scrambled {
+    pub(crate) stand: Stand,
+    pub(crate) rect: PixelRect,
+    pub(crate) region: Region,
+    pub(crate) solution: Solution,
+    /// The whole picture.
+    pub(crate) image: Raster<DVec4>,
+    /// Colours, and alpha: 1, a quarter, or 0.
+    pub(crate) plate: Raster<DVec4>,
+    /// Each 0 or 1.
+    pub(crate) validity: Raster<DVec4>,
+    pub(crate) visibility: Raster<DVec4>,
+    /// In steps of 1/256.
+    pub(crate) ambient: Raster<u8>,
+}
+
+impl Scrambled {
+    pub(crate) fn new() -> Self {
+        let stand = Stand::new(Setup {
+            image_px: UVec2::new(173, 131),
+            ..WALL
+        });
+        let rect = PixelRect {
+            origin_px: UVec2::new(21, 10),
+            size_px: UVec2::new(123, 101),
+        };
+        let size = rect.size_px;
+        let mut solution = truth(2);
+        solution.intensities = vec![DVec3::new(0.7, 0.8, 0.6), DVec3::new(1.2, 1.1, 1.3)];
+        // So that no light at all may be left in a channel.
+        solution.receivers[1].bounce.z = 0.0;
+        // So that what faces down would have less than none.
+        solution.toy[1] = DVec3::splat(0.9);
+        let one_in = |n: u32, seed: u32| move |at: UVec2| number(at, seed) * f64::from(n) < 1.0;
+        Self {
+            region: stand.region(&rect),
+            image: numbers(stand.setup.image_px, 1),
+            plate: Raster::from_fn(size, |at| {
+                let alpha = [1.0, 0.25, 1.0, 0.0][(at.x / 3 + at.y / 7) as usize % 4];
+                // Much of it is as dark as what tells nothing.
+                let color = DVec3::from([40, 41, 42].map(|seed| number(at, seed).powi(3)));
+                color.as_vec3().as_dvec3().extend(alpha)
+            }),
+            validity: numbers(size, 3).map(|texel| texel.map(f64::round)),
+            visibility: Raster::from_fn(size, |at| {
+                if one_in(3, 50)(at) {
+                    DVec4::ZERO
+                } else {
+                    DVec4::from([51, 52, 53, 54].map(|seed| number(at, seed)))
+                }
+            }),
+            ambient: Raster::from_fn(size / AMBIENT_DIVISOR, |at| {
+                // Dark blocks, whose insides are dark after filtering, too.
+                let is_dark = number(at / 4, 60) < 0.3;
+                let numbers = [0, 31, 64, 128, 200, 255];
+                if is_dark {
+                    0
+                } else {
+                    numbers[(at.x * 5 + at.y * 3) as usize % 6]
+                }
+            }),
+            stand,
+            rect,
+            solution,
+        }
+    }
+
+    /// What the references see; `seen` is a channel of the evidence.
+    pub(crate) fn pictures(&self, seen: usize) -> Pictures {
+        Pictures {
+            frame: Raster::from_fn(self.rect.size_px, |at| {
+                self.image.at(self.rect.origin_px + at).truncate()
+            }),
+            plate: self.plate.map(DVec4::truncate),
+            seen: self.validity.map(|texel| texel[seen]),
+            visibility: self.visibility.clone(),
+            ambient: self.ambient.map(|code| f64::from(code) / 256.0),
+        }
+    }
+
+    /// Globals and fit, which are group 0.
+    pub(crate) fn shared(&self, device: &Device) -> [wgpu::Buffer; 2] {
+        let fit = device.storage(bytemuck::bytes_of(&fit(&self.solution)));
+        [device.uniform(&self.stand.globals(&self.rect)), fit]
+    }
+
+    /// Grids that do not quite hold the receivers, nor start at the first cell.
+    pub(crate) fn grids(&self) -> Grids {
+        let mut grids = Grids::default();
+        grids.grids[0] = Grid {
+            origin_in_plane: [-0.21, -0.17],
+            cell_m: 0.019,
+            first_cell: 3,
+            size: [23, 18],
+            ..Grid::default()
+        };
+        grids.grids[1] = Grid {
+            origin_in_plane: [-0.12, -0.08],
+            cell_m: 0.011,
+            first_cell: 3 + 23 * 18 + 7,
+            size: [21, 14],
+            ..Grid::default()
+        };
+        grids
+    }
+
+    /// As the references have them.
+    pub(crate) fn plane_grids(&self) -> [PlaneGrid; 2] {
+        let grids = self.grids().grids;
+        [PlaneGrid::from(&grids[0]), PlaneGrid::from(&grids[1])]
+    }
+}
+
+/// Number of cells that all grids can have.
+pub(crate) const N_CELLS: usize = MAX_RECEIVERS * MAX_CELLS;
+
+/// What references found, as the device has it.
+fn fit(solution: &Solution) -> Fit {
+    let color = |value: &DVec3| value.as_vec3().extend(1.0).to_array();
+    let mut fit: Fit = bytemuck::Zeroable::zeroed();
+    fit.gain = color(&solution.gain);
+    let slots = fit.intensity.iter_mut().zip(&solution.intensities);
+    slots.for_each(|(slot, intensity)| *slot = color(intensity));
+    for (slot, receiver) in fit.receivers.iter_mut().zip(&solution.receivers) {
+        let mut direct_fraction = [[0.0; 4]; MAX_LIGHTS];
+        let slots = direct_fraction.iter_mut().zip(&receiver.direct_fractions);
+        slots.for_each(|(slot, direct_fraction)| *slot = color(direct_fraction));
+        *slot = ReceiverFit {
+            bounce: color(&receiver.bounce),
+            direct_fraction,
+            contrast: color(&receiver.contrast),
+        };
+    }
+    let toy: &mut [[f32; 4]; N_COLUMNS] = &mut fit.toy;
+    let slots = toy.iter_mut().zip(&solution.toy);
+    slots.for_each(|(slot, light)| *slot = color(light));
+    fit
+}
+
+/// Buffers bound from a number on, in order.
+pub(crate) fn buffers(first: u32, buffers: &[wgpu::Buffer]) -> Bindings<'_> {
+    (first..)
+        .zip(buffers.iter().map(wgpu::Buffer::as_entire_binding))
+        .collect()
+}
+
+/// Texture views bound from a number on, in order.
+pub(crate) fn views(first: u32, views: &[wgpu::TextureView]) -> Bindings<'_> {
+    (first..)
+        .zip(views.iter().map(wgpu::BindingResource::TextureView))
+        .collect()
+}

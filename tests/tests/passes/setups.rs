@@ -1,0 +1,93 @@
+//! What the passes are compared on: lights, a camera's distance, and whether there is a wall.
+
+use app_core::scene::Light;
+use glam::{DVec3, UVec2};
+
+/// What a pass is compared on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Setup {
+    pub(crate) name: &'static str,
+    pub(crate) image_px: UVec2,
+    pub(crate) lights: &'static [Light],
+    /// Distance of the camera from the toy; what is far off leaves room around the work region.
+    pub(crate) distance_m: f64,
+    /// Height of the toy's feet over the receiver: tracking is never quite right.
+    pub(crate) feet_m: f64,
+    /// Whether a wall stands behind the toy, so that its shadow is broken by the crease.
+    pub(crate) has_wall: bool,
+}
+
+const BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.32, 0.62, 0.02),
+    radius_m: 0.05,
+};
+const OTHER_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(-0.3, 0.7, 0.25),
+    radius_m: 0.03,
+};
+/// Unit vector: -3, 6, -2 over 7, away from the camera, which then sees the shadow.
+const SKY: Light = Light::Directional {
+    direction_to_light_in_world: DVec3::new(-3.0 / 7.0, 6.0 / 7.0, -2.0 / 7.0),
+    angular_radius_rad: 0.06,
+};
+
+const POINT: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.3, 0.5, -0.2),
+    radius_m: 0.0,
+};
+/// Low and before the toy: its shadow goes up the wall.
+const LOW_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(-0.22, 0.27, 0.36),
+    radius_m: 0.02,
+};
+/// Beyond the wall, which it does not shine on.
+const BACK_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.05, 0.75, -0.4),
+    radius_m: 0.04,
+};
+
+const NEAR: Setup = Setup {
+    name: "bulb",
+    image_px: UVec2::new(97, 61),
+    lights: &[BULB],
+    distance_m: 0.42,
+    feet_m: 0.0,
+    has_wall: false,
+};
+/// The shadow of one light goes up a wall that ends within the picture; another light is beyond it.
+pub(crate) const WALL: Setup = Setup {
+    name: "wall",
+    image_px: UVec2::new(163, 119),
+    lights: &[LOW_BULB, BACK_BULB],
+    distance_m: 0.55,
+    has_wall: true,
+    ..NEAR
+};
+/// One light close by, two lights, a directional light on a sunken toy, the hard edge of a lifted one from afar, and a
+/// second receiver.
+pub(crate) const SETUPS: [Setup; 5] = [
+    NEAR,
+    Setup {
+        name: "two bulbs",
+        image_px: UVec2::new(131, 75),
+        lights: &[BULB, OTHER_BULB],
+        distance_m: 0.72,
+        ..NEAR
+    },
+    Setup {
+        name: "directional",
+        lights: &[SKY],
+        distance_m: 0.5,
+        feet_m: -0.004,
+        ..NEAR
+    },
+    Setup {
+        name: "point",
+        image_px: UVec2::new(163, 119),
+        lights: &[POINT],
+        distance_m: 0.9,
+        feet_m: 0.006,
+        ..NEAR
+    },
+    WALL,
+];

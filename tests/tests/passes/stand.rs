@@ -1,0 +1,218 @@
+//! Where the toy stands: camera, receivers, and the poses in stage space.
+
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+use app_core::internals::Globals;
+use app_core::internals::{Bounds, PixelRect};
+use app_core::internals::{AnchoredReceiver, SceneLayout, View, globals};
+use app_core::scene::{Camera, Intrinsics, Pose, Receiver, Surface};
+use app_core::toy::{PosedMesh, Toy};
+use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
+use harness::reference::model::Region;
+
+use crate::setups::Setup;
+use crate::toy;
+
+/// Moment of the clip that is shown.
+const SHOWN_SECS: f64 = 0.8;
+/// What the camera looks at.
+const TARGET: DVec3 = DVec3::new(0.0, 0.05, 0.0);
+
+/// A toy on its receivers under a camera.
+pub(crate) struct Stand {
+    pub(crate) setup: Setup,
+    pub(crate) toy: Arc<Toy>,
+    pub(crate) camera: Camera,
+    pub(crate) world_from_object: DMat4,
+    pub(crate) receivers: Vec<Receiver>,
+    /// As the core has them; the first one's plane is the anchor.
+    pub(crate) anchored: Vec<AnchoredReceiver>,
+    pub(crate) anchor_from_world: DMat4,
+    pub(crate) physical_pose: Pose,
+    pub(crate) shown_pose: Pose,
+    pub(crate) physical: PosedMesh,
+    pub(crate) shown: PosedMesh,
+}
+
+impl Stand {
+    /// Height over the first receiver of the box around the toy, over the physical pose and the whole clip.
+    pub(crate) fn tallest_m(&self) -> f64 {
+        let over_clip = self
+            .toy
+            .bounds_over_clip(self.shown_pose.clip().unwrap())
+            .unwrap();
+        let corners = Bounds {
+            min: over_clip.min.as_dvec3(),
+            max: over_clip.max.as_dvec3(),
+        };
+        let anchor_from_object = self.anchor_from_world * self.world_from_object;
+        let clip = corners
+            .corners()
+            .map(|p| anchor_from_object.transform_point3(p).y);
+        let physical = self.physical.positions.iter().map(|p| f64::from(p.y));
+        clip.chain(physical).fold(f64::MIN, f64::max)
+    }
+
+    pub(crate) fn new(setup: Setup) -> Self {
+        let toy = Toy::from_glb("boxes.glb", &toy::glb()).unwrap();
+        let clip = toy.find_clip(toy::CLIP).unwrap();
+        let world_from_table =
+            DMat4::from_rotation_translation(DQuat::from_rotation_y(0.3), DVec3::new(0.02, 0.015, -0.03));
+        let world_from_object = DMat4::from_rotation_translation(
+            DQuat::from_rotation_y(-0.5),
+            DVec3::new(0.0, 0.015 + setup.feet_m, 0.0),
+        );
+        let receivers = receivers(&world_from_table, setup.has_wall);
+        let anchored = anchored(&receivers, &toy, &world_from_object);
+        let anchor_from_world = anchored[0].world_from_plane.inverse();
+        let pose = |pose: &Pose| {
+            let mut posed = PosedMesh::default();
+            toy.pose(pose, &(anchor_from_world * world_from_object), &mut posed)
+                .unwrap();
+            posed
+        };
+        let size = setup.image_px.as_dvec2();
+        let shown_pose = Pose::Clip {
+            clip,
+            time_secs: SHOWN_SECS,
+        };
+        Self {
+            camera: Camera {
+                intrinsics: Intrinsics {
+                    fx_px: size.x,
+                    fy_px: 1.02 * size.x,
+                    cx_px: 0.5 * size.x + 1.7,
+                    cy_px: 0.5 * size.y - 0.6,
+                },
+                world_from_camera: camera(setup.distance_m * DVec3::new(0.3, 0.6, 0.75).normalize()),
+            },
+            receivers,
+            anchored,
+            physical: pose(&Pose::Authored),
+            physical_pose: Pose::Authored,
+            shown: pose(&shown_pose),
+            shown_pose,
+            toy: Arc::new(toy),
+            setup,
+            world_from_object,
+            anchor_from_world,
+        }
+    }
+
+    /// The same stand with a table of another size.
+    pub(crate) fn on_table(mut self, half_extent_m: f64) -> Self {
+        self.receivers[0].half_extent_m = DVec2::splat(half_extent_m);
+        self.anchored = anchored(&self.receivers, &self.toy, &self.world_from_object);
+        self
+    }
+
+    /// The same stand from another camera, at an offset from what it looks at.
+    pub(crate) fn seen_from(setup: Setup, offset: DVec3) -> Self {
+        let stand = Self::new(setup);
+        Self {
+            camera: Camera {
+                world_from_camera: camera(offset),
+                ..stand.camera
+            },
+            ..stand
+        }
+    }
+
+    pub(crate) fn whole_image(&self) -> PixelRect {
+        PixelRect {
+            origin_px: UVec2::ZERO,
+            size_px: self.setup.image_px,
+        }
+    }
+
+    pub(crate) fn view(&self) -> View {
+        View::new(self.setup.image_px, &self.camera)
+    }
+
+    fn layout(&self) -> SceneLayout<'_> {
+        SceneLayout {
+            receivers: &self.anchored,
+            lights: self.setup.lights,
+            toy_in_anchor: self.physical_centre(),
+        }
+    }
+
+    /// What the references know of `rect` of the camera's picture.
+    pub(crate) fn region(&self, rect: &PixelRect) -> Region {
+        Region::new(&self.view(), rect, &self.layout())
+    }
+
+    /// What the shaders know of it.
+    pub(crate) fn globals(&self, rect: &PixelRect) -> Globals {
+        globals(&self.view(), rect, &self.layout())
+    }
+
+    /// The camera's centre and the direction of the ray through `image_px`, in stage space.
+    pub(crate) fn camera_ray(&self, image_px: DVec2) -> (DVec3, DVec3) {
+        let k = &self.camera.intrinsics;
+        let in_camera = DVec3::new(
+            (image_px.x - k.cx_px) / k.fx_px,
+            (k.cy_px - image_px.y) / k.fy_px,
+            -1.0,
+        );
+        let anchor_from_camera = self.anchor_from_world * self.camera.world_from_camera;
+        (
+            anchor_from_camera.w_axis.truncate(),
+            anchor_from_camera.transform_vector3(in_camera),
+        )
+    }
+
+    /// The middle of the physical toy's bounding box.
+    pub(crate) fn physical_centre(&self) -> DVec3 {
+        let positions = self.physical.positions.iter().map(|position| position.as_dvec3());
+        let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
+        0.5 * (low + positions.fold(DVec3::NEG_INFINITY, DVec3::max))
+    }
+}
+
+/// As the core does.
+fn anchored(receivers: &[Receiver], toy: &Toy, world_from_object: &DMat4) -> Vec<AnchoredReceiver> {
+    let bounds = toy.bounds_of_pose(&Pose::Authored).unwrap();
+    let middle = (0.5 * (bounds.min + bounds.max)).as_dvec3();
+    let toy_in_world = world_from_object.transform_point3(middle);
+    let receivers = receivers.iter();
+    receivers
+        .map(|receiver| AnchoredReceiver::near(receiver, toy_in_world))
+        .collect()
+}
+
+/// The table, and a wall that stands on it behind the toy and reaches a little into it.
+fn receivers(world_from_table: &DMat4, has_wall: bool) -> Vec<Receiver> {
+    let table = Receiver {
+        name: "table".to_owned(),
+        world_from_plane: *world_from_table,
+        half_extent_m: DVec2::new(0.24, 0.2),
+        surface: Surface::Textured,
+    };
+    let half_extent_m = DVec2::new(0.13, 0.07);
+    let table_from_wall = DMat4::from_rotation_translation(
+        DQuat::from_rotation_x(FRAC_PI_2),
+        DVec3::new(0.06, half_extent_m.y - 0.01, -0.06),
+    );
+    let wall = Receiver {
+        name: "wall".to_owned(),
+        world_from_plane: *world_from_table * table_from_wall,
+        half_extent_m,
+        surface: Surface::Textured,
+    };
+    if has_wall { vec![table, wall] } else { vec![table] }
+}
+
+fn camera(offset: DVec3) -> DMat4 {
+    let eye = TARGET + offset;
+    let backward = (eye - TARGET).normalize();
+    let right = DVec3::Y.cross(backward).normalize();
+    let up = backward.cross(right);
+    DMat4::from_cols(
+        right.extend(0.0),
+        up.extend(0.0),
+        backward.extend(0.0),
+        eye.extend(1.0),
+    )
+}

@@ -1,0 +1,71 @@
+//! `validity` on slopes, steps and specks of depth.
+
+use app_core::wgpu;
+use glam::UVec2;
+use harness::reference::raster::Raster;
+use harness::reference::validity::{ValidityConstants, mark};
+
+use crate::alone::{Bindings, Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::numbers::number;
+
+const SIZE: UVec2 = UVec2::new(147, 93);
+
+/// Patches of a toy with slopes of their own and more or less rough; in between nothing, or a speck.
+fn depth(at: UVec2) -> f64 {
+    let patch = at / 24;
+    let is_speck = at.x % 41 == 20 && at.y % 37 == 18;
+    if number(patch, 140) < 0.55 && !is_speck {
+        return 0.0;
+    }
+    // In steps of 2^-12, which 32 bits add up exactly; two of them are as much as a surface may bend here.
+    let slope = |seed: u32, x: u32| (8.0 * number(patch, seed)).floor() * f64::from(x % 24);
+    let rough = (6.0 * number(patch, 143) * number(at, 144)).floor();
+    (1024.0 + slope(141, at.x) + slope(142, at.y) + rough) / 4096.0
+}
+
+/// Marks as they are and as they should be.
+fn errors(source: &str) -> Errors {
+    let device = Device::open();
+    let depth = Raster::from_fn(SIZE, depth);
+    let map = device.depth(&depth);
+    let own: Bindings<'_> = vec![(0, wgpu::BindingResource::TextureView(&map))];
+    let draw = Draw {
+        source,
+        fragment: "fs_mark",
+        constants: &[],
+        output: 0,
+        size: SIZE,
+    };
+    let actual = device.draw(draw, [&[], &own]);
+    let constants = ValidityConstants::from_shader().unwrap();
+    let expected = Raster::from_fn(SIZE, |texel| mark(&depth, &constants, texel));
+    let both = actual.texels().iter().zip(expected.texels());
+    Errors::between(both.flat_map(|(actual, marks)| {
+        let marks = [marks.is_clear, marks.is_one_surface, marks.is_well_clear];
+        (0..3).map(move |k| (actual[k], f64::from(u8::from(marks[k]))))
+    }))
+}
+
+#[test]
+fn what_pixels_show() {
+    errors(&source("validity")).check_all("validity", 0.0);
+}
+
+#[test]
+fn a_fault_in_the_marks_is_found() {
+    let faults = [
+        ("EDGE_PX: i32 = 2", "EDGE_PX: i32 = 1"),
+        ("BLEED_PX: i32 = 8", "BLEED_PX: i32 = 6"),
+        ("BLEED_STEP_PX: i32 = 2", "BLEED_STEP_PX: i32 = 1"),
+        ("DEPTH_BEND: f32 = 0.002", "DEPTH_BEND: f32 = 0.003"),
+        ("&& is_straight(texel, vec2i(1, 1), here)", ""),
+        ("&& is_straight(texel, vec2i(1, -1), here)", ""),
+        (
+            "is_clear && is_well_clear_of_toy(texel)",
+            "is_well_clear_of_toy(texel)",
+        ),
+    ];
+    check_faults("validity", &faults, 0.5, errors);
+}

@@ -1,0 +1,112 @@
+//! A shadow that is withheld tells nothing, and is rebuilt all the same.
+
+use std::sync::Arc;
+
+use app_core::core::Core;
+use app_core::frame::FrameInput;
+use app_core::internals::Map;
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use app_core::wgpu;
+use glam::UVec2;
+use harness::reference::withhold::{lit_of_shader, withhold};
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::Errors;
+use crate::photo::Photo;
+use crate::run::{core_on, input, raster, scene, texel_of};
+use crate::scrambled::{Scrambled, buffers, views};
+use crate::setups::SETUPS;
+use crate::stand::Stand;
+
+const MAGENTA: [u8; 4] = [255, 0, 255, 255];
+
+/// Makes the physical pose from a photograph.
+fn rebuilt(core: &mut Core, stand: &Stand, photograph: &Arc<Image>) -> Image {
+    let input = FrameInput {
+        shown_pose: stand.physical_pose.clone(),
+        ..input(stand, photograph)
+    };
+    core.frame(&input).unwrap();
+    core.read_picture().unwrap()
+}
+
+#[test]
+fn a_withheld_shadow_is_rebuilt_and_tells_nothing() {
+    let stand = Stand::new(SETUPS[0]);
+    let photo = Photo::plain(stand.setup.lights.len());
+    let photograph = photo.frame(&stand, &stand.physical);
+    let mut core = core_on(scene(&stand, &photo.plate(&stand)), Preset::Balanced).unwrap();
+    core.withhold_shadow().unwrap();
+    let first = rebuilt(&mut core, &stand, &photograph);
+
+    let origin_px = core.plan().unwrap().region.origin_px;
+    let validity = raster(&core.read_map(Map::Validity).unwrap().unwrap());
+    let texels = (0..validity.size().y).flat_map(|y| (0..validity.size().x).map(move |x| UVec2::new(x, y)));
+    let withheld: Vec<UVec2> = texels
+        .filter(|texel| validity.at(*texel).w < 1.0)
+        .map(|texel| origin_px + texel)
+        .collect();
+    let pairs = |a: &Image, b: &Image| {
+        let codes = withheld.iter().flat_map(|texel| {
+            let (a, b) = (texel_of(a, *texel), texel_of(b, *texel));
+            (0..3).map(move |k| (f64::from(a[k]), f64::from(b[k])))
+        });
+        Errors::between(codes.collect::<Vec<_>>())
+    };
+    // Rounding of codes, and edges. Measured: 0.61.
+    let off = pairs(&first, &photograph).mean();
+    assert!(off > 0.0 && off < 1.0, "{off:.2} codes");
+
+    let mut defaced = Image::clone(&photograph);
+    for texel in &withheld {
+        let index = 4 * (texel.y * defaced.width_px + texel.x) as usize;
+        defaced.rgba8[index..index + 4].copy_from_slice(&MAGENTA);
+    }
+    let again = rebuilt(&mut core, &stand, &Arc::new(Image::clone(&photograph)));
+    let of_defaced = rebuilt(&mut core, &stand, &Arc::new(defaced));
+    pairs(&of_defaced, &again).check_all("codes of a defaced shadow", 1.0);
+}
+
+/// How far marks are off that `source` makes.
+fn errors(source: &str) -> Errors {
+    let (device, scene) = (Device::open(), Scrambled::new());
+    let maps = [
+        device.map(&scene.validity),
+        device.map(&scene.visibility),
+        device.filterable(&scene.ambient),
+    ];
+    let linear = device.linear_sampler();
+    let mut own = views(0, &maps);
+    own.push((3, wgpu::BindingResource::Sampler(&linear)));
+    let draw = Draw {
+        source,
+        fragment: "fs_withhold",
+        constants: &[],
+        output: 0,
+        size: scene.rect.size_px,
+    };
+    let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+    let marks = (&scene.validity, lit_of_shader().unwrap());
+    let expected = withhold(&scene.region, &scene.pictures(0), &scene.solution, marks);
+    let both = actual.texels().iter().zip(expected.texels());
+    Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
+}
+
+#[test]
+fn evidence_without_the_shadow() {
+    errors(&source("withhold")).check_all("withhold", 0.0);
+}
+
+#[test]
+fn a_fault_in_withholding_is_found() {
+    let faults = [
+        ("LIT: f32 = 0.95", "LIT: f32 = 0.7"),
+        ("|| marks.r == 0.0", ""),
+        ("!is_hit(point) ||", ""),
+        ("smallest(left)", "largest(left)"),
+        ("1.0 - marks.b", "1.0 - marks.g"),
+    ];
+    check_faults("withhold", &faults, 0.0, errors);
+}
