@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DMat4, DVec2};
 
-use crate::geometry::light_points::light_in_plane;
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
@@ -127,7 +127,10 @@ fn lights_in(lights: &[Light], space_from_world: &DMat4) -> [[f32; 4]; MAX_LIGHT
     slots
 }
 
-#[allow(clippy::cast_possible_truncation, reason = "metres in f32 as shaders have them")]
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "metres in f32 as shaders have them"
+)]
 fn narrowed(metres: f64) -> f32 {
     metres as f32
 }

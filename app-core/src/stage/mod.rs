@@ -79,7 +79,9 @@ impl Stage {
     pub(crate) fn new(gpu: &Gpu, scene: Scene, preset: Preset) -> Result<Self, ToyError> {
         let in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         let middle_in_object = 0.5 * (in_object.min + in_object.max);
-        let toy_in_world = scene.world_from_object.transform_point3(middle_in_object.as_dvec3());
+        let toy_in_world = scene
+            .world_from_object
+            .transform_point3(middle_in_object.as_dvec3());
         let usable = usable(&scene, toy_in_world);
         let anchor_from_object = usable.receivers[0].world_from_plane.inverse() * scene.world_from_object;
         let mut posed = PosedMesh::default();

@@ -3,9 +3,9 @@
 use glam::{DMat4, DVec3};
 
 use crate::frame::warning::Warning;
+use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::light_points::light_in_plane;
 use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Scene};
-use crate::geometry::anchored::AnchoredReceiver;
 
 /// What is used of a scene.
 pub(crate) struct Usable {

@@ -1,8 +1,8 @@
 //! What every pass knows of the scene, and the model of the receiver: CPU reference of `common/globals.wgsl` and
 //! `common/model.wgsl`.
 
-use app_core::internals::{PixelRect, PlaneRect};
 use app_core::internals::light_in_plane;
+use app_core::internals::{PixelRect, PlaneRect};
 use app_core::internals::{SceneLayout, View, globals};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 

@@ -37,7 +37,7 @@ impl Stand {
 
     fn casters(&self, posed: &PosedMesh, light_points: impl Fn(&DMat4) -> Vec<DVec4>) -> Vec<Caster> {
         let planes = self
-            .receivers
+            .anchored
             .iter()
             .map(|receiver| receiver.world_from_plane.inverse() * self.anchor_from_world.inverse());
         planes

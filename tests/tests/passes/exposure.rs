@@ -6,7 +6,7 @@ use app_core::internals::Map;
 use app_core::internals::PixelRect;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
-use glam::{DVec2, DVec3, UVec2};
+use glam::{DVec3, UVec2};
 use harness::reference::model::centre_px;
 
 use crate::photo::Photo;

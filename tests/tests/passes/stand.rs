@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use app_core::internals::Globals;
-use app_core::internals::{Bounds, PixelRect};
 use app_core::internals::{AnchoredReceiver, SceneLayout, View, globals};
+use app_core::internals::{Bounds, PixelRect};
 use app_core::scene::{Camera, Intrinsics, Pose, Receiver, Surface};
 use app_core::toy::{PosedMesh, Toy};
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};

@@ -1,5 +1,6 @@
 //! Plans, the work region, the points over a light and the presets: everything that is decided without a device.
 
+mod anchored;
 mod conditioning;
 mod light_points;
 mod outliers;

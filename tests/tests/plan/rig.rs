@@ -1,8 +1,8 @@
 //! A camera over a receiver, projected by hand: dot products with axes, no matrix.
 
 use app_core::internals::Globals;
-use app_core::internals::{Bounds, PixelRect};
 use app_core::internals::{AnchoredReceiver, PlaneRect, SceneLayout, View, globals};
+use app_core::internals::{Bounds, PixelRect};
 use app_core::scene::{Camera, Intrinsics, Light, Surface};
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
