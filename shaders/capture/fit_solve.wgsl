@@ -199,6 +199,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
     accumulated[slot] = sums[lane] * min(1.0, MAX_FRAMES * fresh_energy / energy);
   }
   if lane >= 3u { return; }
+  if step.subject == SUBJECT_INTENSITIES { solution.gain[lane] *= step.exposure_ratio; }
   // Without any evidence the starting values stay.
   if step.subject == SUBJECT_TOY {
     if energy > 0.0 { solve_toy(lane); }

@@ -18,4 +18,6 @@ struct FitStep {
   stride_px: u32,
   // 1 in the last step: its sums are kept for the frames to come.
   is_last: u32,
+  // Exposure of this picture over that of the one before, for SUBJECT_INTENSITIES; 1 once it is taken into the gain.
+  exposure_ratio: f32,
 }

@@ -63,7 +63,7 @@ pub enum Check {
         /// Difference from which on a texel is an outlier.
         tolerance: f64,
         /// Largest share of outliers among all texels, 0 to 1.
-        max_direct_fraction: f64,
+        max_share: f64,
     },
 }
 
@@ -196,10 +196,7 @@ impl Difference {
     fn meets(&self, check: &Check) -> bool {
         match *check {
             Check::MaxAbs(bound) => self.max_abs <= bound,
-            Check::Outliers {
-                tolerance,
-                max_direct_fraction,
-            } => self.share_above(tolerance) <= max_direct_fraction,
+            Check::Outliers { tolerance, max_share } => self.share_above(tolerance) <= max_share,
         }
     }
 

@@ -39,7 +39,7 @@ const FULL_RED_CODES: f64 = 16.0;
 pub const ON_SOFTWARE: &[Check] = &[
     Check::Outliers {
         tolerance: 2.0,
-        max_direct_fraction: 1e-3,
+        max_share: 1e-3,
     },
     Check::MaxAbs(64.0),
 ];
@@ -49,7 +49,7 @@ pub const ON_SOFTWARE: &[Check] = &[
 pub const ON_HARDWARE: &[Check] = &[
     Check::Outliers {
         tolerance: 3.0,
-        max_direct_fraction: 0.02,
+        max_share: 0.02,
     },
     Check::MaxAbs(160.0),
 ];

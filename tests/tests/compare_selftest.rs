@@ -110,7 +110,7 @@ fn a_nan_fails_whatever_is_allowed() {
         Check::MaxAbs(f64::INFINITY),
         Check::Outliers {
             tolerance: f64::INFINITY,
-            max_direct_fraction: 1.0,
+            max_share: 1.0,
         },
     ];
     let mut spoilt = map();
@@ -172,11 +172,11 @@ fn every_check_counts() {
     };
     let few = Check::Outliers {
         tolerance: 2.0,
-        max_direct_fraction: 0.01,
+        max_share: 0.01,
     };
     let none = Check::Outliers {
         tolerance: 2.0,
-        max_direct_fraction: 0.0,
+        max_share: 0.0,
     };
     assert!(pair.check(&[few]).is_ok());
     assert!(pair.check(&[few, Check::MaxAbs(64.0)]).is_ok());

@@ -71,7 +71,7 @@ impl Core {
         let sums = self.gpu.read_buffer(&model.state.fit_sums)?;
         let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
         let told = light_conditioning(&sums, model.region.plan.lights.len());
-        let lights = stage.light_indices.iter().zip(told);
+        let lights = stage.light_indices().iter().zip(told);
         Ok(lights
             .filter_map(|(light, told)| (told < LEAST_CONDITIONING).then_some(*light))
             .collect())

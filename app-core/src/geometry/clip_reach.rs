@@ -1,4 +1,5 @@
-//! What a toy reaches in its physical pose and over a whole clip, in stage space: bounds that no camera changes.
+//! What a toy reaches in its physical pose, over a whole clip and in poses shown besides, in anchor space: bounds that no
+//! camera changes.
 
 use glam::{DMat4, DVec3};
 
@@ -40,6 +41,22 @@ impl ClipReach {
             bounds: Bounds::around(outline.points()),
             outline,
         })
+    }
+
+    /// Takes in a pose of the same toy, which a tracker gave or which lies between the moments; tells whether it reached
+    /// farther than those before.
+    pub(crate) fn grow(&mut self, posed: &PosedMesh) -> bool {
+        let mut has_grown = false;
+        for point in points(posed) {
+            if !self.outline.holds(point) {
+                self.outline.include(point);
+                has_grown = true;
+            }
+        }
+        if has_grown {
+            self.bounds = Bounds::around(self.outline.points());
+        }
+        has_grown
     }
 
     /// What toy and shadows reach in a view.

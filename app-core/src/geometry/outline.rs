@@ -40,6 +40,15 @@ impl Outline {
         }
     }
 
+    /// Whether a point lies no farther out than those that were included, but for the slack.
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        let offset = point - self.middle;
+        let (slot, directions) = bin(offset);
+        let mut known = self.farthest[slot].iter().zip(directions);
+        known.all(|(known, direction)| offset.dot(direction) <= (1.0 + SLACK) * known.dot(direction))
+    }
+
     /// The points that bound it.
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         let is_first =

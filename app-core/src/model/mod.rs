@@ -13,6 +13,7 @@ pub(crate) mod state;
 
 use glam::Vec4;
 
+use crate::geometry::bounds::Sphere;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
@@ -125,6 +126,12 @@ impl Model {
         }
         self.order = Order::new(&plan);
         self.region.follow(gpu, plan, globals);
+    }
+
+    /// Moves lights and toy, whose number and materials stay.
+    pub(crate) fn relocate(&mut self, gpu: &Gpu, light_points: Vec<Vec<Vec4>>, toy: &Sphere) {
+        self.lighting.relocate(gpu, light_points);
+        self.state.tints.surround(gpu, toy);
     }
 
     /// The codes of the region's picture.

@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, UVec2, Vec3};
 
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::PixelRect;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
@@ -10,8 +11,6 @@ use crate::passes::globals::columns;
 use crate::passes::plate::{MAX_PLATES, PlateView, PlateViews};
 use crate::scene::{MAX_RECEIVERS, Plate, Scene};
 
-/// Cameras closer than this, in matrix elements, are one camera.
-pub(crate) const SAME_CAMERA: f64 = 1e-6;
 /// Places along each side of the region where it is checked that a plate shows them.
 const N_COVERED: u32 = 17;
 
@@ -23,24 +22,24 @@ pub(crate) struct PlateChoice {
     pub(crate) is_same_view: bool,
 }
 
-/// Chooses from the scene's plates for a camera that looks at `toy_in_world`.
-pub(crate) fn choose(scene: &Scene, world_from_camera: &DMat4, toy_in_world: DVec3) -> PlateChoice {
+/// Chooses from the scene's plates for a camera that looks at `toy_in_world`; what is worked on has `corners_in_world`.
+pub(crate) fn choose(
+    scene: &Scene,
+    view: &View,
+    corners_in_world: &[DVec3],
+    toy_in_world: DVec3,
+) -> PlateChoice {
     let plates = &scene.plates;
-    let is_same = |plate: &Plate| {
-        plate
-            .camera
-            .world_from_camera
-            .abs_diff_eq(*world_from_camera, SAME_CAMERA)
-    };
+    let is_same = |plate: &Plate| is_same_view([&view_of(scene, plate), view], corners_in_world);
     if let Some(same) = plates.iter().position(is_same) {
         return PlateChoice {
             indices: vec![same],
             is_same_view: true,
         };
     }
-    let direction = |camera: &DMat4| (camera.w_axis.truncate() - toy_in_world).normalize_or_zero();
-    let from_here = direction(world_from_camera);
-    let cosine = |index: &usize| direction(&plates[*index].camera.world_from_camera).dot(from_here);
+    let direction = |view: &View| (view.camera_in(&DMat4::IDENTITY) - toy_in_world).normalize_or_zero();
+    let from_here = direction(view);
+    let cosine = |index: &usize| direction(&view_of(scene, &plates[*index])).dot(from_here);
     let mut indices: Vec<usize> = (0..plates.len()).collect();
     indices.sort_by(|a, b| cosine(b).total_cmp(&cosine(a)));
     indices.truncate(MAX_PLATES);

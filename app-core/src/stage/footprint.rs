@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::Stage;
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
@@ -9,24 +11,25 @@ use crate::frame::warning::Warning;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::clip_reach::ClipReach;
 use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
+use crate::passes::globals::BORDER_PX;
 use crate::passes::plate::PlateViews;
 use crate::plan::LeftOut;
 use crate::plates::choice::{PlateChoice, choose, covered_fraction, plate_views};
 use crate::preset::Settings;
 use crate::scene::Camera;
-use crate::toy::{ClipId, ToyError};
-
-use crate::passes::globals::BORDER_PX;
+use crate::toy::ToyError;
 
 /// The fade at the region's border, and what the toy may reach beyond its region between two moments of a clip.
 const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
 
-/// Where a frame is worked on: the same for all frames of one clip and camera.
+/// Where a frame is worked on: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {
-    pub(super) clip: Option<ClipId>,
-    pub(super) camera: Camera,
+    camera: Camera,
     pub(super) view: View,
+    /// Corners of what toy and shadows reach.
+    pub(super) corners_in_world: Vec<DVec3>,
     pub(super) region: PixelRect,
     pub(super) bounds: Bounds,
     pub(super) plane_rects: Vec<PlaneRect>,
@@ -68,42 +71,44 @@ impl Stage {
         if is_physical && !self.is_shadow_withheld {
             return Ok(Err(PassThrough::PhysicalPose));
         }
-        if self.lights.is_empty() {
+        if self.lights.used.is_empty() {
             return warned(Warning::NoLight);
         }
         let needs_plate = matches!(self.preset.settings(), Settings::Baseline(_));
         if needs_plate && self.scene.plates.is_empty() {
             return warned(Warning::NoPlate);
         }
-        let (clip, camera) = (input.shown_pose.clip(), &input.camera);
-        let is_known = |known: &&Arc<Footprint>| known.clip == clip && known.camera == *camera;
-        if let Some(known) = self.cached_footprint.as_ref().filter(is_known) {
+        self.reach_shown_pose(input)?;
+        let camera = &input.camera;
+        if let Some(known) = self.cached_footprint.as_ref()
+            && known.camera == *camera
+        {
             return Ok(Ok(Arc::clone(known)));
         }
         let view = self.view(camera);
         if view.camera_in(&self.layout().world_from_anchor()).y <= 0.0 {
             return warned(Warning::CameraBelowReceiver);
         }
-        self.ensure_reach(clip)?;
         let footprint = self.footprint_in(view, camera).map(Arc::new);
         self.cached_footprint.clone_from(&footprint);
         Ok(footprint.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
     }
 
-    /// Where the clip whose reach is known is worked on in a view; none when it is out of the picture.
+    /// Where what is reached is worked on in a view; none when it is out of the picture.
     fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
         let (layout, reach) = (self.layout(), self.reach.as_ref()?);
         let on_view = reach.on_view(&view, &layout);
         let region = on_view.region()?.grown(REGION_MARGIN_PX, view.image_px);
         let plane_rects = on_view.plane_rects();
+        let corners_in_world = corners_in_world(&layout, &reach.bounds, &plane_rects);
         let toy_in_world = layout.world_from_anchor().transform_point3(reach.bounds.centre());
-        let choice = choose(&self.scene, &camera.world_from_camera, toy_in_world);
+        let choice = choose(&self.scene, &view, &corners_in_world, toy_in_world);
         Some(Footprint {
-            clip: reach.clip,
             camera: *camera,
             bounds: reach.bounds,
             plate_views: plate_views(&self.scene, &layout, &view, &choice, &self.plates.gains),
             plate_fraction: covered_fraction(&self.scene, &layout, &view, &region, &choice),
+            corners_in_world,
             region,
             plane_rects,
             choice,
@@ -111,17 +116,45 @@ impl Stage {
         })
     }
 
-    /// Makes `reach` what toy and shadows reach in the physical pose and over all of `clip`.
-    fn ensure_reach(&mut self, clip: Option<ClipId>) -> Result<(), ToyError> {
-        if self.reach.as_ref().is_none_or(|known| known.clip != clip) {
-            let physical = &self.scene.physical_pose;
-            self.reach = Some(ClipReach::new(
-                &self.scene.toy,
-                &self.anchor_from_object,
-                (physical, clip),
-                &mut self.posed,
-            )?);
+    /// Poses the toy as it is to be shown, and makes `reach` hold it.
+    ///
+    /// A clip is looked through at once, so that the region rarely grows while it plays; poses by nodes are only known when
+    /// they come.
+    fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
+        let clip = input.shown_pose.clip();
+        let (physical, anchor_from_object) = (&self.scene.physical_pose, self.anchor_from_object());
+        let known = self.reach.take().filter(|known| known.clip == clip);
+        let mut reach = match known {
+            Some(known) => known,
+            None => {
+                self.cached_footprint = None;
+                let poses = (physical, clip);
+                ClipReach::new(&self.scene.toy, &anchor_from_object, poses, &mut self.posed)?
+            }
+        };
+        let shown = &input.shown_pose;
+        self.scene.toy.pose(shown, &anchor_from_object, &mut self.posed)?;
+        if reach.grow(&self.posed) {
+            self.cached_footprint = None;
         }
+        self.reach = Some(reach);
         Ok(())
     }
+}
+
+fn corners_in_world(layout: &SceneLayout<'_>, toy: &Bounds, plane_rects: &[PlaneRect]) -> Vec<DVec3> {
+    let world_from_anchor = layout.world_from_anchor();
+    let of_toy = toy.corners().map(|p| world_from_anchor.transform_point3(p));
+    let reached = layout.receivers.iter().zip(plane_rects);
+    let on_receivers = reached
+        .filter(|(_, rect)| rect.min.is_finite() && rect.max.is_finite())
+        .flat_map(|(receiver, rect)| {
+            let corners = rect.corners().into_iter();
+            corners.map(|p| {
+                receiver
+                    .world_from_plane
+                    .transform_point3(DVec3::new(p.x, 0.0, p.y))
+            })
+        });
+    of_toy.chain(on_receivers).collect()
 }

@@ -2,6 +2,7 @@
 
 mod footprint;
 pub(crate) mod method;
+mod placement;
 mod reuse;
 mod supported;
 
@@ -29,27 +30,30 @@ use crate::plan::{Change, LeftOut};
 use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
-use crate::scene::{Camera, Image, Light, Scene};
+use crate::scene::{Camera, Image, Scene};
 use crate::toy::{PosedMesh, ToyError};
 
 use footprint::Footprint;
 use method::Method;
-use supported::usable;
+use supported::{Lights, Receivers};
 
 /// A scene on the device.
 pub(crate) struct Stage {
     scene: Scene,
     preset: Preset,
-    lights: Vec<Light>,
-    /// Their places in the scene's list.
-    pub(crate) light_indices: Vec<usize>,
     receivers: Vec<AnchoredReceiver>,
-    anchor_from_object: DMat4,
+    receivers_warning: Option<Warning>,
+    lights: Lights,
+    /// Where the object stands that was learned from.
+    world_from_object: DMat4,
+    /// Of the physical pose, in object space.
+    bounds_in_object: Bounds,
+    /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
-    /// What the clip shown last reaches.
+    /// What the clip shown last reaches, with the poses shown so far.
     reach: Option<ClipReach>,
-    /// Where the latest frame was worked on.
+    /// Footprint of the latest frame.
     cached_footprint: Option<Arc<Footprint>>,
     toy: ToyMesh,
     posed: PosedMesh,
@@ -61,29 +65,34 @@ pub(crate) struct Stage {
     state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
     reached_rects: Vec<PlaneRect>,
-    standing_warnings: Vec<Warning>,
     pub(crate) output: Texture,
 }
 
-/// What was learned, and of which camera.
+/// The method with its state, and the latest frame that this was learned from.
 struct MethodState {
-    camera: Camera,
     method: Method,
-    /// Its inputs were replaced: learn again.
-    is_stale: bool,
-    /// The camera picture that was worked on last.
+    view: View,
+    /// Relative, of `image`.
+    exposure: f64,
     image: Option<Arc<Image>>,
+    /// Visibilities were injected after it was learned.
+    is_visibility_outdated: bool,
+    /// The object or the lights moved after it was learned.
+    is_placement_outdated: bool,
 }
 
 impl Stage {
     pub(crate) fn new(gpu: &Gpu, scene: Scene, preset: Preset) -> Result<Self, ToyError> {
         let in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
-        let middle_in_object = 0.5 * (in_object.min + in_object.max);
+        let bounds_in_object = Bounds {
+            min: in_object.min.as_dvec3(),
+            max: in_object.max.as_dvec3(),
+        };
         let toy_in_world = scene
             .world_from_object
-            .transform_point3(middle_in_object.as_dvec3());
-        let usable = usable(&scene, toy_in_world);
-        let anchor_from_object = usable.receivers[0].world_from_plane.inverse() * scene.world_from_object;
+            .transform_point3(bounds_in_object.centre());
+        let receivers = Receivers::new(&scene.receivers, toy_in_world);
+        let anchor_from_object = receivers.anchored[0].world_from_plane.inverse() * scene.world_from_object;
         let mut posed = PosedMesh::default();
         scene
             .toy
@@ -91,23 +100,23 @@ impl Stage {
         let size_px = UVec2::new(scene.width_px, scene.height_px);
         let frame = Texture::picture(gpu, "frame", size_px);
         Ok(Self {
+            bounds_in_object,
             physical_bounds: Bounds::around(posed.positions.iter().map(|p| p.as_dvec3())),
             toy: ToyMesh::new(gpu, &scene.toy, &posed),
             posed,
             frame_codes: frame.codes(gpu),
             frame,
             frame_image: None,
-            plates: PlateStore::new(gpu, &scene, &usable.receivers),
+            plates: PlateStore::new(gpu, &scene, &receivers.anchored),
             present: present::Pass::new(gpu),
             state: None,
             reached_rects: Vec::new(),
-            standing_warnings: usable.warnings,
-            lights: usable.lights,
-            light_indices: usable.light_indices,
-            receivers: usable.receivers,
+            lights: Lights::new(&scene.lights, &receivers.anchored),
+            receivers: receivers.anchored,
+            receivers_warning: receivers.warning,
             output: Texture::target(gpu, "output", size_px, OUTPUT_FORMAT),
             preset,
-            anchor_from_object,
+            world_from_object: scene.world_from_object,
             scene,
             is_shadow_withheld: false,
             reach: None,
@@ -133,6 +142,11 @@ impl Stage {
         self.state.as_ref().map(|state| &state.method)
     }
 
+    /// Indices, in the list that they were given in, of the lights in use.
+    pub(crate) fn light_indices(&self) -> &[usize] {
+        &self.lights.indices
+    }
+
     /// Drops what was learned, so that the next frame learns anew.
     pub(crate) fn forget(&mut self) {
         self.state = None;
@@ -142,7 +156,7 @@ impl Stage {
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
         if let Some(state) = &mut self.state {
             state.method.inject(gpu, maps);
-            state.is_stale = true;
+            state.is_visibility_outdated = true;
         }
     }
 
@@ -153,11 +167,13 @@ impl Stage {
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
         self.take_image(recorder.gpu, &input.image);
+        self.follow_placement(recorder.gpu, input)?;
+        let about_scene = self.receivers_warning.iter().chain(&self.lights.warnings);
         let mut report = FrameReport {
             ran: Vec::new(),
             skipped: Vec::new(),
             region: None,
-            warnings: self.standing_warnings.clone(),
+            warnings: about_scene.cloned().collect(),
         };
         let made_by = match self.footprint(input)? {
             Err(reason) => {
@@ -165,7 +181,7 @@ impl Stage {
                 None
             }
             Ok(footprint) => {
-                self.encode_region(recorder, input, &footprint, &mut report)?;
+                self.encode_region(recorder, input, &footprint, &mut report);
                 self.state.as_ref()
             }
         };
@@ -180,21 +196,20 @@ impl Stage {
         input: &FrameInput,
         footprint: &Footprint,
         report: &mut FrameReport,
-    ) -> Result<(), ToyError> {
-        // First, so that a pose that fails leaves nothing half learned.
-        self.scene
-            .toy
-            .pose(&input.shown_pose, &self.anchor_from_object, &mut self.posed)?;
+    ) {
         let gpu = recorder.gpu;
         self.toy.shown.write(gpu, &self.posed);
         let change = self.update_method(gpu, input, footprint);
-        if let Some(state) = &mut self.state {
-            state.image = Some(Arc::clone(&input.image));
-        }
-        let Some(state) = &self.state else {
-            return Ok(());
+        let Some(state) = &mut self.state else {
+            return;
         };
-        let method = &state.method;
+        #[allow(clippy::cast_possible_truncation, reason = "both within 1e9 of 1")]
+        let exposure_ratio = (input.exposure / state.exposure) as f32;
+        state.exposure = input.exposure;
+        state.image = Some(Arc::clone(&input.image));
+        let Some(MethodState { method, .. }) = &self.state else {
+            return;
+        };
         if change >= Change::Picture {
             let views = match method {
                 Method::Model(_) => footprint.plate_views,
@@ -204,6 +219,7 @@ impl Stage {
         }
         let pictures = Pictures {
             frame: &self.frame.view,
+            exposure_ratio,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
         };
@@ -217,7 +233,6 @@ impl Stage {
         report.skipped.extend_from_slice(method.left_out());
         report.region = Some(method.region());
         report.warnings.extend(self.plate_warning(footprint));
-        Ok(())
     }
 
     /// Lays the region over the camera frame, or passes the frame through where nothing was worked on.
@@ -248,8 +263,8 @@ impl Stage {
     fn layout(&self) -> SceneLayout<'_> {
         SceneLayout {
             receivers: &self.receivers,
-            lights: &self.lights,
-            toy_in_anchor: self.physical_bounds.centre(),
+            lights: &self.lights.used,
+            toy_in_anchor: self.toy_in_anchor(),
         }
     }
 

@@ -1,9 +1,9 @@
-//! Makes what was learned fit the frame: starts from nothing, follows the camera, or leaves it as it is.
+//! Decides how much of the method's state a frame can reuse, and makes the state fit the frame.
 
 use std::mem;
 use std::sync::Arc;
 
-use glam::UVec2;
+use glam::{UVec2, Vec4};
 
 use super::footprint::Footprint;
 use super::method::Method;
@@ -13,6 +13,7 @@ use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, uniform};
 use crate::frame::input::FrameInput;
 use crate::frame::warning::Warning;
+use crate::geometry::displacement::is_same_view;
 use crate::geometry::light_points::light_points;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::gpu::context::Gpu;
@@ -23,7 +24,7 @@ use crate::model::state::grids::{grids_over, holds};
 use crate::passes::globals::{Globals, globals};
 use crate::passes::plate::PlateViews;
 use crate::plan::{Change, SceneFacts};
-use crate::plates::choice::{SAME_CAMERA, covered_fraction, exposed};
+use crate::plates::choice::{covered_fraction, exposed};
 use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use crate::scene::{Light, Plate};
@@ -31,63 +32,70 @@ use crate::scene::{Light, Plate};
 /// Sizes of the region under a moving camera, so that it keeps one for a while.
 const REGION_STEP_PX: u32 = 64;
 
-/// What a frame asks of what was learned.
-enum Step {
-    /// It does not fit: learn from nothing.
-    Start,
-    /// It fits, but its inputs were replaced: learn from nothing with the same textures.
-    Again,
-    /// The view is new.
-    Follow,
-    /// The picture is new.
-    Look,
+/// How much of the method's state a frame can reuse; each takes in those before it.
+enum Reuse {
+    /// Not even its targets.
     Nothing,
+    /// Targets and pipelines: object or lights moved.
+    Targets,
+    /// The same, with the work region: visibilities were injected.
+    Region,
+    /// What was learned of the scene, in another view.
+    SceneState,
+    /// What was learned of the view too; the picture is new.
+    View,
+    /// All but the pose that is shown.
+    Picture,
 }
 
 impl Stage {
-    /// Makes what was learned fit the frame; tells how much of it is new.
+    /// Makes the method's state fit the frame; tells how much of it is to be learned anew.
     pub(super) fn update_method(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) -> Change {
         self.plates.load(gpu, &self.scene, &footprint.choice.indices);
         self.reached_rects = united(&self.reached_rects, &footprint.plane_rects);
-        match self.step(input, footprint) {
-            Step::Start => {
+        match self.reusable(input, footprint) {
+            Reuse::Nothing => {
                 self.start(gpu, input, footprint);
                 Change::Scene
             }
-            Step::Again => Change::Scene,
-            Step::Follow => {
-                self.follow(gpu, input, footprint);
+            Reuse::Targets => {
+                self.relocate(gpu, input, footprint);
+                Change::Scene
+            }
+            Reuse::Region => Change::Scene,
+            Reuse::SceneState => {
+                self.follow(gpu, footprint);
                 Change::View
             }
-            Step::Look => Change::Picture,
-            Step::Nothing => Change::Pose,
+            Reuse::View => Change::Picture,
+            Reuse::Picture => Change::Pose,
         }
     }
 
-    fn step(&mut self, input: &FrameInput, footprint: &Footprint) -> Step {
+    fn reusable(&mut self, input: &FrameInput, footprint: &Footprint) -> Reuse {
         let Some(state) = &mut self.state else {
-            return Step::Start;
+            return Reuse::Nothing;
         };
         let has_grids = match &state.method {
             Method::Model(model) => holds(&model.state.layout, &footprint.plane_rects),
             Method::Baseline(_) => true,
         };
-        let is_same_camera = state.camera.intrinsics == input.camera.intrinsics
-            && state
-                .camera
-                .world_from_camera
-                .abs_diff_eq(input.camera.world_from_camera, SAME_CAMERA);
-        let is_within = is_same_camera && state.method.region().contains(&footprint.region);
+        let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
+            && state.method.region().contains(&footprint.region);
+        // What was injected belongs to one view.
+        let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         if !has_grids {
-            Step::Start
+            Reuse::Nothing
+        } else if mem::take(&mut state.is_placement_outdated) {
+            Reuse::Targets
         } else if !is_within {
-            Step::Follow
-        } else if mem::take(&mut state.is_stale) {
-            Step::Again
+            Reuse::SceneState
+        } else if is_visibility_outdated {
+            Reuse::Region
         } else if is_same_image(state.image.as_ref(), &input.image) {
-            Step::Nothing
+            Reuse::Picture
         } else {
-            Step::Look
+            Reuse::View
         }
     }
 
@@ -104,43 +112,57 @@ impl Stage {
             }
         };
         self.state = Some(MethodState {
-            camera: input.camera,
             method,
-            is_stale: false,
+            view: footprint.view.clone(),
+            exposure: input.exposure,
             image: None,
+            is_visibility_outdated: false,
+            is_placement_outdated: false,
         });
     }
 
-    /// Takes what is known to another view.
-    fn follow(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+    /// Follows the camera to another view.
+    fn follow(&mut self, gpu: &Gpu, footprint: &Footprint) {
         let Some(mut state) = self.state.take() else {
             return;
         };
-        state.camera = input.camera;
-        let size_px = moving_size(
-            state.method.region().size_px,
-            &footprint.region,
-            footprint.view.image_px,
-        );
-        let region = footprint.region.within(size_px, footprint.view.image_px);
-        match self.preset.settings() {
-            Settings::Model(settings) => {
-                if let Method::Model(model) = &mut state.method {
-                    let plan = model
-                        .region
-                        .plan
-                        .for_view(&self.facts(footprint, region), &self.settings(settings));
-                    model.follow(gpu, plan, &globals(&footprint.view, &region, &self.layout()));
-                }
+        let region = region_in(&state.method, footprint);
+        match (self.preset.settings(), &mut state.method) {
+            (Settings::Model(settings), Method::Model(model)) => {
+                let facts = self.facts(footprint, region);
+                let plan = model.region.plan.for_view(&facts, &self.settings(settings));
+                model.follow(gpu, plan, &globals(&footprint.view, &region, &self.layout()));
             }
-            Settings::Baseline(settings) => {
-                if let Method::Baseline(baseline) = &mut state.method {
-                    let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
-                    baseline.follow(gpu, plan, &globals, &uniform);
-                }
+            (Settings::Baseline(settings), Method::Baseline(baseline)) => {
+                let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
+                baseline.follow(gpu, plan, &globals, &uniform);
+            }
+            _ => return,
+        }
+        state.view = footprint.view.clone();
+        self.state = Some(state);
+    }
+
+    /// Follows the object and the lights to another place, from where all is learned anew.
+    fn relocate(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        if let Some(state) = &self.state
+            && let (Settings::Model(settings), Method::Model(model)) = (self.preset.settings(), &state.method)
+        {
+            let facts = self.facts(footprint, region_in(&state.method, footprint));
+            let plan = Plan::new(&facts, &self.settings(settings));
+            let known = &model.region.plan;
+            if plan.lights != known.lights || plan.self_shadow != known.self_shadow {
+                return self.start(gpu, input, footprint);
             }
         }
-        self.state = Some(state);
+        self.follow(gpu, footprint);
+        if let Some(mut state) = self.state.take() {
+            if let Method::Model(model) = &mut state.method {
+                let light_points = self.light_points(&model.region.plan);
+                model.relocate(gpu, light_points, &self.toy.physical.around);
+            }
+            self.state = Some(state);
+        }
     }
 
     fn settings(&self, preset: ModelSettings) -> ModelSettings {
@@ -166,7 +188,7 @@ impl Stage {
         let n_receivers = self.receivers.len() as u32;
         SceneFacts {
             region,
-            penumbra_px: self.lights.iter().map(widest_px).collect(),
+            penumbra_px: self.lights.used.iter().map(widest_px).collect(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),
         }
@@ -205,18 +227,24 @@ impl Stage {
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
         let globals = globals(&footprint.view, &plan.region, &self.layout());
         let toy = (&self.toy.physical.around, self.toy.n_materials());
-        let state = SceneState::new(gpu, grids_over(&self.reached_rects), self.lights.len(), toy);
-        let points = self.lights.iter().zip(&plan.lights);
-        let points = points
+        let n_lights = self.lights.used.len();
+        let state = SceneState::new(gpu, grids_over(&self.reached_rects), n_lights, toy);
+        let light_points = self.light_points(&plan);
+        Method::Model(Box::new(Model::new(gpu, plan, &globals, light_points, state)))
+    }
+
+    /// The points of each light, as many as are planned.
+    fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+        let lights = self.lights.used.iter().zip(&plan.lights);
+        lights
             .map(|(light, planned)| self.points_of(light, planned.n_points))
-            .collect();
-        Method::Model(Box::new(Model::new(gpu, plan, &globals, points, state)))
+            .collect()
     }
 
     /// Points over a light in the space of each receiver in turn: the same ones, so that shadows meet where receivers do.
-    fn points_of(&self, light: &Light, n_points: usize) -> Vec<glam::Vec4> {
+    fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
         let world_from_anchor = self.layout().world_from_anchor();
-        let target = self.physical_bounds.centre();
+        let target = self.toy_in_anchor();
         let points = light_points(light, &world_from_anchor.inverse(), target, n_points);
         let planes = self
             .receivers
@@ -243,6 +271,13 @@ impl Stage {
         let plan = BaselinePlan::new(&self.facts(footprint, region), settings);
         (plan, globals, uniform)
     }
+}
+
+/// The region that a footprint asks for, of a size that it can keep for a while.
+fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
+    let image_px = footprint.view.image_px;
+    let size_px = moving_size(method.region().size_px, &footprint.region, image_px);
+    footprint.region.within(size_px, image_px)
 }
 
 /// The size a region takes under a moving camera: as it is while that is enough, else the next step.

@@ -22,7 +22,7 @@ const MAX_POINTS: f64 = 2.0;
 /// What is stored in 16-bit floats below 1 is off by 2^-12 at most.
 const STORED: f64 = 1.0 / 4096.0;
 
-fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_direct_fraction): (&str, f64)) {
+fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share): (&str, f64)) {
     let expected = visibility_map(casters, &run.region, actual.size());
     assert!(
         expected.texels().iter().any(|visibility| *visibility < 0.5),
@@ -37,11 +37,7 @@ fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_direc
     );
     let step = 1.0 / f64::from(u32::try_from(casters[0].light_points.len()).unwrap());
     let what = format!("{}, {what}", run.stand.setup.name);
-    errors.check(
-        &what,
-        (0.5 * step, max_direct_fraction),
-        MAX_POINTS * step + STORED,
-    );
+    errors.check(&what, (0.5 * step, max_share), MAX_POINTS * step + STORED);
 }
 
 #[test]

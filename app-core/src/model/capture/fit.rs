@@ -57,6 +57,7 @@ shared_struct! {
         pub receiver: u32,
         pub stride_px: u32,
         pub is_last: u32,
+        pub exposure_ratio: f32,
     }
 }
 
@@ -84,8 +85,9 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// What the shaders know of step `index`.
-    pub(crate) fn step(&self, plan: &Plan, index: u32) -> FitStep {
+    /// What the shaders know of step `index`, for a picture of `exposure_ratio` times the exposure of the one before.
+    pub(crate) fn step(&self, plan: &Plan, index: u32, exposure_ratio: f32) -> FitStep {
+        let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
         #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
         let n_columns = 2 + plan.lights.len() as u32;
         FitStep {
@@ -96,6 +98,7 @@ impl Task {
             receiver: self.receiver,
             stride_px: plan.fit_stride_px,
             is_last: u32::from(index + 1 == self.n_steps),
+            exposure_ratio: if is_first_of_picture { exposure_ratio } else { 1.0 },
         }
     }
 }

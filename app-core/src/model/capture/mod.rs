@@ -162,7 +162,7 @@ impl CapturePath<'_> {
             rows: &targets.rows,
         };
         for index in 0..task.n_steps {
-            let step = task.step(&self.region.plan, index);
+            let step = task.step(&self.region.plan, index, self.pictures.exposure_ratio);
             self.passes.fit.encode(recorder, &inputs, &step, targets);
             self.passes
                 .fit_solve

@@ -101,6 +101,13 @@ impl Lighting {
         self.lights.iter().map(|light| light.points.clone()).collect()
     }
 
+    /// Moves the lights: `points` are as many as before.
+    pub(crate) fn relocate(&mut self, gpu: &Gpu, points: Vec<Vec<Vec4>>) {
+        for (light, points) in self.lights.iter_mut().zip(points) {
+            light.write(gpu, points);
+        }
+    }
+
     /// Encodes one step for a toy in a pose.
     pub(crate) fn encode(
         &self,

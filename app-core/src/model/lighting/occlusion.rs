@@ -64,24 +64,30 @@ pub(crate) struct LightPointsBuffer {
     pub(crate) points: Vec<Vec4>,
     /// Points of the light; each is in `points` once a receiver.
     pub(crate) n_points: u32,
+    /// Size of the maps and of the region, in texels and pixels.
+    sizes: (UVec2, UVec2),
     uniform: wgpu::Buffer,
 }
 
 impl LightPointsBuffer {
-    /// For maps of `size_px` texels over a region of `region_px` pixels.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        points: Vec<Vec4>,
-        n_receivers: u32,
-        (size_px, region_px): (UVec2, UVec2),
-    ) -> Self {
+    /// For maps of so many texels over a region of so many pixels.
+    pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, sizes: (UVec2, UVec2)) -> Self {
         let n_points = u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1);
-        let uniform = LightPoints::new(&points, n_points, (size_px, region_px));
         Self {
-            uniform: gpu.uniform("light points", &uniform),
+            uniform: gpu.uniform("light points", &LightPoints::new(&points, n_points, sizes)),
             points,
             n_points,
+            sizes,
         }
+    }
+
+    /// Replaces the points by as many.
+    pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>) {
+        gpu.write(
+            &self.uniform,
+            &[LightPoints::new(&points, self.n_points, self.sizes)],
+        );
+        self.points = points;
     }
 
     /// The points in stage space, which is that of the first receiver.

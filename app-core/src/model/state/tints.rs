@@ -79,6 +79,12 @@ impl Tints {
         }
     }
 
+    /// Lays the grids around the toy in another place; what they hold is to be forgotten.
+    pub(crate) fn surround(&mut self, gpu: &Gpu, around: &Sphere) {
+        self.layout = tint_grid(around, self.layout.n_materials as usize);
+        gpu.write(&self.grid, &[self.layout]);
+    }
+
     /// Waits for the device and returns the grid, and the finest cells of each material.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<TintMap, GpuError> {
         let cells: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&self.cells)?);

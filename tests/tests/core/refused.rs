@@ -1,46 +1,26 @@
-//! What a shell may do to the core: pictures that do not fit, poses without a clip, frames that pass through in between.
-
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+//! What a shell may hand over by mistake: it is refused by name, and nothing that was learned is lost.
 
 use std::sync::Arc;
 
+use app_core::CoreError;
 use app_core::frame::{FrameInput, Path};
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::scene::{Image, Light, Pose, Scene};
-use app_core::session::{Capture, Session};
-use app_core::wgpu::{Instance, InstanceDescriptor};
-use app_core::{Core, CoreError};
+use app_core::scene::{Light, Pose, Scene};
 use glam::{DMat4, DVec3};
-use harness::files::Folder;
 
-const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
-
-fn core() -> Core {
-    let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-    pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap()
-}
-
-fn session() -> Capture {
-    Capture::open(Folder::open(BUNDLED).unwrap()).unwrap()
-}
-
-fn picture_of(core: &mut Core, input: &FrameInput) -> Vec<u8> {
-    core.frame(input).unwrap();
-    core.read_picture().unwrap().rgba8
-}
+use crate::bundled::{core, first_input, open_core, picture_of, scene};
 
 #[test]
 fn pictures_that_do_not_fit_are_refused() {
-    let (session, mut core) = (session(), core());
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    assert!(matches!(core.frame(&input), Err(CoreError::NoScene)));
+    let mut core = core();
+    let input = first_input();
+    assert!(matches!(open_core().frame(&input), Err(CoreError::NoScene)));
 
     let wide = Scene {
         width_px: 9000,
         height_px: 100,
         plates: Vec::new(),
-        ..session.scene().clone()
+        ..scene()
     };
     let refused = core.set_scene(wide, Preset::Balanced);
     assert!(matches!(
@@ -51,7 +31,7 @@ fn pictures_that_do_not_fit_are_refused() {
         })
     ));
 
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
     let mut cut = input.image.as_ref().clone();
     cut.rgba8.pop();
     let refused = core.frame(&FrameInput {
@@ -71,9 +51,9 @@ fn pictures_that_do_not_fit_are_refused() {
 /// What a tracker or an app may hand over by mistake is refused by name, and costs nothing that was learned.
 #[test]
 fn values_that_cannot_be_are_refused_by_name() {
-    let (session, mut core) = (session(), core());
-    let scene = session.scene().clone();
-    let good = FrameInput::from(&session.frame(0).unwrap());
+    let mut core = core();
+    let scene = scene();
+    let good = first_input();
     let spoiled = |field: &str, spoil: &dyn Fn(&mut FrameInput)| {
         let mut input = good.clone();
         spoil(&mut input);
@@ -121,12 +101,12 @@ fn values_that_cannot_be_are_refused_by_name() {
 
 #[test]
 fn a_failed_pose_leaves_nothing_half_learned() {
-    let (session, mut core) = (session(), core());
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    let mut core = core();
+    let input = first_input();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
     let expected = picture_of(&mut core, &input);
 
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
     let shown_pose = Pose::Clip {
         clip: input.shown_pose.clip().unwrap(),
         time_secs: f64::NAN,
@@ -139,58 +119,4 @@ fn a_failed_pose_leaves_nothing_half_learned() {
         Err(CoreError::Toy(_))
     ));
     assert!(picture_of(&mut core, &input) == expected);
-}
-
-#[test]
-fn the_pose_as_authored_is_a_pose_like_any_other() {
-    let (session, mut core) = (session(), core());
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    let posed = Scene {
-        physical_pose: input.shown_pose.clone(),
-        ..session.scene().clone()
-    };
-    core.set_scene(posed, Preset::Balanced).unwrap();
-    assert!(core.frame(&input).unwrap().region.is_none());
-    assert!(
-        core.frame(&FrameInput {
-            shown_pose: Pose::Authored,
-            ..input
-        })
-        .unwrap()
-        .region
-        .is_some()
-    );
-}
-
-#[test]
-fn the_toys_colours_are_those_of_the_latest_picture() {
-    let (session, mut core) = (session(), core());
-    let first = FrameInput::from(&session.frame(0).unwrap());
-    let dimmed: Vec<u8> = first
-        .image
-        .rgba8
-        .chunks_exact(4)
-        .flat_map(|p| [p[0] / 2, p[1] / 2, p[2] / 2, 255])
-        .collect();
-    let image = Arc::new(Image {
-        rgba8: dimmed,
-        ..first.image.as_ref().clone()
-    });
-    let second = FrameInput {
-        image,
-        ..first.clone()
-    };
-    let at_rest = FrameInput {
-        shown_pose: session.scene().physical_pose.clone(),
-        ..second.clone()
-    };
-
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
-    core.frame(&first).unwrap();
-    let expected = picture_of(&mut core, &second);
-
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
-    core.frame(&first).unwrap();
-    core.frame(&at_rest).unwrap();
-    assert!(picture_of(&mut core, &second) == expected);
 }

@@ -1,0 +1,70 @@
+//! Where the toy stands and which lights shine on it: at first as the scene says, then as the frames do.
+
+use glam::{DMat4, DVec3};
+
+use super::Stage;
+use super::supported::Lights;
+use crate::frame::input::FrameInput;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::displacement::between_poses;
+use crate::gpu::context::Gpu;
+use crate::scene::Light;
+use crate::toy::ToyError;
+
+/// What was learned of an object in one pose holds in another one closer than this in the picture: below the noise of any
+/// tracker, and below what shows.
+const SAME_POSE_PX: f64 = 0.1;
+
+impl Stage {
+    /// Takes over the frame's pose of the object and its lights, where they differ from those that were learned under.
+    pub(super) fn follow_placement(&mut self, gpu: &Gpu, input: &FrameInput) -> Result<(), ToyError> {
+        let mut is_moved = false;
+        if self.is_object_moved(input) {
+            self.place_object(gpu, &input.world_from_object)?;
+            is_moved = true;
+        }
+        let listed: &[Light] = input.lights.as_deref().unwrap_or(&self.scene.lights);
+        if *listed != self.lights.listed {
+            self.lights = Lights::new(listed, &self.receivers);
+            is_moved = true;
+        }
+        if is_moved {
+            self.reach = None;
+            self.reached_rects.clear();
+            self.cached_footprint = None;
+            if let Some(state) = &mut self.state {
+                state.is_placement_outdated = true;
+            }
+        }
+        Ok(())
+    }
+
+    fn is_object_moved(&self, input: &FrameInput) -> bool {
+        let poses = [&self.world_from_object, &input.world_from_object];
+        let corners_in_object = self.bounds_in_object.corners();
+        poses[0] != poses[1]
+            && between_poses(&self.view(&input.camera), poses, corners_in_object) > SAME_POSE_PX
+    }
+
+    fn place_object(&mut self, gpu: &Gpu, world_from_object: &DMat4) -> Result<(), ToyError> {
+        self.world_from_object = *world_from_object;
+        self.scene.toy.pose(
+            &self.scene.physical_pose,
+            &self.anchor_from_object(),
+            &mut self.posed,
+        )?;
+        self.physical_bounds = Bounds::around(self.posed.positions.iter().map(|p| p.as_dvec3()));
+        self.toy.physical.write(gpu, &self.posed);
+        Ok(())
+    }
+
+    /// To the anchor, which stays where it was put for the scene, from the object as it stands now.
+    pub(super) fn anchor_from_object(&self) -> DMat4 {
+        self.layout().world_from_anchor().inverse() * self.world_from_object
+    }
+
+    /// The middle of the physical toy.
+    pub(super) fn toy_in_anchor(&self) -> DVec3 {
+        self.physical_bounds.centre()
+    }
+}

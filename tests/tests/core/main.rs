@@ -1,0 +1,7 @@
+//! The core as a shell uses it, on the bundled session.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod bundled;
+mod refused;
+mod reuse;
