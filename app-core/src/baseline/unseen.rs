@@ -11,8 +11,9 @@ use crate::scene::MAX_LIGHTS;
 const N_SETS: usize = 1 << MAX_LIGHTS;
 
 impl Baseline {
-    /// Waits for the device and returns what real shadow was not seen, for the pose shown last.
-    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+    /// Waits for the device and returns what real shadow was not seen, for the pose shown last. `light_indices` are those of
+    /// the lights in use, in the scene's list.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu, light_indices: &[usize]) -> Result<Vec<Warning>, GpuError> {
         if self.plan.is_constant {
             return Ok(Vec::new());
         }
@@ -21,7 +22,7 @@ impl Baseline {
             return Ok(vec![Warning::NothingToSample]);
         }
         let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
-        let unseen = unseen(&needed.unwrap_or_default(), &seen);
+        let unseen = unseen(&needed.unwrap_or_default(), &seen, light_indices);
         let is_any = !unseen.is_empty();
         Ok(is_any
             .then_some(Warning::ShadowsUnseen { unseen })
@@ -47,8 +48,12 @@ fn sets_in(terms: &FloatMap) -> SeenSets {
     needed
 }
 
-fn unseen(needed: &SeenSets, seen: &SeenSets) -> Vec<UnseenShadow> {
-    let lights = |set: usize| (0..MAX_LIGHTS).filter(|light| set >> light & 1 == 1).collect();
+fn unseen(needed: &SeenSets, seen: &SeenSets, light_indices: &[usize]) -> Vec<UnseenShadow> {
+    let lights = |set: usize| {
+        let used = light_indices.iter().enumerate();
+        let in_set = used.filter(|(light, _)| set >> light & 1 == 1);
+        in_set.map(|(_, index)| *index).collect()
+    };
     let of_receiver = |(receiver, (needed, seen)): (usize, (&u32, &u32))| {
         let sets = needed & !seen;
         let sets = (1..N_SETS).filter(move |set| sets >> set & 1 == 1);

@@ -49,9 +49,14 @@ impl Core {
     /// When the device is lost.
     pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
         let Some(fit) = self.read_fit()? else {
-            let method = self.stage.as_ref().and_then(Stage::method);
-            let warnings = method.map(|method| method.read_warnings(&self.gpu)).transpose()?;
-            return Ok(warnings.unwrap_or_default());
+            let Some((stage, method)) = self
+                .stage
+                .as_ref()
+                .and_then(|stage| Some((stage, stage.method()?)))
+            else {
+                return Ok(Vec::new());
+            };
+            return Ok(method.read_warnings(&self.gpu, stage.light_indices())?);
         };
         let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
         let contrast = contrasts.copied().fold(0.0, f32::max);

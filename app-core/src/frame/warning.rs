@@ -129,7 +129,7 @@ impl fmt::Display for Warning {
 pub struct UnseenShadow {
     /// The receiver's place in the scene's list.
     pub receiver: usize,
-    /// The lights, by their place among those in use.
+    /// Indices of the lights in the scene's list.
     pub lights: Vec<usize>,
 }
 

@@ -98,11 +98,11 @@ impl Method {
         }
     }
 
-    /// Waits for the device and returns what the baseline lacks; the model tells by its fit.
-    pub(crate) fn read_warnings(&self, gpu: &Gpu) -> Result<Vec<Warning>, GpuError> {
+    /// Waits for the device and returns what the baseline lacks; the model's warnings come from its fit.
+    pub(crate) fn read_warnings(&self, gpu: &Gpu, light_indices: &[usize]) -> Result<Vec<Warning>, GpuError> {
         match self {
             Self::Model(_) => Ok(Vec::new()),
-            Self::Baseline(baseline) => baseline.read_warnings(gpu),
+            Self::Baseline(baseline) => baseline.read_warnings(gpu, light_indices),
         }
     }
 }

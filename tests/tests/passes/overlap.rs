@@ -7,6 +7,7 @@ use app_core::internals::InjectedVisibility;
 use app_core::internals::PixelRect;
 use app_core::internals::{FloatMap, Map};
 use app_core::preset::{BASELINE, Preset, Settings};
+use app_core::scene::{Light, Scene};
 use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::eligible::masks;
@@ -29,6 +30,11 @@ struct Shot {
 impl Shot {
     /// Of the setup with two lights, twice as large: what is eligible keeps away from edges.
     fn new(preset: Preset) -> Self {
+        Self::of_scene(preset, |_| ())
+    }
+
+    /// The same of a scene that was changed.
+    fn of_scene(preset: Preset, change: impl FnOnce(&mut Scene)) -> Self {
         let stand = Stand::new(Setup {
             image_px: 2 * SETUPS[1].image_px + 1,
             ..SETUPS[1]
@@ -37,7 +43,9 @@ impl Shot {
         let input = input(&stand, &image);
         let instance = wgpu::Instance::default();
         let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
-        core.set_scene(scene(&stand, &plate), preset).unwrap();
+        let mut scene = scene(&stand, &plate);
+        change(&mut scene);
+        core.set_scene(scene, preset).unwrap();
         let region = core.frame(&input).unwrap().region.unwrap();
         Self { core, input, region }
     }
@@ -84,13 +92,35 @@ fn masks_follow_the_real_shadows_of_both_lights() {
     assert_eq!(lone, [true; 2], "each light has an umbra of its own");
 }
 
+/// Where the second light reaches wherever the first does not.
+fn without_overlap([first, second, ..]: [f32; 4]) -> [f32; 4] {
+    [first, if first < 1.0 { 1.0 } else { second }, 0.0, 1.0]
+}
+
+#[test]
+fn lights_are_numbered_as_they_are_listed() {
+    let below = Light::Sphere {
+        position_in_world: DVec3::NEG_Y,
+        radius_m: 0.01,
+    };
+    let mut shot = Shot::of_scene(Preset::Paper, |scene| scene.lights.insert(0, below));
+    shot.learn(without_overlap);
+    let unseen = vec![UnseenShadow {
+        receiver: 0,
+        lights: vec![1, 2],
+    }];
+    let warnings = shot.core.read_fit_warnings().unwrap();
+    assert_eq!(warnings, [Warning::ShadowsUnseen { unseen }]);
+    let warnings = shot.core.frame(&shot.input).unwrap().warnings;
+    assert_eq!(warnings, [Warning::LightBelowReceiver { light: 0 }]);
+}
+
 #[test]
 fn overlap_that_was_never_seen_is_told_and_leaves_no_hole() {
     let mut shot = Shot::new(Preset::Paper);
     let before = shot.sets_of_terms();
     assert!(before.contains(&3.0), "the new shadows overlap");
-    // The second light reaches wherever the first does not.
-    shot.learn(|[first, second, ..]| [first, if first < 1.0 { 1.0 } else { second }, 0.0, 1.0]);
+    shot.learn(without_overlap);
     assert_eq!(shot.sets_of_terms(), before, "a hole");
     let warnings = shot.core.read_fit_warnings().unwrap();
     let unseen = vec![UnseenShadow {
