@@ -140,7 +140,7 @@ fn left_out(facts: &SceneFacts, lights: &[LightPlan]) -> Vec<LeftOut> {
     if facts.is_plate_complete {
         left_out.push(LeftOut {
             what: "estimate of the plate",
-            why: "a plate was taken from this camera",
+            why: "plates show all of the region",
         });
     }
     if facts.n_receivers < 2 {

@@ -2,17 +2,17 @@
 
 use glam::{DMat4, DVec2, DVec3, UVec2, Vec3};
 
-use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::PixelRect;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::passes::globals::columns;
 use crate::passes::plate::{MAX_PLATES, PlateView, PlateViews};
+use crate::plates::sight::{PointOn, Sight};
 use crate::scene::{MAX_RECEIVERS, Plate, Scene};
 
-/// Places along each side of the region where it is checked that a plate shows them.
-const N_COVERED: u32 = 17;
+/// Distance of the pixels of the region where it is checked that a plate shows them: no larger gap goes unnoticed.
+const COVERED_STEP_PX: u32 = 8;
 
 /// The plates that a view's plate is made of.
 pub(crate) struct PlateChoice {
@@ -62,28 +62,31 @@ pub(crate) fn covered_fraction(
     if choice.is_same_view {
         return 1.0;
     }
-    let plate_views: Vec<View> = choice
-        .indices
-        .iter()
-        .map(|index| view_of(scene, &scene.plates[*index]))
+    let end_px = DVec2::new(f64::from(scene.width_px), f64::from(scene.height_px)) - 1.0;
+    let is_inside = |px: DVec2| px.cmpge(DVec2::ONE).all() && px.cmple(end_px).all();
+    let plates = choice.indices.iter().map(|index| &scene.plates[*index]);
+    let plate_sights: Vec<Sight<'_>> = plates
+        .map(|plate| Sight::new(&view_of(scene, plate), layout.receivers))
         .collect();
-    let n_side = N_COVERED - 1;
-    let places = (0..N_COVERED * N_COVERED).map(|k| UVec2::new(k % N_COVERED, k / N_COVERED));
+    let is_covered = |point: PointOn| {
+        let mut sights = plate_sights.iter();
+        sights.any(|sight| sight.image_px_of(point).is_some_and(is_inside))
+    };
+    let sight = Sight::new(view, layout.receivers);
     let (mut n_seen, mut n_covered) = (0.0, 0.0);
-    for at in places {
-        let px = rect.origin_px.as_dvec2() + (at * rect.size_px).as_dvec2() / f64::from(n_side);
-        let Some((receiver, in_plane)) = nearest_receiver(view, layout.receivers, px) else {
-            continue;
-        };
+    for point in grid_over(rect).filter_map(|px| sight.nearest(px)) {
         n_seen += 1.0;
-        let is_covered = plate_views.iter().any(|plate_view| {
-            let end_px = plate_view.image_px.as_dvec2() - 1.0;
-            seen_at(plate_view, layout.receivers, receiver, in_plane)
-                .is_some_and(|px| px.cmpge(DVec2::ONE).all() && px.cmple(end_px).all())
-        });
-        n_covered += f64::from(u8::from(is_covered));
+        n_covered += f64::from(u8::from(is_covered(point)));
     }
     if n_seen > 0.0 { n_covered / n_seen } else { 1.0 }
+}
+
+/// Positions from one border to the other, at most [`COVERED_STEP_PX`] apart.
+fn grid_over(rect: &PixelRect) -> impl Iterator<Item = DVec2> {
+    let n_steps = (rect.size_px / COVERED_STEP_PX).max(UVec2::ONE) + 1;
+    let (origin_px, size_px) = (rect.origin_px.as_dvec2(), rect.size_px.as_dvec2());
+    let positions = (0..=n_steps.y).flat_map(move |y| (0..=n_steps.x).map(move |x| UVec2::new(x, y)));
+    positions.map(move |at| origin_px + at.as_dvec2() * size_px / n_steps.as_dvec2())
 }
 
 /// What the shader knows of the chosen plates; `gains` are those of all of the scene's.
@@ -133,40 +136,6 @@ pub(crate) fn exposed(views: &PlateViews, gain: DVec3) -> PlateViews {
         plate.gain = (Vec3::new(r, g, b) * gain.as_vec3()).extend(1.0).to_array();
     }
     views
-}
-
-/// Where a camera sees a point of one of `receivers`, be it beyond its picture; none where another one hides it, or the
-/// receiver itself, seen from behind.
-pub(crate) fn seen_at(
-    view: &View,
-    receivers: &[AnchoredReceiver],
-    receiver: &AnchoredReceiver,
-    in_plane: DVec2,
-) -> Option<DVec2> {
-    let at = view.image_px_from_plane(&receiver.world_from_plane) * in_plane.extend(1.0);
-    let px = (at.z > 0.0).then(|| at.truncate() / at.z)?;
-    let (nearest, _) = nearest_receiver(view, receivers, px)?;
-    std::ptr::eq(nearest, receiver).then_some(px)
-}
-
-/// The nearest receiver seen at a pixel, and where; none where that is its back.
-pub(crate) fn nearest_receiver<'a>(
-    view: &View,
-    receivers: &'a [AnchoredReceiver],
-    image_px: DVec2,
-) -> Option<(&'a AnchoredReceiver, DVec2)> {
-    let hits = receivers.iter().filter_map(|receiver| {
-        let plane_from_px = view.image_px_from_plane(&receiver.world_from_plane).inverse();
-        let at = plane_from_px * image_px.extend(1.0);
-        let in_plane = (at.z > 0.0).then(|| at.truncate() / at.z)?;
-        receiver
-            .rect
-            .holds(in_plane)
-            .then_some((at.z, receiver, in_plane))
-    });
-    hits.max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, receiver, in_plane)| (receiver, in_plane))
-        .filter(|(receiver, _)| view.sees_front_of(&receiver.world_from_plane))
 }
 
 /// The view of a plate's camera.

@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3, UVec2};
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::color::linear_from_srgb;
 use crate::geometry::rect::PixelRect;
-use crate::plates::choice::{nearest_receiver, seen_at, view_of};
+use crate::plates::choice::view_of;
+use crate::plates::sight::Sight;
 use crate::scene::{Image, Plate, Scene};
 
 /// Places along each side of a plate where its exposure is compared with another's.
@@ -89,13 +90,12 @@ fn shared_places<'a>(
     other: &'a Plate,
     linear_of_code: &'a [f64; 256],
 ) -> impl Iterator<Item = Shared> + 'a {
-    let (view, other_view) = (view_of(scene, plate), view_of(scene, other));
-    let spacing = view.image_px.as_dvec2() / f64::from(N_COMPARED);
+    let [sight, other_sight] = [plate, other].map(|plate| Sight::new(&view_of(scene, plate), receivers));
+    let spacing = DVec2::new(f64::from(scene.width_px), f64::from(scene.height_px)) / f64::from(N_COMPARED);
     let places = (0..N_COMPARED * N_COMPARED).map(|k| UVec2::new(k % N_COMPARED, k / N_COMPARED));
     places.filter_map(move |at| {
         let px = (at.as_dvec2() + 0.5) * spacing;
-        let (receiver, in_plane) = nearest_receiver(&view, receivers, px)?;
-        let other_px = seen_at(&other_view, receivers, receiver, in_plane)?;
+        let other_px = other_sight.image_px_of(sight.nearest(px)?)?;
         let here = mean_color(&plate.image, px, linear_of_code)?;
         let there = mean_color(&other.image, other_px, linear_of_code)?;
         Some(Shared { px, here, there })

@@ -2,4 +2,5 @@
 
 pub(crate) mod choice;
 pub(crate) mod exposure;
+mod sight;
 pub(crate) mod store;

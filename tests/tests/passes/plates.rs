@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
+use app_core::frame::Warning;
 use app_core::internals::Map;
 use app_core::internals::PixelRect;
 use app_core::preset::Preset;
-use app_core::scene::{Image, Plate, Scene};
-use glam::{DVec2, DVec3, DVec4, UVec2};
+use app_core::scene::{Camera, Image, Plate, Scene};
+use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::model::{ReceiverPoint, Region, centre_px};
 use harness::reference::raster::Raster;
 
@@ -228,6 +229,53 @@ fn exposures_of_plates_are_matched_to_the_first() {
             (exposure - 1.0).abs().max_element() < 0.005,
             "{others:?}: {exposure}"
         );
+    }
+}
+
+/// A camera turned about its own vertical axis, to the left, by so much.
+fn turned(camera: &Camera, left_rad: f64) -> Camera {
+    Camera {
+        world_from_camera: camera.world_from_camera * DMat4::from_rotation_y(left_rad),
+        ..*camera
+    }
+}
+
+#[test]
+fn a_narrow_gap_between_plates_is_reported() {
+    const HALF_GAP_PX: f64 = 3.5;
+    let here = Stand::seen_from(setup(), HERE);
+    let k = &here.camera.intrinsics;
+    let angle_rad = |px: f64| (px / k.fx_px).atan();
+    let to_right_border = f64::from(setup().image_px.x) - k.cx_px;
+    let plates_apart_by = |half_gap_px: f64, aside_px: f64| {
+        let left_rad = angle_rad(to_right_border) + angle_rad(half_gap_px - aside_px);
+        let right_rad = angle_rad(k.cx_px) + angle_rad(half_gap_px + aside_px);
+        let cameras = [turned(&here.camera, left_rad), turned(&here.camera, -right_rad)];
+        let plate = |camera| Plate {
+            camera,
+            image: flat(128),
+        };
+        cameras.map(plate).to_vec()
+    };
+    let frame = photo(&here).frame(&here, &here.physical);
+    let scene_with = |plates| Scene {
+        plates,
+        ..scene(&here, &frame)
+    };
+    let together = scene_with(plates_apart_by(-HALF_GAP_PX, 0.0));
+    let mut core = core_on(together.clone(), Preset::Balanced).unwrap();
+    // Wherever it lies between the pixels that are looked at.
+    let apart = [0.0, 4.0, 8.0, 12.0].map(|aside_px| scene_with(plates_apart_by(HALF_GAP_PX, aside_px)));
+    for (scene, is_gap) in [(together, false)]
+        .into_iter()
+        .chain(apart.map(|scene| (scene, true)))
+    {
+        core.set_scene(scene, Preset::Balanced).unwrap();
+        let warnings = core.frame(&input(&here, &frame)).unwrap().warnings;
+        let is_partial = warnings
+            .iter()
+            .any(|warning| matches!(warning, Warning::PlatePartial { fraction } if *fraction > 0.8));
+        assert_eq!(is_partial, is_gap, "{warnings:?}");
     }
 }
 
