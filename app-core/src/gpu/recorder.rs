@@ -229,6 +229,13 @@ pub(crate) fn resolved<'a>(
 ) -> wgpu::RenderPassColorAttachment<'a> {
     wgpu::RenderPassColorAttachment {
         resolve_target: Some(target),
+        ..discarded(view)
+    }
+}
+
+/// A multisampled attachment that starts at zero and is forgotten.
+pub(crate) fn discarded(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
         ops: wgpu::Operations {
             load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
             store: wgpu::StoreOp::Discard,

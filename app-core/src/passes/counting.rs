@@ -29,7 +29,7 @@ pub(crate) struct CountingTargets {
 impl CountingTargets {
     pub(crate) fn new(gpu: &Gpu, label: &str, size_px: UVec2) -> Self {
         Self {
-            order: Texture::target(gpu, &format!("{label} order"), size_px, ORDER_FORMAT),
+            order: Texture::samples(gpu, &format!("{label} order"), size_px, (ORDER_FORMAT, 1)),
             count: Texture::target(gpu, label, size_px, COUNT_FORMAT),
         }
     }

@@ -6,7 +6,7 @@ use wgpu::{StoreOp, TextureFormat, VertexFormat};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, resolved};
+use crate::gpu::recorder::{Recorder, discarded, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::capture::appearance;
@@ -144,16 +144,20 @@ impl Pass {
         } else {
             &OFFSETS_PX
         };
-        for (drawn, offset_px) in targets.drawn.iter().zip(offsets) {
+        for (index, (drawn, offset_px)) in targets.drawn.iter().zip(offsets).enumerate() {
+            // The samples of one draw show well enough where the surface has moved.
+            let moved_samples = &targets.moved_samples.view;
+            let moved = if index + 1 == targets.drawn.len() {
+                resolved(moved_samples, &targets.moved.view)
+            } else {
+                discarded(moved_samples)
+            };
             let groups = [
                 recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
                 recorder.bind_with(&self.draw, GROUP_PASS, offset_px, &inputs.resources()),
                 recorder.bind(&self.draw, GROUP_SELF_SHADOW, &maps),
             ];
-            let colors = [
-                Some(resolved(&targets.samples.view, &drawn.view)),
-                Some(resolved(&targets.moved_samples.view, &targets.moved.view)),
-            ];
+            let colors = [Some(resolved(&targets.samples.view, &drawn.view)), Some(moved)];
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.begin(&self.draw, &groups);
