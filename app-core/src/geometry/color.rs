@@ -1,5 +1,15 @@
 //! The transfer function of pictures.
 
+/// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
+#[must_use]
+pub(crate) fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
 /// Decodes an sRGB value in [0, 1]. Source: IEC 61966-2-1.
 #[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {

@@ -17,6 +17,7 @@ pub(crate) struct Texture {
 struct Shape {
     size_px: UVec2,
     n_layers: u32,
+    n_levels: u32,
     format: TextureFormat,
     n_samples: u32,
     usage: TextureUsages,
@@ -32,7 +33,7 @@ impl Texture {
         Self::new(gpu, label, Shape::of(size_px, format, usage))
     }
 
-    /// A texture of several samples that never leaves the chip: it is drawn to and resolved, or forgotten.
+    /// A texture of one sample or several that never leaves the chip: it is drawn to and resolved, or discarded.
     pub(crate) fn samples(
         gpu: &Gpu,
         label: &str,
@@ -55,6 +56,23 @@ impl Texture {
             label,
             Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage),
         )
+    }
+
+    /// A picture with its mips, each half the size of the level before, rounded down.
+    pub(crate) fn mipped<L: AsRef<[u8]>>(gpu: &Gpu, label: &str, size_px: UVec2, levels: &[L]) -> Self {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let texture = Self::new(
+            gpu,
+            label,
+            Shape {
+                n_levels: u32::try_from(levels.len()).unwrap_or(1),
+                ..Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage)
+            },
+        );
+        for (level, texels) in (0..).zip(levels) {
+            texture.write_part(gpu, (level, 0), texels.as_ref());
+        }
+        texture
     }
 
     /// An array of pictures to read from, sRGB-encoded.
@@ -97,20 +115,26 @@ impl Texture {
 
     /// Fills one picture of an array.
     pub(crate) fn write_layer(&self, gpu: &Gpu, layer: u32, texels: &[u8]) {
+        self.write_part(gpu, (0, layer), texels);
+    }
+
+    fn write_part(&self, gpu: &Gpu, (level, layer): (u32, u32), texels: &[u8]) {
         let mut destination = self.raw.as_image_copy();
+        destination.mip_level = level;
         destination.origin.z = layer;
+        let size = self.raw.size().mip_level_size(level, self.raw.dimension());
         let texel_bytes = self.raw.format().block_copy_size(None);
         gpu.queue.write_texture(
             destination,
             texels,
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: texel_bytes.map(|bytes| bytes * self.raw.width()),
+                bytes_per_row: texel_bytes.map(|bytes| bytes * size.width),
                 rows_per_image: None,
             },
             wgpu::Extent3d {
                 depth_or_array_layers: 1,
-                ..self.raw.size()
+                ..size
             },
         );
     }
@@ -156,6 +180,7 @@ impl Shape {
         Self {
             size_px,
             n_layers: 1,
+            n_levels: 1,
             format,
             n_samples: 1,
             usage,
@@ -175,7 +200,7 @@ impl Shape {
                 height: self.size_px.y,
                 depth_or_array_layers: self.n_layers,
             },
-            mip_level_count: 1,
+            mip_level_count: self.n_levels,
             sample_count: self.n_samples,
             dimension: wgpu::TextureDimension::D2,
             format: self.format,
@@ -212,7 +237,7 @@ pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
     }
 }
 
-/// A sampler that filters a picture, and what it shows beyond its border.
+/// A sampler that filters a picture and its mips; `modes` are what it shows beyond its border.
 pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode; 2]) -> wgpu::Sampler {
     gpu.device.sampler(&wgpu::SamplerDescriptor {
         label: Some(label),
@@ -220,6 +245,7 @@ pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode;
         address_mode_v: modes[1],
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     })
 }

@@ -6,6 +6,7 @@
 pub(crate) mod counting;
 pub(crate) mod globals;
 pub(crate) mod list;
+mod mips;
 pub(crate) mod parts;
 pub(crate) mod pictures;
 pub(crate) mod plate;

@@ -1,5 +1,6 @@
 //! The toy on the device: what never changes, the physical pose, and the pose of the frame.
 
+use std::iter;
 use std::ops::Range;
 
 use glam::UVec2;
@@ -13,6 +14,7 @@ use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, picture_sampler};
+use crate::passes::mips::mips;
 use crate::toy::{PosedMesh, ShadowRanges, Toy, Wrap};
 
 /// The WGSL of the group of a material.
@@ -82,7 +84,8 @@ struct Run {
 /// A material on the device.
 struct MaterialBuffers {
     uniform: wgpu::Buffer,
-    texture: Texture,
+    /// Index of its texture.
+    texture: usize,
     sampler: wgpu::Sampler,
 }
 
@@ -95,6 +98,8 @@ pub(crate) struct ToyMesh {
     colors: wgpu::Buffer,
     runs: Vec<Run>,
     materials: Vec<MaterialBuffers>,
+    /// Those of the toy, then the one of materials without any.
+    textures: Vec<Texture>,
     /// The pose the real toy was made in.
     pub(crate) physical: PoseBuffers,
     /// The pose to be shown.
@@ -135,6 +140,7 @@ impl ToyMesh {
                 .enumerate()
                 .map(|(index, material)| MaterialBuffers::new(gpu, toy, index, material))
                 .collect(),
+            textures: textures(gpu, toy),
             physical: PoseBuffers::new(gpu, physical),
             shown: PoseBuffers::new(gpu, physical),
         }
@@ -149,7 +155,7 @@ impl ToyMesh {
         let bind = |material: &MaterialBuffers| {
             let resources = [
                 (&material.uniform).into(),
-                (&material.texture.view).into(),
+                (&self.textures[material.texture].view).into(),
                 (&material.sampler).into(),
             ];
             recorder.bind(pipeline, GROUP_DRAW, &resources)
@@ -196,13 +202,8 @@ impl ToyMesh {
 
 impl MaterialBuffers {
     fn new(gpu: &Gpu, toy: &Toy, index: usize, material: &crate::toy::Material) -> Self {
-        let image = material
-            .base_color_texture
-            .as_ref()
-            .and_then(|used| toy.textures().get(used.texture));
-        let size_px = image.map_or(UVec2::ONE, |image| UVec2::new(image.width_px, image.height_px));
-        let texture = Texture::picture(gpu, "base colour", size_px);
-        texture.write(gpu, image.map_or(&WHITE, |image| &image.rgba8_srgb));
+        let n_textures = toy.textures().len();
+        let used = material.base_color_texture.map(|used| used.texture);
         let mode = |wrap: Wrap| match wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,
             Wrap::MirroredRepeat => wgpu::AddressMode::MirrorRepeat,
@@ -221,8 +222,22 @@ impl MaterialBuffers {
         };
         Self {
             uniform: gpu.uniform("material", &uniform),
-            texture,
+            texture: used.filter(|used| *used < n_textures).unwrap_or(n_textures),
             sampler,
         }
     }
+}
+
+/// The toy's textures with their mips, then a white one.
+fn textures(gpu: &Gpu, toy: &Toy) -> Vec<Texture> {
+    let mipped = |size_px, rgba8: &[u8]| {
+        let mips = mips(size_px, rgba8);
+        let levels: Vec<&[u8]> = iter::once(rgba8).chain(mips.iter().map(Vec::as_slice)).collect();
+        Texture::mipped(gpu, "base colour", size_px, &levels)
+    };
+    let own = toy
+        .textures()
+        .iter()
+        .map(|image| mipped(UVec2::new(image.width_px, image.height_px), &image.rgba8_srgb));
+    own.chain([mipped(UVec2::ONE, &WHITE)]).collect()
 }
