@@ -3,32 +3,13 @@
 use glam::{DVec3, IVec2, UVec2};
 
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AppearanceConstants {
-    /// Farthest that a pixel of one surface is looked for, along each side.
-    pub reach_px: i32,
-    /// Weight of a colour at another depth.
-    pub other_surface: f64,
-    /// Relative step of depth that makes an edge between two surfaces.
-    pub depth_step: f64,
-}
-
-impl AppearanceConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            reach_px: shader_constant("appearance", "REACH_PX")?,
-            other_surface: shader_constant("appearance", "OTHER_SURFACE")?,
-            depth_step: shader_constant("appearance", "DEPTH_STEP")?,
-        })
-    }
-}
+/// Farthest that a pixel of one surface is looked for, in pixels along each side.
+pub const REACH_PX: i32 = 3;
+/// Weight of a colour at another depth, against one at its own: next to nothing, but it will do where there is no other.
+pub const OTHER_SURFACE: f64 = 1e-4;
+/// Difference of reversed depth, as a fraction of the larger, beyond which two pixels show two surfaces.
+const DEPTH_STEP: f64 = 0.005;
 
 /// A pixel of the physical toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,13 +37,13 @@ pub struct Seen {
 /// fourth power of their distance, preferring those at its own depth; of a part too thin to have one its own; none
 /// beside the toy.
 #[must_use]
-pub fn clean(seen: &Raster<Seen>, constants: &AppearanceConstants, texel: UVec2) -> Option<ToyPixel> {
+pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
     let here = seen.at(texel);
     if here.is_one_surface {
         return Some(here.pixel);
     }
     let last = seen.size().as_ivec2() - 1;
-    let reach = -constants.reach_px..=constants.reach_px;
+    let reach = -REACH_PX..=REACH_PX;
     let offsets = reach
         .clone()
         .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
@@ -74,8 +55,8 @@ pub fn clean(seen: &Raster<Seen>, constants: &AppearanceConstants, texel: UVec2)
             continue;
         }
         let larger = here.depth.max(other.depth);
-        let is_own = here.depth == 0.0 || (here.depth - other.depth).abs() <= constants.depth_step * larger;
-        let preference = if is_own { 1.0 } else { constants.other_surface };
+        let is_own = here.depth == 0.0 || (here.depth - other.depth).abs() <= DEPTH_STEP * larger;
+        let preference = if is_own { 1.0 } else { OTHER_SURFACE };
         let weight = preference / f64::from(offset.length_squared().max(1)).powi(2);
         sum.color += weight * other.pixel.color;
         sum.lit += weight * other.pixel.lit;

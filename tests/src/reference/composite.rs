@@ -5,44 +5,22 @@ use glam::{DVec3, DVec4, UVec2};
 use super::grid::PlaneGrid;
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant, smoothstep};
+use super::smoothstep;
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompositeConstants {
-    /// Change of the model, in plates, up to which a seen pixel keeps its own residual.
-    pub keep_all: f64,
-    /// Change from which it has none of it.
-    pub keep_none: f64,
-    /// Change from which the pooled residual no longer holds at half its size.
-    pub residual_half: f64,
-    /// Pooled residual up to which nothing unknown is seen.
-    pub outlier_none: f64,
-    /// Least over most of a residual's channels, from which it may be a shadow.
-    pub shadow_evenness: f64,
-    /// The same, below which it is a thing of its own colour.
-    pub object_evenness: f64,
-    /// Pooled residual from which what the camera saw stays.
-    pub outlier_all: f64,
-}
-
-impl CompositeConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            keep_all: shader_constant("composite", "KEEP_ALL")?,
-            keep_none: shader_constant("composite", "KEEP_NONE")?,
-            residual_half: shader_constant("composite", "RESIDUAL_HALF")?,
-            outlier_none: shader_constant("composite", "OUTLIER_NONE")?,
-            shadow_evenness: shader_constant("composite", "SHADOW_EVENNESS")?,
-            object_evenness: shader_constant("composite", "OBJECT_EVENNESS")?,
-            outlier_all: shader_constant("composite", "OUTLIER_ALL")?,
-        })
-    }
-}
+/// Change of the model, in plates, up to which a seen pixel keeps all of its own residual.
+const KEEP_ALL: f64 = 0.02;
+/// Change of the model, in plates, from which a seen pixel keeps none of its own residual.
+const KEEP_NONE: f64 = 0.15;
+/// Change of the model, in plates, at which half of the pooled residual is left.
+const RESIDUAL_HALF: f64 = 0.5;
+/// Pooled residual, in plates, up to which the model explains what is seen.
+const OUTLIER_NONE: f64 = 0.15;
+/// Pooled residual, in plates, from which it explains nothing: what the camera saw stays.
+const OUTLIER_ALL: f64 = 0.3;
+/// Least over most of a residual's channels from which it is taken for a shadow.
+const SHADOW_EVENNESS: f64 = 0.4;
+/// Least over most of a residual's channels up to which it is taken for a thing of its own colour.
+const OBJECT_EVENNESS: f64 = 0.2;
 
 /// The toy's shown pose, and what was learned.
 #[derive(Clone, Debug)]
@@ -62,13 +40,7 @@ pub struct Shown {
 /// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
 /// pixel too near to the toy to be evidence is its own.
 #[must_use]
-pub fn receiver_color(
-    region: &Region,
-    pictures: &Pictures,
-    shown: &Shown,
-    constants: &CompositeConstants,
-    texel: UVec2,
-) -> [DVec3; 2] {
+pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
     let at = centre_px(texel);
     let (frame, plate, seen) = (
         pictures.frame.at(texel),
@@ -91,16 +63,12 @@ pub fn receiver_color(
 
     let grid = &shown.grids[point.receiver];
     let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
-    let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * constants.residual_half, change));
-    let unknown = smoothstep(
-        constants.outlier_none,
-        constants.outlier_all,
-        pooled.abs().max_element(),
-    );
-    let object = unknown * (1.0 - shadow_likeness(pooled, constants));
+    let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, change));
+    let unknown = smoothstep(OUTLIER_NONE, OUTLIER_ALL, pooled.abs().max_element());
+    let object = unknown * (1.0 - shadow_likeness(pooled));
     let made = lit * (after + residual).max(DVec3::ZERO);
     let kept = frame + (1.0 - object) * lit * (after - before);
-    let near = 1.0 - smoothstep(constants.keep_all, constants.keep_none, change);
+    let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 
     // What hides the receiver must go even at the border.
@@ -123,10 +91,10 @@ pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
 }
 
 /// Whether a residual may be a shadow: darker in all channels, and in none much more than in the others.
-fn shadow_likeness(residual: DVec3, constants: &CompositeConstants) -> f64 {
+fn shadow_likeness(residual: DVec3) -> f64 {
     let (least, most) = (-residual.max_element(), -residual.min_element());
     if least <= 0.0 {
         return 0.0;
     }
-    smoothstep(constants.object_evenness, constants.shadow_evenness, least / most)
+    smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most)
 }

@@ -2,43 +2,20 @@
 
 use glam::{DVec3, IVec2, UVec2};
 
-use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::model::{DARKEST_USABLE, Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant, smoothstep};
+use super::smoothstep;
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DetailConstants {
-    /// Half the side of the square that is smoothed over, without its middle.
-    pub radius_px: i32,
-    /// Detail, in plates, up to which it is noise.
-    pub noise: f64,
-    /// Detail from which none of it is.
-    pub detail: f64,
-    /// Light left below which a pixel is in shadow.
-    pub shadow: f64,
-    /// Light left from which it is not.
-    pub lit: f64,
-    /// Of the plate; darker tells nothing.
-    pub darkest: f64,
-}
-
-impl DetailConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            radius_px: shader_constant("detail", "RADIUS_PX")?,
-            noise: shader_constant("detail", "NOISE")?,
-            detail: shader_constant("detail", "DETAIL")?,
-            shadow: shader_constant("detail", "SHADOW")?,
-            lit: shader_constant("detail", "LIT")?,
-            darkest: shader_constant("detail", "DARKEST_USABLE")?,
-        })
-    }
-}
+/// Half the side of the square that is smoothed over, in pixels, without its middle.
+const RADIUS_PX: i32 = 3;
+/// Detail, in plates, up to which it is noise.
+pub const NOISE: f64 = 0.03;
+/// Detail, in plates, from which none of it is noise.
+pub const DETAIL: f64 = 0.08;
+/// Light left, in plates, up to which a pixel is in shadow.
+const SHADOW: f64 = 0.85;
+/// Light left, in plates, from which a pixel is in the light.
+const LIT: f64 = 0.98;
 
 /// What a pixel that shows a receiver clear of the toy tells, where its plate was photographed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +37,6 @@ pub fn told(
     pictures: &Pictures,
     photographed: &Raster<f64>,
     solution: &Solution,
-    constants: &DetailConstants,
 ) -> Raster<Option<Told>> {
     Raster::from_fn(region.size_px, |texel| {
         let at = centre_px(texel);
@@ -69,7 +45,7 @@ pub fn told(
         let ambient = coarse_at(&pictures.ambient, region, at);
         let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
         let plate = pictures.plate.at(texel);
-        let is_dark = plate.cmplt(DVec3::splat(constants.darkest));
+        let is_dark = plate.cmplt(DVec3::splat(DARKEST_USABLE));
         Some(Told {
             receiver: point.receiver,
             model,
@@ -84,17 +60,13 @@ pub fn told(
 /// In the light it is the pixel's own. In shadow it is that of the pixels around which show the same receiver, by least
 /// squares against the plate, and as much of what its own differs by as is more than noise.
 #[must_use]
-pub fn separate(
-    told: &Raster<Option<Told>>,
-    constants: &DetailConstants,
-    (texel, receiver): (UVec2, usize),
-) -> DVec3 {
+pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) -> DVec3 {
     let own = told.at(texel);
     let exact = least_squares(own.as_slice());
     // One that tells nothing is as in the light.
     let left = own.map_or(1.0, |own| own.model.max_element());
-    let in_light = smoothstep(constants.shadow, constants.lit, left);
-    let reach = -constants.radius_px..=constants.radius_px;
+    let in_light = smoothstep(SHADOW, LIT, left);
+    let reach = -RADIUS_PX..=RADIUS_PX;
     let offsets = reach
         .clone()
         .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
@@ -108,7 +80,7 @@ pub fn separate(
         .collect();
     let smooth = least_squares(&around);
     let detail = exact - smooth;
-    let kept = smoothstep(constants.noise, constants.detail, detail.abs().max_element());
+    let kept = smoothstep(NOISE, DETAIL, detail.abs().max_element());
     (smooth + kept * detail).lerp(exact, in_light)
 }
 

@@ -4,20 +4,19 @@ use glam::{DVec4, IVec2};
 
 use super::raster::Raster;
 use super::sets::LightSet;
-use super::{ConstantError, shader_constant};
+
+/// Share of a light that may be hidden from a place that still counts as lit: nobody sees so little.
+const FAINT: f64 = 0.01;
 
 /// Mask 3c, the set of lights to sample the shadow of, and mask 3b, the real shadow.
-///
-/// # Errors
-/// When the shader does not declare what counts as lit.
+#[must_use]
 pub fn masks(
     is_toy: &Raster<bool>,
     visibility: &Raster<DVec4>,
     n_lights: usize,
     margin_px: i32,
-) -> Result<(Raster<LightSet>, Raster<bool>), ConstantError> {
-    let faint: f64 = shader_constant("eligible", "FAINT")?;
-    let is_lit = |v: f64| v >= 1.0 - faint;
+) -> (Raster<LightSet>, Raster<bool>) {
+    let is_lit = |v: f64| v >= 1.0 - FAINT;
     // None where a light is neither hidden nor seen, or the toy is in front.
     let umbra = Raster::from_fn(is_toy.size(), |texel| {
         let of_lights = &visibility.at(texel).to_array()[..n_lights];
@@ -35,5 +34,5 @@ pub fn masks(
         own.filter(|_| is_same).unwrap_or_default()
     });
     let shadow = visibility.map(|v| v.to_array()[..n_lights].iter().any(|v| !is_lit(*v)));
-    Ok((eligible, shadow))
+    (eligible, shadow)
 }

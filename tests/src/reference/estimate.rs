@@ -5,32 +5,14 @@ use glam::{DVec3, DVec4, UVec2};
 use super::grid::PlaneGrid;
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant, smoothstep};
+use super::smoothstep;
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EstimateConstants {
-    /// Alpha of an estimated pixel.
-    pub estimated: f64,
-    /// Light left from which a pixel tells its own plate in full.
-    pub tells_all: f64,
-    /// Light left below which it does not at all.
-    pub tells_none: f64,
-}
-
-impl EstimateConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            estimated: shader_constant("estimate", "ESTIMATED")?,
-            tells_all: shader_constant("estimate", "TELLS_ALL")?,
-            tells_none: shader_constant("estimate", "TELLS_NONE")?,
-        })
-    }
-}
+/// Alpha of an estimated pixel, which is its weight in the fit.
+pub const ESTIMATED: f64 = 0.25;
+/// Light left, in plates, from which a pixel tells its own plate in full.
+const TELLS_ALL: f64 = 0.3;
+/// Light left, in plates, up to which a pixel does not tell its own plate at all.
+const TELLS_NONE: f64 = 0.1;
 
 /// What the estimate is made of.
 #[derive(Clone, Debug)]
@@ -47,13 +29,7 @@ pub struct Known<'a> {
 
 /// Linear colour and alpha of the plate at `texel`: smooth at first, at last each seen pixel's own.
 #[must_use]
-pub fn complete(
-    region: &Region,
-    known: &Known<'_>,
-    constants: &EstimateConstants,
-    is_final: bool,
-    texel: UVec2,
-) -> DVec4 {
+pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2) -> DVec4 {
     let (at, pictures) = (centre_px(texel), known.pictures);
     let photographed = pictures.plate.at(texel).extend(known.photographed.at(texel));
     let point = region.receiver_point(at).filter(|_| photographed.w < 1.0);
@@ -66,10 +42,10 @@ pub fn complete(
     let model = known
         .solution
         .receiver_model(region, point, ambient, pictures.visibility.at(texel));
-    let told = smoothstep(constants.tells_none, constants.tells_all, model.min_element());
+    let told = smoothstep(TELLS_NONE, TELLS_ALL, model.min_element());
     if !is_final || pictures.seen.at(texel) == 0.0 || told == 0.0 {
-        return smooth.extend(constants.estimated);
+        return smooth.extend(ESTIMATED);
     }
     let own = pictures.frame.at(texel) / (known.solution.gain * model);
-    smooth.lerp(own, told).extend(constants.estimated)
+    smooth.lerp(own, told).extend(ESTIMATED)
 }

@@ -6,24 +6,18 @@ use glam::{DVec3, DVec4, UVec2};
 
 use super::grid::Cell;
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
-/// Number of levels that the shader always runs, of which the last may all be of one cell.
-///
-/// # Errors
-/// When the shader does not say.
-pub fn n_levels_of_shader() -> Result<u32, ConstantError> {
-    shader_constant("fill", "N_LEVELS")
-}
+/// Levels of a pyramid, the finest included, of which the last may all be of one cell: 64 cells halve six times.
+const N_LEVELS: u32 = 7;
 
-/// Fills every cell as far as it is uncertain, over `n_levels`, the finest one included.
+/// Fills every cell as far as it is uncertain.
 #[must_use]
-pub fn fill(cells: &Raster<Cell>, n_levels: u32) -> Raster<DVec3> {
+pub fn fill(cells: &Raster<Cell>) -> Raster<DVec3> {
     let finest = Raster::from_fn(cells.size(), |at| {
         let cell = cells.at(at);
         (cell.value * cell.certainty).extend(cell.certainty)
     });
-    push(finest, n_levels - 1).map(DVec4::truncate)
+    push(finest, N_LEVELS - 1).map(DVec4::truncate)
 }
 
 /// Values times certainties in, the same with every certainty made up from the coarser level out.

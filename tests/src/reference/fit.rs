@@ -4,56 +4,46 @@
 use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
-use super::model::{
-    Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, UsableRange, centre_px, coarse_at,
-};
+use super::model::{Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, usable};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
-/// What the shaders fix.
+/// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
+const CAUCHY_SCALE: f64 = 0.03;
+/// The same for the toy, as a fraction of its base colour: its light from itself and its curved faces are not modelled.
+const TOY_CAUCHY_SCALE: f64 = 0.12;
+/// Weight of each prior, as a fraction of the first column's energy.
+const PRIOR_WEIGHT: f64 = 1e-4;
+/// Weight of the solution that all channels share, for the toy, as a fraction of their common energy.
+const WHITE_WEIGHT: f64 = 0.003;
+/// Weight by which further receivers keep the first one's gain, as a fraction of the first column's energy.
+const SAME_GAIN_WEIGHT: f64 = 10.0;
+/// Bounce that is expected, as a fraction of the ambient light that the toy takes: that of a toy of middle grey.
+pub const PRIOR_BOUNCE: f64 = 0.27;
+/// Share of the plate's radiance that is expected of all lights together.
+pub const PRIOR_DIRECT_FRACTION: f64 = 0.5;
+/// Most of the plate's radiance that all lights together may have: some of it is always ambient.
+const MAX_DIRECT_FRACTION: f64 = 0.98;
+/// Most bounce, as a fraction of the ambient light that the toy takes.
+const MAX_BOUNCE: f64 = 1.0;
+
+/// Those constants that a test may choose otherwise, to see what they do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitConstants {
-    /// Which values carry evidence.
-    pub validity: UsableRange,
-    /// Residual of the receiver, as a fraction of the plate, at which a pixel counts half.
+    /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
     pub cauchy_scale: f64,
-    /// The same for the toy, as a fraction of its base colour.
-    pub toy_cauchy_scale: f64,
     /// Weight of each prior against the energy of the first column.
     pub prior_weight: f64,
     /// Weight of the common solution of all channels, for the toy, against their common energy.
     pub white_weight: f64,
-    /// Weight by which further receivers keep the gain that the first one tells.
-    pub same_gain_weight: f64,
-    /// Expected bounce.
-    pub prior_bounce: f64,
-    /// Expected share of all lights together.
-    pub prior_direct_fraction: f64,
-    /// Most that all lights together may have.
-    pub max_direct_fraction: f64,
-    /// Most bounce.
-    pub max_bounce: f64,
 }
 
-impl FitConstants {
-    /// Reads them from the shaders.
-    ///
-    /// # Errors
-    /// When a shader has no such constant.
-    pub fn from_shaders() -> Result<Self, ConstantError> {
-        let cauchy_scale = shader_constant("fit", "CAUCHY_SCALE")?;
-        Ok(Self {
-            validity: UsableRange::from_shader("fit")?,
-            cauchy_scale,
-            toy_cauchy_scale: shader_constant("fit", "TOY_CAUCHY_SCALE")?,
-            prior_weight: shader_constant("fit_solve", "PRIOR_WEIGHT")?,
-            white_weight: shader_constant("fit_solve", "WHITE_WEIGHT")?,
-            same_gain_weight: shader_constant("fit_solve", "SAME_GAIN_WEIGHT")?,
-            prior_bounce: shader_constant("fit_solve", "PRIOR_BOUNCE")?,
-            prior_direct_fraction: shader_constant("fit_solve", "PRIOR_DIRECT_FRACTION")?,
-            max_direct_fraction: shader_constant("fit_solve", "MAX_DIRECT_FRACTION")?,
-            max_bounce: shader_constant("fit_solve", "MAX_BOUNCE")?,
-        })
+impl Default for FitConstants {
+    fn default() -> Self {
+        Self {
+            cauchy_scale: CAUCHY_SCALE,
+            prior_weight: PRIOR_WEIGHT,
+            white_weight: WHITE_WEIGHT,
+        }
     }
 }
 
@@ -112,7 +102,7 @@ pub fn fit_receiver(
                 .filter(|sample| sample.point.receiver == receiver)
                 .collect();
             let equations = receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel));
-            let priors = receiver_priors(region, receiver, &before, constants, channel);
+            let priors = receiver_priors(region, receiver, &before, channel);
             take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
         }
     }
@@ -140,7 +130,7 @@ fn receiver_equations(
             let visible = before.intensities[i][channel] * sample.visibility[i] - sample.ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
-        let mut weight = constants.validity.holds(frame, plate);
+        let mut weight = usable(frame, plate);
         if is_reweighted {
             let model = before.receiver_model(region, sample.point, sample.ambient, sample.visibility);
             weight *= cauchy_weight(value - plate * model[channel], constants.cauchy_scale * plate);
@@ -151,13 +141,7 @@ fn receiver_equations(
 }
 
 /// What is expected of bounce and shares before a receiver is seen in shadow.
-fn receiver_priors(
-    region: &Region,
-    receiver: usize,
-    before: &Solution,
-    constants: &FitConstants,
-    channel: usize,
-) -> Vec<f64> {
+fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
     let n_lights = region.lights.len();
     let irradiance = |plane: &ReceiverPlane, i: usize| {
         let light = plane.lights[i];
@@ -176,12 +160,8 @@ fn receiver_priors(
             .map(|i| irradiance(&region.receivers[0], i))
             .collect();
         let total: f64 = each.iter().sum();
-        let direct_fractions = each
-            .into_iter()
-            .map(|one| constants.prior_direct_fraction * one / total);
-        return std::iter::once(constants.prior_bounce)
-            .chain(direct_fractions)
-            .collect();
+        let direct_fractions = each.into_iter().map(|one| PRIOR_DIRECT_FRACTION * one / total);
+        return std::iter::once(PRIOR_BOUNCE).chain(direct_fractions).collect();
     }
     // The same lights amid as much ambient light.
     let first = &before.receivers[0];
@@ -226,7 +206,7 @@ fn take_receiver(
     let weight = constants.prior_weight * energy;
     equations.expect(0, 1.0, weight);
     if receiver > 0 {
-        equations.expect(0, 1.0, constants.same_gain_weight * energy);
+        equations.expect(0, 1.0, SAME_GAIN_WEIGHT * energy);
     }
     priors
         .iter()
@@ -245,13 +225,13 @@ fn take_receiver(
         .map(|unknown| (unknown / correction).max(0.0))
         .collect();
     let total: f64 = direct_fractions.iter().sum();
-    let scale = if total > constants.max_direct_fraction {
-        constants.max_direct_fraction / total
+    let scale = if total > MAX_DIRECT_FRACTION {
+        MAX_DIRECT_FRACTION / total
     } else {
         1.0
     };
     let found = &mut solution.receivers[receiver];
-    found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, constants.max_bounce);
+    found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, MAX_BOUNCE);
     found
         .direct_fractions
         .iter_mut()
@@ -287,7 +267,7 @@ pub fn fit_toy(
     let n_columns = 2 + region.lights.len();
     let mut solution = start.clone();
     for step in 0..n_steps {
-        let each = [0, 1, 2].map(|k| toy_equations(region, samples, &solution, constants, (step > 0, k)));
+        let each = [0, 1, 2].map(|k| toy_equations(region, samples, &solution, (step > 0, k)));
         let mut all = NormalEquations::new(n_columns);
         each.iter().for_each(|equations| all.join(equations));
         let energy = all.energy(0);
@@ -315,7 +295,6 @@ fn toy_equations(
     region: &Region,
     samples: &[ToySample],
     before: &Solution,
-    constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
 ) -> NormalEquations {
     let mut equations = NormalEquations::new(2 + region.lights.len());
@@ -326,14 +305,14 @@ fn toy_equations(
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
-        let mut weight = constants.validity.holds(frame, frame);
+        let mut weight = usable(frame, frame);
         if is_reweighted {
             let model: f64 = columns
                 .iter()
                 .zip(&before.toy)
                 .map(|(column, toy)| column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(value - model, constants.toy_cauchy_scale * base);
+            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
         }
         equations.observe(&columns, value, weight);
     }

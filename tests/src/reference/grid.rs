@@ -6,6 +6,13 @@ use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
 use super::model::{Region, centre_px};
 use super::raster::Raster;
 
+/// Points of a cell along each side.
+const N_POINTS: u32 = 8;
+/// Share of a cell's points that must be evidence for the cell to be known in full.
+const FULL_SHARE: f64 = 0.25;
+/// Most that all frames before count together, in frames like the latest.
+const MAX_FRAMES: f64 = 8.0;
+
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
@@ -37,17 +44,16 @@ impl From<&Grid> for PlaneGrid {
 }
 
 impl PlaneGrid {
-    /// The texels that show the `n_side` x `n_side` points of a cell, once for each point that is within the region and
-    /// that no other receiver hides.
+    /// The texels that show the points of a cell, once for each point that is within the region and that no other receiver
+    /// hides.
     pub fn texels_of<'a>(
         &'a self,
         region: &'a Region,
         receiver: usize,
         cell: UVec2,
-        n_side: u32,
     ) -> impl Iterator<Item = UVec2> + 'a {
-        (0..n_side * n_side).filter_map(move |k| {
-            let within = (UVec2::new(k % n_side, k / n_side).as_dvec2() + 0.5) / f64::from(n_side);
+        (0..N_POINTS * N_POINTS).filter_map(move |k| {
+            let within = (UVec2::new(k % N_POINTS, k / N_POINTS).as_dvec2() + 0.5) / f64::from(N_POINTS);
             let in_plane = self.origin_in_plane + (cell.as_dvec2() + within) * self.cell_m;
             let px = region.receivers[receiver].region_px(in_plane)?;
             let is_within = px.cmpge(DVec2::ZERO).all() && px.cmplt(region.size_px.as_dvec2()).all();
@@ -64,10 +70,16 @@ impl PlaneGrid {
     }
 }
 
-/// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of
-/// values times certainties and of certainties, which count at most as much as `max_frames` full ones.
+/// How far a cell is known of which `n_points` points are evidence.
 #[must_use]
-pub fn accumulate(accumulated: DVec4, fresh: Cell, max_frames: f64) -> (Cell, DVec4) {
+pub fn certainty(n_points: f64) -> f64 {
+    (n_points / (FULL_SHARE * f64::from(N_POINTS * N_POINTS))).min(1.0)
+}
+
+/// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of
+/// values times certainties and of certainties, which count at most as much as `MAX_FRAMES` full ones.
+#[must_use]
+pub fn accumulate(accumulated: DVec4, fresh: Cell) -> (Cell, DVec4) {
     let sum = accumulated + (fresh.value * fresh.certainty).extend(fresh.certainty);
     if sum.w == 0.0 {
         return (Cell::default(), DVec4::ZERO);
@@ -77,6 +89,6 @@ pub fn accumulate(accumulated: DVec4, fresh: Cell, max_frames: f64) -> (Cell, DV
         value,
         certainty: sum.w.min(1.0),
     };
-    let weight = sum.w.min(max_frames);
+    let weight = sum.w.min(MAX_FRAMES);
     (cell, (value * weight).extend(weight))
 }

@@ -1,5 +1,5 @@
-//! What every pass knows of the scene, and the model of the receiver: CPU reference of `common/globals.wgsl` and
-//! `common/model.wgsl`.
+//! What every pass knows of the scene, the model of the receiver, and which values carry evidence: CPU reference of
+//! `common/globals.wgsl`, `common/model.wgsl` and `common/pixel.wgsl`.
 
 use app_core::internals::light_in_plane;
 use app_core::internals::{PixelRect, PlaneRect};
@@ -7,7 +7,11 @@ use app_core::internals::{SceneLayout, View, globals};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
+
+/// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
+pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
+/// Linear value of the 8-bit code 250: brighter ones may be clipped.
+pub(super) const BRIGHTEST_USABLE: f64 = 0.955_973_35;
 
 /// The work region over the receivers, and the lights.
 #[derive(Clone, Debug, PartialEq)]
@@ -236,31 +240,9 @@ pub fn coarse_at(map: &Raster<f64>, region: &Region, region_px: DVec2) -> f64 {
     map.bilinear(region_px * map.size().as_dvec2() / region.size_px.as_dvec2())
 }
 
-/// Linear light between which an 8-bit code carries evidence.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UsableRange {
-    /// Below, a code is mostly quantisation.
-    pub darkest: f64,
-    /// Above, a code may be clipped.
-    pub brightest: f64,
-}
-
-impl UsableRange {
-    /// Reads it from `shader`, which includes `common/pixel.wgsl`.
-    ///
-    /// # Errors
-    /// When it does not.
-    pub fn from_shader(shader: &str) -> Result<Self, ConstantError> {
-        Ok(Self {
-            darkest: shader_constant(shader, "DARKEST_USABLE")?,
-            brightest: shader_constant(shader, "BRIGHTEST_USABLE")?,
-        })
-    }
-
-    /// 1 where both values are within.
-    #[must_use]
-    pub fn holds(&self, a: f64, b: f64) -> f64 {
-        let is_within = |value: f64| (self.darkest..=self.brightest).contains(&value);
-        f64::from(u8::from(is_within(a) && is_within(b)))
-    }
+/// 1 where both linear values carry evidence, else 0.
+#[must_use]
+pub fn usable(a: f64, b: f64) -> f64 {
+    let is_within = |value: f64| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value);
+    f64::from(u8::from(is_within(a) && is_within(b)))
 }

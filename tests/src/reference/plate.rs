@@ -4,43 +4,21 @@ use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
 use super::model::{ReceiverPoint, Region, centre_px};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
+/// Distance from a plate's border, in pixels, over which another one takes its place.
+const FEATHER_PX: f64 = 32.0;
+/// Power of the cosine between two directions of view, by which a plate from farther round is the worse.
+const ANGLE_POWER: f64 = 4.0;
+/// Power of the quality in a plate's weight: high, so that two are hardly ever mixed, which would blur.
+pub const CHOICE_POWER: f64 = 6.0;
+/// Cosine of the angle of view beyond which a plate gets no worse: it may be all there is.
+const LEAST_COSINE: f64 = 0.1;
+/// Share of the best plate's weight below which another is left out.
+const LEAST_WEIGHT: f64 = 0.02;
 /// Step of the difference quotient that tells how finely a plate shows a place.
 const STEP_PX: f64 = 1e-3;
 /// Relative difference of depths that rounding makes.
 const SAME_DEPTH: f64 = 1e-9;
-
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlateConstants {
-    /// Distance from a plate's border over which another takes over.
-    pub feather_px: f64,
-    /// Power of the view angle's cosine in a plate's quality.
-    pub angle_power: f64,
-    /// Power of the quality in a plate's weight.
-    pub choice_power: f64,
-    /// Cosine below which the angle no longer counts.
-    pub least_cosine: f64,
-    /// Weight against that of the best below which a plate is not looked at.
-    pub least_weight: f64,
-}
-
-impl PlateConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            feather_px: shader_constant("plate", "FEATHER_PX")?,
-            angle_power: shader_constant("plate", "ANGLE_POWER")?,
-            choice_power: shader_constant("plate", "CHOICE_POWER")?,
-            least_cosine: shader_constant("plate", "LEAST_COSINE")?,
-            least_weight: shader_constant("plate", "LEAST_WEIGHT")?,
-        })
-    }
-}
 
 /// A camera: what it sees of the receivers, and where it is.
 #[derive(Clone, Debug)]
@@ -102,22 +80,22 @@ impl Viewpoint {
 /// A plate's quality is its pixels per pixel of the view, by area and at most one, times a power of the cosine between the
 /// two directions of view. Its weight is a power of that against the best one's, less towards its border.
 #[must_use]
-pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], constants: &PlateConstants, texel: UVec2) -> DVec4 {
+pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], texel: UVec2) -> DVec4 {
     let at = centre_px(texel);
     let Some(point) = view.surface_point(at) else {
         return DVec4::ZERO;
     };
     let shown: Vec<Candidate<'_>> = plates
         .iter()
-        .filter_map(|plate| candidate(view, plate, constants, (at, point)))
+        .filter_map(|plate| candidate(view, plate, (at, point)))
         .collect();
     let best_quality = shown.iter().fold(0.0, |best: f64, one| best.max(one.quality));
-    let weight = |one: &Candidate<'_>| one.inside * (one.quality / best_quality).powf(constants.choice_power);
+    let weight = |one: &Candidate<'_>| one.inside * (one.quality / best_quality).powf(CHOICE_POWER);
     let best_weight = shown.iter().map(weight).fold(0.0, f64::max);
     let mut sum = DVec4::ZERO;
     for one in &shown {
         let weight = weight(one);
-        if weight >= constants.least_weight * best_weight {
+        if weight >= LEAST_WEIGHT * best_weight {
             let color = one.plate.gain * sharp(&one.plate.picture, one.px);
             sum += weight * color.extend(1.0);
         }
@@ -141,7 +119,6 @@ struct Candidate<'a> {
 fn candidate<'a>(
     view: &Viewpoint,
     plate: &'a PlatePhoto,
-    constants: &PlateConstants,
     (at, point): (DVec2, ReceiverPoint),
 ) -> Option<Candidate<'a>> {
     let receiver = point.receiver;
@@ -150,7 +127,7 @@ fn candidate<'a>(
     let is_same_side = own.y * other.y > 0.0;
     let px = plate.camera.sees(point).filter(|_| is_same_side)?;
     let border_px = px.min(plate.picture.size().as_dvec2() - px).min_element();
-    let inside = (border_px / constants.feather_px).clamp(0.0, 1.0);
+    let inside = (border_px / FEATHER_PX).clamp(0.0, 1.0);
     let plate_px = |at: DVec2| {
         let in_plane = view.region.receivers[receiver].plane_point(at)?;
         plate.camera.region.receivers[receiver].region_px(in_plane)
@@ -160,7 +137,7 @@ fn candidate<'a>(
     let magnification = across.perp_dot(along).abs() / (2.0 * STEP_PX).powi(2);
     let there = DVec3::new(point.in_plane.x, 0.0, point.in_plane.y);
     let cosine = (own - there).normalize().dot((other - there).normalize());
-    let quality = magnification.min(1.0) * cosine.max(constants.least_cosine).powf(constants.angle_power);
+    let quality = magnification.min(1.0) * cosine.max(LEAST_COSINE).powf(ANGLE_POWER);
     (inside > 0.0).then_some(Candidate {
         plate,
         px,

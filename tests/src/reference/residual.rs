@@ -2,38 +2,12 @@
 
 use glam::{DVec3, UVec2};
 
-use super::grid::{Cell, PlaneGrid};
-use super::model::{Pictures, Region, Solution, UsableRange, centre_px, coarse_at};
+use super::grid::{Cell, PlaneGrid, certainty};
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at, usable};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ResidualConstants {
-    /// Which values carry evidence.
-    pub validity: UsableRange,
-    /// Residual, as a fraction of the plate, at which a pixel counts half.
-    pub cauchy_scale: f64,
-    /// Share of a cell's points that must be evidence for the cell to count in full.
-    pub full_share: f64,
-    /// Points of a cell along each side.
-    pub n_points: u32,
-}
-
-impl ResidualConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            validity: UsableRange::from_shader("residual")?,
-            cauchy_scale: shader_constant("residual", "CAUCHY_SCALE")?,
-            full_share: shader_constant("residual", "FULL_SHARE")?,
-            n_points: shader_constant("residual", "N_POINTS")?,
-        })
-    }
-}
+/// Residual, as a fraction of the plate, at which a pixel counts half: more is of what the model does not know.
+const CAUCHY_SCALE: f64 = 0.03;
 
 /// Pools the residual of one receiver over the cells of its grid, from nothing known before.
 #[must_use]
@@ -41,18 +15,16 @@ pub fn pool(
     region: &Region,
     pictures: &Pictures,
     solution: &Solution,
-    constants: &ResidualConstants,
     (receiver, grid): (usize, &PlaneGrid),
 ) -> Raster<Cell> {
-    let n_side = constants.n_points;
     Raster::from_fn(grid.size, |cell| {
         let mut sums = Sums::default();
-        for texel in grid.texels_of(region, receiver, cell, n_side) {
+        for texel in grid.texels_of(region, receiver, cell) {
             if pictures.seen.at(texel) > 0.0 {
-                sums.add(region, pictures, solution, constants, texel);
+                sums.add(region, pictures, solution, texel);
             }
         }
-        sums.cell(constants.full_share * f64::from(n_side * n_side))
+        sums.cell()
     })
 }
 
@@ -67,14 +39,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(
-        &mut self,
-        region: &Region,
-        pictures: &Pictures,
-        solution: &Solution,
-        constants: &ResidualConstants,
-        texel: UVec2,
-    ) {
+    fn add(&mut self, region: &Region, pictures: &Pictures, solution: &Solution, texel: UVec2) {
         let Some(point) = region.receiver_point(centre_px(texel)) else {
             return;
         };
@@ -86,10 +51,9 @@ impl Sums {
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
         let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
         let unexplained = frame / solution.gain - plate * model;
-        let relative = unexplained.length_squared() / (brightness * constants.cauchy_scale.powi(2));
+        let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {
-            let usable = constants.validity.holds(frame[channel], plate[channel]);
-            let usable = usable * pictures.seen.at(texel);
+            let usable = usable(frame[channel], plate[channel]) * pictures.seen.at(texel);
             let weight = usable / (1.0 + relative);
             self.product[channel] += weight * plate[channel] * unexplained[channel];
             self.energy[channel] += weight * plate[channel] * plate[channel];
@@ -97,7 +61,7 @@ impl Sums {
         }
     }
 
-    fn cell(&self, n_full: f64) -> Cell {
+    fn cell(&self) -> Cell {
         let ratio = |channel: usize| {
             if self.energy[channel] > 0.0 {
                 self.product[channel] / self.energy[channel]
@@ -107,7 +71,7 @@ impl Sums {
         };
         Cell {
             value: DVec3::new(ratio(0), ratio(1), ratio(2)),
-            certainty: (self.n_points / n_full).min(1.0),
+            certainty: certainty(self.n_points),
         }
     }
 }

@@ -5,35 +5,12 @@
 use app_core::internals::{TINT_SIDE, TintGrid};
 use glam::{DVec3, DVec4, UVec3, Vec3};
 
-use super::{ConstantError, shader_constant};
+use super::model::{BRIGHTEST_USABLE, DARKEST_USABLE};
 
-/// What the shaders fix.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TintConstants {
-    /// Linear value above which a channel may be clipped.
-    pub brightest: f64,
-    /// Linear value up to which what is expected counts.
-    pub most_expected: f64,
-    /// Linear value from which on a channel carries evidence.
-    pub darkest: f64,
-    /// Pixels from which on a cell counts in full.
-    pub full_pixels: f64,
-}
-
-impl TintConstants {
-    /// Reads them from the shaders.
-    ///
-    /// # Errors
-    /// When they have no such constants.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            brightest: shader_constant("tint", "BRIGHTEST_USABLE")?,
-            most_expected: shader_constant("tint", "MOST_EXPECTED")?,
-            darkest: shader_constant("tint_fill", "DARKEST_USABLE")?,
-            full_pixels: shader_constant("tint_fill", "FULL_PIXELS")?,
-        })
-    }
-}
+/// Most linear light that is expected of a channel: a photograph is clipped long before, whatever the paint.
+const MOST_EXPECTED: f64 = 3.0;
+/// Pixels from which on a cell counts in full.
+const FULL_PIXELS: f64 = 16.0;
 
 /// A pixel that shows one surface of the toy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +71,7 @@ impl Volume {
 
 /// The tint in each cell of each material's grid, with alpha 1, from one frame and nothing known before.
 #[must_use]
-pub fn tints(grid: &TintGrid, seen: &[SeenPaint], constants: &TintConstants) -> Vec<Volume> {
+pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
     let side = u32::try_from(TINT_SIDE).unwrap_or(u32::MAX);
     let materials = 0..grid.n_materials as usize;
     let last = materials.end - 1;
@@ -103,7 +80,7 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint], constants: &TintConstants) -> 
             let own: Vec<&SeenPaint> = seen
                 .iter()
                 .filter(|paint| paint.material.min(last) == material)
-                .filter(|paint| paint.shown.max_element() <= constants.brightest)
+                .filter(|paint| paint.shown.max_element() <= BRIGHTEST_USABLE)
                 .collect();
             let cell_of = |paint: &SeenPaint| {
                 let corner = Vec3::from(grid.corner_in_anchor).as_dvec3();
@@ -112,7 +89,7 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint], constants: &TintConstants) -> 
             };
             let finest = Volume::from_fn(side, |cell| {
                 let here = own.iter().filter(|paint| cell_of(paint) == cell);
-                pooled(here.copied(), constants)
+                pooled(here.copied())
             });
             filled(finest)
         })
@@ -120,18 +97,18 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint], constants: &TintConstants) -> 
 }
 
 /// A cell's tint times its certainty, and that.
-fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>, constants: &TintConstants) -> DVec4 {
+fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
     let (mut shown, mut expected, mut n_pixels) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for paint in seen {
         // As if each pixel also showed what is too dark to tell, just as expected.
-        shown += paint.shown + constants.darkest;
-        expected += paint.expected.min(DVec3::splat(constants.most_expected)) + constants.darkest;
+        shown += paint.shown + DARKEST_USABLE;
+        expected += paint.expected.min(DVec3::splat(MOST_EXPECTED)) + DARKEST_USABLE;
         n_pixels += 1.0;
     }
     if n_pixels == 0.0 {
         return DVec4::ZERO;
     }
-    (n_pixels / constants.full_pixels).min(1.0) * (shown / expected).extend(1.0)
+    (n_pixels / FULL_PIXELS).min(1.0) * (shown / expected).extend(1.0)
 }
 
 /// Every cell made certain from the coarser level, the coarsest from the model's own colour.

@@ -3,35 +3,15 @@
 use glam::{IVec2, UVec2};
 
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
-/// What the shader fixes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ValidityConstants {
-    /// Distance kept from the toy on the receiver, along each side.
-    pub edge_px: i32,
-    /// The same where a pixel is to tell its own plate.
-    pub bleed_px: i32,
-    /// Steps in which that is looked at.
-    pub bleed_step_px: i32,
-    /// Relative second difference of depth up to which a surface goes on.
-    pub depth_bend: f64,
-}
-
-impl ValidityConstants {
-    /// Reads them from the shader.
-    ///
-    /// # Errors
-    /// When it has no such constant.
-    pub fn from_shader() -> Result<Self, ConstantError> {
-        Ok(Self {
-            edge_px: shader_constant("validity", "EDGE_PX")?,
-            bleed_px: shader_constant("validity", "BLEED_PX")?,
-            bleed_step_px: shader_constant("validity", "BLEED_STEP_PX")?,
-            depth_bend: shader_constant("validity", "DEPTH_BEND")?,
-        })
-    }
-}
+/// Distance kept from the toy on a receiver, in pixels along each side: no pose is quite right.
+const EDGE_PX: i32 = 2;
+/// The same, in pixels, where a pixel is to tell its own plate: a compressed picture's colours bleed.
+const BLEED_PX: i32 = 8;
+/// Pixels from one that is looked at to the next, over the larger distance.
+const BLEED_STEP_PX: usize = 2;
+/// Second difference of reversed depth, as a fraction of that in the middle, up to which a surface goes on.
+const DEPTH_BEND: f64 = 0.002;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,7 +27,7 @@ pub struct Marks {
 /// Marks a texel by the reversed depth of the physical toy around it, which is 0 where the toy is not and goes on beyond
 /// the border as it is there.
 #[must_use]
-pub fn mark(depth: &Raster<f64>, constants: &ValidityConstants, texel: UVec2) -> Marks {
+pub fn mark(depth: &Raster<f64>, texel: UVec2) -> Marks {
     let last = depth.size().as_ivec2() - 1;
     let at = |offset: IVec2| depth.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
     let is_free = |reach_px: i32, step_px: usize| {
@@ -59,14 +39,13 @@ pub fn mark(depth: &Raster<f64>, constants: &ValidityConstants, texel: UVec2) ->
     // A slope is straight in reversed depth, a step between two surfaces is not.
     let is_straight = |side: IVec2| {
         let (before, after) = (at(-side), at(side));
-        before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= constants.depth_bend * here
+        before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= DEPTH_BEND * here
     };
     let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
-    let is_clear = is_free(constants.edge_px, 1);
-    let bleed_step_px = usize::try_from(constants.bleed_step_px).unwrap_or(1);
+    let is_clear = is_free(EDGE_PX, 1);
     Marks {
         is_clear,
         is_one_surface: here > 0.0 && sides.into_iter().all(is_straight),
-        is_well_clear: is_clear && is_free(constants.bleed_px, bleed_step_px),
+        is_well_clear: is_clear && is_free(BLEED_PX, BLEED_STEP_PX),
     }
 }

@@ -4,15 +4,9 @@ use glam::DVec4;
 
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::{ConstantError, shader_constant};
 
 /// Light left, in plates, below which a pixel is in the real shadow.
-///
-/// # Errors
-/// When the shader does not say.
-pub fn lit_of_shader() -> Result<f64, ConstantError> {
-    shader_constant("withhold", "LIT")
-}
+const LIT: f64 = 0.95;
 
 /// The marks of `validity`, but none where a receiver is seen in shadow: there alpha is 0, and a half beside the toy.
 #[must_use]
@@ -20,14 +14,14 @@ pub fn withhold(
     region: &Region,
     pictures: &Pictures,
     solution: &Solution,
-    (validity, lit): (&Raster<DVec4>, f64),
+    validity: &Raster<DVec4>,
 ) -> Raster<DVec4> {
     Raster::from_fn(region.size_px, |texel| {
         let (marks, at) = (validity.at(texel), centre_px(texel));
         let in_shadow = region.receiver_point(at).is_some_and(|point| {
             let ambient = coarse_at(&pictures.ambient, region, at);
             let left = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
-            marks.x > 0.0 && left.min_element() < lit
+            marks.x > 0.0 && left.min_element() < LIT
         });
         if in_shadow {
             DVec4::W * 0.5 * (1.0 - marks.z)

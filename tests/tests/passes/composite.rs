@@ -3,7 +3,7 @@
 use app_core::internals::PixelRect;
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec4, UVec2};
-use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
+use harness::reference::composite::{Shown, inside_border, receiver_color};
 use harness::reference::model::centre_px;
 use harness::reference::raster::Raster;
 
@@ -27,7 +27,6 @@ pub(crate) fn shows_toy(stand: &Stand, posed: &PosedMesh, rect: &PixelRect) -> R
 
 #[test]
 fn receiver_in_codes() {
-    let constants = CompositeConstants::from_shader().unwrap();
     for run in runs() {
         let shown = Shown {
             visibility: run.shown_visibility.clone(),
@@ -43,7 +42,7 @@ fn receiver_in_codes() {
             .iter()
             .filter(|texel| !hidden.at(**texel))
             .flat_map(|texel| {
-                let expected = receiver_color(&run.region, &run.pictures, &shown, &constants, *texel);
+                let expected = receiver_color(&run.region, &run.pictures, &shown, *texel);
                 let actual = run.picture.at(*texel);
                 assert_eq!(actual[3], 255, "alpha at {texel}");
                 (0..3).map(move |channel| {

@@ -1,7 +1,7 @@
 //! `fill` on grids of any size and any certainty, without the passes before it.
 
 use glam::{DVec3, UVec2};
-use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::fill::fill;
 use harness::reference::grid::Cell;
 use harness::reference::raster::Raster;
 
@@ -21,7 +21,6 @@ fn patchwork(at: UVec2) -> Cell {
 #[test]
 fn pull_push() {
     let device = Device::open();
-    let n_levels = n_levels_of_shader().unwrap();
     for size in [
         UVec2::new(1, 1),
         UVec2::new(1, 64),
@@ -42,7 +41,7 @@ fn pull_push() {
                 })
                 .collect();
             let actual = device.fill(size, &premultiplied);
-            let expected = fill(&cells, n_levels);
+            let expected = fill(&cells);
             let pairs = actual
                 .iter()
                 .zip(expected.texels())

@@ -3,7 +3,8 @@
 use app_core::scene::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
 use harness::reference::fit::{
-    FitConstants, ToySample, fit_receiver, fit_toy, receiver_samples, toy_radiance,
+    FitConstants, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, ToySample, fit_receiver, fit_toy, receiver_samples,
+    toy_radiance,
 };
 use harness::reference::model::{ReceiverSolution, Solution, centre_px};
 use harness::reference::raster::Raster;
@@ -14,10 +15,9 @@ use crate::run::{Run, runs};
 
 /// What the core starts from.
 fn start(n_lights: usize) -> Solution {
-    let constants = FitConstants::from_shaders().unwrap();
-    let direct_fraction = constants.prior_direct_fraction / f64::from(u32::try_from(n_lights).unwrap());
+    let direct_fraction = PRIOR_DIRECT_FRACTION / f64::from(u32::try_from(n_lights).unwrap());
     let receiver = ReceiverSolution {
-        bounce: DVec3::splat(constants.prior_bounce),
+        bounce: DVec3::splat(PRIOR_BOUNCE),
         direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
         contrast: DVec3::ZERO,
     };
@@ -39,7 +39,7 @@ fn receiver_values(solution: &Solution, receiver: usize) -> impl Iterator<Item =
 
 #[test]
 fn receiver() {
-    let constants = FitConstants::from_shaders().unwrap();
+    let constants = FitConstants::default();
     for run in runs() {
         let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
         let mut expected = start(run.region.lights.len());
@@ -109,7 +109,7 @@ fn toy_samples(run: &Run) -> Vec<ToySample> {
 
 #[test]
 fn toy() {
-    let constants = FitConstants::from_shaders().unwrap();
+    let constants = FitConstants::default();
     for run in runs() {
         let samples = toy_samples(run);
         assert!(samples.len() > 80, "the toy is too small");

@@ -81,7 +81,7 @@ fn masks_follow_the_real_shadows_of_both_lights() {
     shot.learn(|visibility| visibility);
     let is_toy = raster(&shot.map(Map::Masks)).map(|texel| texel.x > 0.0);
     let visibility = raster(&shot.map(Map::Visibility));
-    let (eligible, shadow) = masks(&is_toy, &visibility, 2, BASELINE.eligible_margin_px).unwrap();
+    let (eligible, shadow) = masks(&is_toy, &visibility, 2, BASELINE.eligible_margin_px);
     let actual = raster(&shot.map(Map::Eligible));
     let expected = eligible.texels().iter().zip(shadow.texels());
     for (index, (actual, (set, is_shadow))) in actual.texels().iter().zip(expected).enumerate() {

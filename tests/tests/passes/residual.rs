@@ -1,30 +1,23 @@
 //! `residual` with `fill`, from the light that the device fitted.
 
-use harness::reference::fill::{fill, n_levels_of_shader};
-use harness::reference::residual::{ResidualConstants, pool};
+use harness::reference::fill::fill;
+use harness::reference::residual::pool;
 
 use crate::errors::Errors;
 use crate::run::runs;
 
 #[test]
 fn pooled_and_filled() {
-    let constants = ResidualConstants::from_shader().unwrap();
     let each = runs().iter().flat_map(|run| {
         let receivers = run.residuals.iter().zip(&run.grids).enumerate();
         receivers.map(move |receiver| (run, receiver))
     });
     for (run, (receiver, (actual, grid))) in each {
-        let cells = pool(
-            &run.region,
-            &run.pictures,
-            &run.solution,
-            &constants,
-            (receiver, grid),
-        );
+        let cells = pool(&run.region, &run.pictures, &run.solution, (receiver, grid));
         assert_eq!(cells.size(), actual.size());
         let n_hidden = cells.texels().iter().filter(|cell| cell.certainty == 0.0).count();
         assert!(n_hidden > 0, "the toy hides no cell");
-        let expected = fill(&cells, n_levels_of_shader().unwrap());
+        let expected = fill(&cells);
         let pairs = actual
             .texels()
             .iter()

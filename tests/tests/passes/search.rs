@@ -149,16 +149,16 @@ fn scattered_samples_are_found() {
 #[test]
 fn a_fault_in_the_search_is_found() {
     let faults = [
+        ("baseline.n_rings, u32(", "baseline.n_rings, u32(2.0 * "),
         (
-            "return min(baseline.n_rings, u32(farthest_px",
-            "return min(baseline.n_rings, u32(2.0 * farthest_px",
+            "abs(globals.region_size_px - ",
+            "abs(0.0 * globals.region_size_px - ",
         ),
-        ("abs(globals.region_size_px - at)", "vec2f(0.0)"),
-        ("0.5 * f32(ring & 1u)", "0.0"),
-        ("if away < best {", "if best == 1e9 {"),
-        ("remaining &= ~sets;", "remaining = 0u;"),
-        ("2u * countOneBits(wanted ^ has)", "0u"),
-        ("min(shaded / lit, vec3f(1.0))", "shaded / lit"),
+        ("0.5 * f32(", "0.0 * f32("),
+        ("distance(vec2f(", "0.0 * distance(vec2f("),
+        ("&= ~", "&= 0u & ~"),
+        ("2u * countOneBits(", "0u * countOneBits("),
+        (", vec3f(1.0)),", ", vec3f(1e9)),"),
     ];
     // A fault is what is wrong in more places than rounding decides.
     let errors = |source: &str| {

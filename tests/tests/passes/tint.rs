@@ -6,7 +6,7 @@ use harness::reference::fit::toy_radiance;
 use harness::reference::model::centre_px;
 use harness::reference::occlusion::Occluder;
 use harness::reference::raster::Raster;
-use harness::reference::tint::{SeenPaint, TintConstants, tints};
+use harness::reference::tint::{SeenPaint, tints};
 
 use crate::errors::Errors;
 use crate::photo::Photo;
@@ -48,9 +48,8 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
 
 #[test]
 fn tint_of_all_cells() {
-    let constants = TintConstants::from_shader().unwrap();
     for run in runs() {
-        let expected = tints(&run.tints.grid, &seen(run), &constants);
+        let expected = tints(&run.tints.grid, &seen(run));
         let pairs = run
             .tints
             .materials

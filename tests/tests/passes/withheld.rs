@@ -9,7 +9,7 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
 use glam::UVec2;
-use harness::reference::withhold::{lit_of_shader, withhold};
+use harness::reference::withhold::withhold;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
@@ -88,8 +88,12 @@ fn errors(source: &str) -> Errors {
         size: scene.rect.size_px,
     };
     let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
-    let marks = (&scene.validity, lit_of_shader().unwrap());
-    let expected = withhold(&scene.region, &scene.pictures(0), &scene.solution, marks);
+    let expected = withhold(
+        &scene.region,
+        &scene.pictures(0),
+        &scene.solution,
+        &scene.validity,
+    );
     let both = actual.texels().iter().zip(expected.texels());
     Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
 }
@@ -103,10 +107,10 @@ fn evidence_without_the_shadow() {
 fn a_fault_in_withholding_is_found() {
     let faults = [
         ("LIT: f32 = 0.95", "LIT: f32 = 0.7"),
-        ("|| marks.r == 0.0", ""),
-        ("!is_hit(point) ||", ""),
-        ("smallest(left)", "largest(left)"),
-        ("1.0 - marks.b", "1.0 - marks.g"),
+        (".r == 0.0", ".r < 0.0"),
+        ("< MAX_RECEIVERS;", "<= MAX_RECEIVERS;"),
+        (", smallest(", ", largest("),
+        (".b)),", ".g)),"),
     ];
     check_faults("withhold", &faults, 0.0, errors);
 }

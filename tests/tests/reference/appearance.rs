@@ -1,7 +1,7 @@
 //! Colours of a toy where it is plain from which pixel they are.
 
 use glam::{DVec3, UVec2};
-use harness::reference::appearance::{AppearanceConstants, Seen, ToyPixel, clean};
+use harness::reference::appearance::{OTHER_SURFACE, REACH_PX, Seen, ToyPixel, clean};
 use harness::reference::raster::Raster;
 
 const SIZE: UVec2 = UVec2::new(17, 11);
@@ -34,7 +34,7 @@ fn scene(depth: f64, known: &[(UVec2, f64, f64)]) -> Raster<Seen> {
 }
 
 fn color(seen: &Raster<Seen>, at: UVec2) -> Option<f64> {
-    let found = clean(seen, &AppearanceConstants::from_shader().unwrap(), at)?;
+    let found = clean(seen, at)?;
     assert!(
         (found.lit - 2.0 * found.color).abs().max_element() < 1e-12,
         "{found:?}"
@@ -48,7 +48,7 @@ fn color(seen: &Raster<Seen>, at: UVec2) -> Option<f64> {
 
 #[test]
 fn one_pixel_is_carried_as_far_as_it_reaches() {
-    let reach = u32::try_from(AppearanceConstants::from_shader().unwrap().reach_px).unwrap();
+    let reach = u32::try_from(REACH_PX).unwrap();
     let middle = UVec2::new(8, 5);
     let beside_toy = scene(0.0, &[(middle, 0.25, 0.5)]);
     for (offset, is_reached) in [(0, true), (reach, true), (reach + 1, false)] {
@@ -71,7 +71,7 @@ fn the_nearer_counts_by_the_fourth_power_and_another_surface_next_to_nothing() {
     assert!((found - 1.0 / 17.0).abs() < 1e-12, "{found}");
     // The nearer one is of another surface.
     let found = color(&scene(0.5, &[(near, 0.0, 0.4), (far, 1.0, 0.5)]), at).unwrap();
-    let other = 16.0 * AppearanceConstants::from_shader().unwrap().other_surface;
+    let other = 16.0 * OTHER_SURFACE;
     assert!((found - 1.0 / (1.0 + other)).abs() < 1e-12, "{found}");
     // Where there is no other it will do.
     assert_eq!(color(&scene(0.5, &[(near, 0.125, 0.4)]), at), Some(0.125));

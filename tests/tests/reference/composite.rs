@@ -1,7 +1,7 @@
 //! The picture where its answer is known: nothing moved, or the toy was taken away.
 
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::composite::{CompositeConstants, Shown, inside_border, receiver_color};
+use harness::reference::composite::{Shown, inside_border, receiver_color};
 use harness::reference::model::{Pictures, Region};
 use harness::reference::raster::Raster;
 
@@ -40,10 +40,7 @@ fn scene() -> (Region, Pictures, Shown) {
 }
 
 fn picture(region: &Region, pictures: &Pictures, shown: &Shown) -> Raster<DVec3> {
-    let constants = CompositeConstants::from_shader().unwrap();
-    Raster::from_fn(SIZE, |texel| {
-        receiver_color(region, pictures, shown, &constants, texel)[0]
-    })
+    Raster::from_fn(SIZE, |texel| receiver_color(region, pictures, shown, texel)[0])
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! `lit`, `estimate` and `detail` where the frame is what the model says, so that the plate and the residual are known.
 
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::detail::{DetailConstants, separate, told};
-use harness::reference::estimate::{EstimateConstants, Known, complete};
-use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::detail::{DETAIL, NOISE, separate, told};
+use harness::reference::estimate::{ESTIMATED, Known, complete};
+use harness::reference::fill::fill;
 use harness::reference::grid::{Cell, accumulate};
-use harness::reference::lit::{LitConstants, pool};
+use harness::reference::lit::pool;
 use harness::reference::model::{Pictures, Region, Solution};
 use harness::reference::raster::Raster;
 
@@ -56,21 +56,14 @@ fn texels() -> impl Iterator<Item = UVec2> {
 fn a_plate_is_found_again_in_the_frame() {
     let (region, solution, pictures) = scene(|_| PLATE, |_| DVec3::ZERO);
     let grid = grid(SIZE, 4);
-    let cells = pool(
-        &region,
-        &pictures,
-        &solution,
-        &LitConstants::from_shader().unwrap(),
-        (0, &grid),
-    );
+    let cells = pool(&region, &pictures, &solution, (0, &grid));
     assert_eq!(cells.at(UVec2::new(7, 4)), Cell::default(), "the toy is there");
     let bright = cells.at(UVec2::ZERO).certainty;
     assert!(
         bright > cells.at(UVec2::new(14, 0)).certainty,
         "shadow counts less"
     );
-    let lit = [(grid, fill(&cells, n_levels_of_shader().unwrap()))];
-    let constants = EstimateConstants::from_shader().unwrap();
+    let lit = [(grid, fill(&cells))];
     let known = Known {
         pictures: &pictures,
         photographed: &Raster::from_fn(SIZE, |_| 0.0),
@@ -79,9 +72,9 @@ fn a_plate_is_found_again_in_the_frame() {
     };
     for is_final in [false, true] {
         for texel in texels() {
-            let found = complete(&region, &known, &constants, is_final, texel);
+            let found = complete(&region, &known, is_final, texel);
             let off = (found.truncate() - PLATE).abs().max_element();
-            assert!(off < 1e-12 && found.w == constants.estimated, "{texel}: {found}");
+            assert!(off < 1e-12 && found.w == ESTIMATED, "{texel}: {found}");
         }
     }
 }
@@ -92,7 +85,6 @@ fn a_texture_is_found_where_it_is_seen() {
     let texture = |at: UVec2| DVec3::splat(0.2 + 0.5 * scatter(at.x + SIZE.x * at.y, 0));
     let (region, solution, pictures) = scene(texture, |_| DVec3::ZERO);
     let lit = [(grid(SIZE, 4), Raster::from_fn(UVec2::new(16, 10), |_| PLATE))];
-    let constants = EstimateConstants::from_shader().unwrap();
     let of = |is_photographed: f64, is_final: bool, texel: UVec2| {
         let known = Known {
             pictures: &pictures,
@@ -100,7 +92,7 @@ fn a_texture_is_found_where_it_is_seen() {
             solution: &solution,
             lit: &lit,
         };
-        complete(&region, &known, &constants, is_final, texel)
+        complete(&region, &known, is_final, texel)
     };
     for texel in texels().step_by(7) {
         let seen = of(0.0, true, texel).truncate();
@@ -123,7 +115,7 @@ fn what_was_known_counts_by_its_certainty_and_at_most_as_much_as_is_kept() {
         certainty,
     };
     // Three certain sights of 0.2, and one of 0.6: a quarter of the way.
-    let (cell, accumulated) = accumulate(DVec3::splat(0.6).extend(3.0), fresh(1.0), 8.0);
+    let (cell, accumulated) = accumulate(DVec3::splat(0.6).extend(3.0), fresh(1.0));
     assert!(
         (cell.value - 0.3).abs().max_element() < 1e-12 && cell.certainty == 1.0,
         "{cell:?}"
@@ -132,11 +124,11 @@ fn what_was_known_counts_by_its_certainty_and_at_most_as_much_as_is_kept() {
         (accumulated - DVec3::splat(1.2).extend(4.0)).abs().max_element() < 1e-12,
         "{accumulated}"
     );
-    let (cell, accumulated) = accumulate(DVec3::splat(1.6).extend(8.0), fresh(1.0), 8.0);
+    let (cell, accumulated) = accumulate(DVec3::splat(1.6).extend(8.0), fresh(1.0));
     assert!(accumulated.w == 8.0 && (accumulated.truncate() / 8.0 - cell.value).abs().max_element() < 1e-12);
-    assert_eq!(accumulate(DVec4::ZERO, fresh(0.5), 8.0).0, fresh(0.5));
+    assert_eq!(accumulate(DVec4::ZERO, fresh(0.5)).0, fresh(0.5));
     assert_eq!(
-        accumulate(DVec4::ZERO, fresh(0.0), 8.0),
+        accumulate(DVec4::ZERO, fresh(0.0)),
         (Cell::default(), DVec4::ZERO)
     );
 }
@@ -144,10 +136,9 @@ fn what_was_known_counts_by_its_certainty_and_at_most_as_much_as_is_kept() {
 fn separated(residual: impl Fn(UVec2) -> DVec3, texel: UVec2) -> DVec3 {
     let texture = |at: UVec2| DVec3::splat(0.2 + 0.5 * scatter(at.x + SIZE.x * at.y, 0));
     let (region, solution, pictures) = scene(texture, residual);
-    let constants = DetailConstants::from_shader().unwrap();
     let everywhere = Raster::from_fn(SIZE, |_| 1.0);
-    let told = told(&region, &pictures, &everywhere, &solution, &constants);
-    separate(&told, &constants, (texel, 0))
+    let told = told(&region, &pictures, &everywhere, &solution);
+    separate(&told, (texel, 0))
 }
 
 /// In the light, in shadow, and in shadow at the border, all clear of the toy.
@@ -171,8 +162,7 @@ fn a_constant_residual_is_no_noise_and_the_texture_divides_out() {
 fn in_shadow_noise_goes_and_detail_stays() {
     // One pixel stands out of nothing: what is around, itself included, is smoothed to less than this share of it.
     let direct_fraction = 0.2;
-    let constants = DetailConstants::from_shader().unwrap();
-    for (height, is_noise) in [(0.5 * constants.noise, true), (2.0 * constants.detail, false)] {
+    for (height, is_noise) in [(0.5 * NOISE, true), (2.0 * DETAIL, false)] {
         for texel in PLACES {
             let alone = |at: UVec2| {
                 if at == texel {

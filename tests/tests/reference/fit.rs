@@ -1,7 +1,9 @@
 //! A frame made from a known solution gives that solution back.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
-use harness::reference::fit::{FitConstants, ReceiverSample, ToySample, fit_receiver, fit_toy, toy_columns};
+use harness::reference::fit::{
+    FitConstants, PRIOR_DIRECT_FRACTION, ReceiverSample, ToySample, fit_receiver, fit_toy, toy_columns,
+};
 use harness::reference::model::{Region, Solution};
 
 use crate::flat::{point, region, scatter, start, truth, two_bulbs};
@@ -12,7 +14,7 @@ fn without_priors() -> FitConstants {
     FitConstants {
         prior_weight: 0.0,
         white_weight: 0.0,
-        ..FitConstants::from_shaders().unwrap()
+        ..FitConstants::default()
     }
 }
 
@@ -74,7 +76,7 @@ fn known_light_is_recovered() {
 
 #[test]
 fn priors_and_few_steps_cost_little() {
-    let constants = FitConstants::from_shaders().unwrap();
+    let constants = FitConstants::default();
     for n_lights in [1, 2] {
         let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
@@ -121,7 +123,7 @@ fn hand_in_the_picture_counts_little() {
 
 #[test]
 fn without_evidence_the_start_stays() {
-    let constants = FitConstants::from_shaders().unwrap();
+    let constants = FitConstants::default();
     let region = layout(2);
     let mut dark = samples(&region, &truth(2));
     dark.iter_mut().for_each(|sample| sample.frame = DVec3::ZERO);
@@ -136,7 +138,7 @@ fn without_evidence_the_start_stays() {
 
 #[test]
 fn unseen_shadow_leaves_the_expected_share() {
-    let constants = FitConstants::from_shaders().unwrap();
+    let constants = FitConstants::default();
     let region = layout(2);
     let mut lit = samples(&region, &truth(2));
     for sample in &mut lit {
@@ -150,7 +152,7 @@ fn unseen_shadow_leaves_the_expected_share() {
     let both: f64 = bulbs.iter().map(|bulb| of_bulb(*bulb)).sum();
     for (direct_fraction, bulb) in fitted.receivers[0].direct_fractions.iter().zip(bulbs) {
         // Whatever the gain is, which is found first.
-        let expected = constants.prior_direct_fraction * of_bulb(bulb) / both;
+        let expected = PRIOR_DIRECT_FRACTION * of_bulb(bulb) / both;
         assert!(
             (direct_fraction - expected).abs().max_element() < 1e-3,
             "{fitted:?}"

@@ -3,7 +3,7 @@
 use app_core::internals::PlaneRect;
 use glam::{DMat3, DMat4, DVec2, DVec3, UVec2};
 use harness::reference::model::{ReceiverPlane, Region};
-use harness::reference::plate::{PlateConstants, PlatePhoto, Viewpoint, choose};
+use harness::reference::plate::{CHOICE_POWER, PlatePhoto, Viewpoint, choose};
 use harness::reference::raster::Raster;
 
 const SIZE: UVec2 = UVec2::new(81, 61);
@@ -52,7 +52,6 @@ fn photo(camera: &Viewpoint, gain: f64, color: impl Fn(DVec2) -> DVec3) -> Plate
 
 #[test]
 fn a_slope_is_the_same_from_wherever_it_is_photographed() {
-    let constants = PlateConstants::from_shader().unwrap();
     let view = above(DVec2::ZERO, 1.0);
     for (middle, height_m, gain) in [
         (DVec2::ZERO, 1.0, 1.0),
@@ -65,7 +64,7 @@ fn a_slope_is_the_same_from_wherever_it_is_photographed() {
             let in_plane = view.region.receivers[0]
                 .plane_point(texel.as_dvec2() + 0.5)
                 .unwrap();
-            let found = choose(&view, std::slice::from_ref(&plate), &constants, texel);
+            let found = choose(&view, std::slice::from_ref(&plate), texel);
             // A cubic through a line is the line.
             assert!(
                 (found.truncate() - slope(in_plane)).abs().max_element() < 1e-9,
@@ -76,12 +75,11 @@ fn a_slope_is_the_same_from_wherever_it_is_photographed() {
         assert_eq!(n_shown, 3, "{middle}");
     }
     let elsewhere = photo(&above(DVec2::new(3.0, 0.0), 1.0), 1.0, slope);
-    assert_eq!(choose(&view, &[elsewhere], &constants, UVec2::new(40, 30)).w, 0.0);
+    assert_eq!(choose(&view, &[elsewhere], UVec2::new(40, 30)).w, 0.0);
 }
 
 #[test]
 fn of_two_plates_detail_weighs_by_its_power_and_no_more_than_enough() {
-    let constants = PlateConstants::from_shader().unwrap();
     let view = above(DVec2::ZERO, 1.0);
     let direct_fraction_of_first = |heights_m: [f64; 2]| {
         let [first, second] = heights_m.map(|height_m| above(DVec2::ZERO, height_m));
@@ -89,14 +87,14 @@ fn of_two_plates_detail_weighs_by_its_power_and_no_more_than_enough() {
             photo(&first, 1.0, |_| DVec3::ONE),
             photo(&second, 1.0, |_| DVec3::ZERO),
         ];
-        choose(&view, &plates, &constants, UVec2::new(40, 30)).x
+        choose(&view, &plates, UVec2::new(40, 30)).x
     };
     // From the middle both are 30 px inside: less than the feather, and alike.
     assert!((direct_fraction_of_first([1.0, 1.0]) - 0.5).abs() < 1e-9);
     // Nearer is no better than the view itself.
     assert!((direct_fraction_of_first([0.5, 1.0]) - 0.5).abs() < 1e-9);
     // A tenth higher shows 1 / 1.21 of the pixels.
-    let weight = 1.21_f64.powf(-constants.choice_power);
+    let weight = 1.21_f64.powf(-CHOICE_POWER);
     let expected = 1.0 / (1.0 + weight);
     let found = direct_fraction_of_first([1.0, 1.1]);
     assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");

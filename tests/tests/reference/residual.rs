@@ -1,11 +1,11 @@
 //! Residuals that are known beforehand, pooled and filled.
 
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::fill::{fill, n_levels_of_shader};
+use harness::reference::fill::fill;
 use harness::reference::grid::Cell;
 use harness::reference::model::Pictures;
 use harness::reference::raster::Raster;
-use harness::reference::residual::{ResidualConstants, pool};
+use harness::reference::residual::pool;
 
 use crate::flat::{grid, region, scatter, truth, two_bulbs};
 
@@ -22,10 +22,6 @@ fn known(residual: DVec3) -> Cell {
 /// Whether a cell lies under a toy in the middle.
 fn is_hidden(at: UVec2) -> bool {
     (20..41).contains(&at.x) && (9..30).contains(&at.y)
-}
-
-fn filled(cells: &Raster<Cell>) -> Raster<DVec3> {
-    fill(cells, n_levels_of_shader().unwrap())
 }
 
 #[test]
@@ -52,14 +48,13 @@ fn constant_residual_is_pooled_as_it_is() {
             solution.gain * pictures.plate.at(at) * (model + residual)
         }
     });
-    let constants = ResidualConstants::from_shader().unwrap();
-    let cells = pool(&region, &pictures, &solution, &constants, (0, &grid(SIZE, 4)));
+    let cells = pool(&region, &pictures, &solution, (0, &grid(SIZE, 4)));
     assert_eq!(cells.size(), UVec2::new(16, 10));
     let full = cells.at(UVec2::ZERO);
     assert!((full.certainty - 1.0).abs() < 1e-12, "{full:?}");
     let hidden = cells.at(UVec2::new(7, 4));
     assert_eq!(hidden, Cell::default());
-    for value in filled(&cells).texels() {
+    for value in fill(&cells).texels() {
         assert!((value - residual).abs().max_element() < 1e-12, "{value}");
     }
 }
@@ -74,7 +69,7 @@ fn hidden_patch_of_a_slope_stays_within_its_surroundings() {
             known(slope(at))
         }
     });
-    let filled = filled(&cells);
+    let filled = fill(&cells);
     let mut worst = 0.0_f64;
     for at in Raster::from_fn(SIZE, |at| at).texels() {
         let error = filled.at(*at) - slope(*at);
@@ -99,10 +94,7 @@ fn nothing_known_is_zero_and_little_known_is_finite() {
     for size in [UVec2::ONE, UVec2::new(1, 64), SIZE, UVec2::splat(64)] {
         let nothing = Raster::from_fn(size, |_| Cell::default());
         assert!(
-            filled(&nothing)
-                .texels()
-                .iter()
-                .all(|value| *value == DVec3::ZERO),
+            fill(&nothing).texels().iter().all(|value| *value == DVec3::ZERO),
             "{size}"
         );
         let little = Raster::from_fn(size, |at| Cell {
@@ -110,6 +102,6 @@ fn nothing_known_is_zero_and_little_known_is_finite() {
             certainty: if at == UVec2::ZERO { 1e-6 } else { 0.0 },
         });
         let within = |value: &DVec3| value.is_finite() && (0.0..=0.1).contains(&value.x);
-        assert!(filled(&little).texels().iter().all(within), "{size}");
+        assert!(fill(&little).texels().iter().all(within), "{size}");
     }
 }

@@ -2,7 +2,7 @@
 
 use app_core::internals::TintGrid;
 use glam::{DVec3, UVec3};
-use harness::reference::tint::{SeenPaint, TintConstants, Volume, tints};
+use harness::reference::tint::{SeenPaint, Volume, tints};
 
 const SIDE: u32 = 16;
 const GRID: TintGrid = TintGrid {
@@ -37,8 +37,7 @@ fn assert_near(actual: DVec3, expected: DVec3, what: &str) {
 
 #[test]
 fn one_paint_is_that_of_all_hidden_parts_of_its_material() {
-    let constants = TintConstants::from_shader().unwrap();
-    let volumes = tints(&GRID, &seen(UVec3::new(3, 9, 12), 0, PAINT), &constants);
+    let volumes = tints(&GRID, &seen(UVec3::new(3, 9, 12), 0, PAINT));
     for cell in [UVec3::ZERO, UVec3::new(3, 9, 12), UVec3::splat(SIDE - 1)] {
         assert_near(tint(&volumes[0], cell), PAINT, "its own material");
         assert_near(
@@ -51,11 +50,10 @@ fn one_paint_is_that_of_all_hidden_parts_of_its_material() {
 
 #[test]
 fn of_two_paints_the_nearer_counts() {
-    let constants = TintConstants::from_shader().unwrap();
     let (low, high) = (UVec3::new(1, 8, 8), UVec3::new(14, 8, 8));
     let mut both = seen(low, 0, PAINT);
     both.extend(seen(high, 0, 1.0 / PAINT));
-    let volume = &tints(&GRID, &both, &constants)[0];
+    let volume = &tints(&GRID, &both)[0];
     assert_near(tint(volume, low), PAINT, "where it was seen");
     assert_near(tint(volume, high), 1.0 / PAINT, "where it was seen");
     let reds: Vec<f64> = (1..15).map(|x| tint(volume, UVec3::new(x, 7, 8)).x).collect();
@@ -66,19 +64,14 @@ fn of_two_paints_the_nearer_counts() {
 
 #[test]
 fn what_is_clipped_or_nearly_black_tells_nothing() {
-    let constants = TintConstants::from_shader().unwrap();
     let cell = UVec3::splat(5);
     let clipped = seen(cell, 0, DVec3::ONE / EXPECTED);
-    assert_near(
-        tint(&tints(&GRID, &clipped, &constants)[0], cell),
-        DVec3::ONE,
-        "clipped",
-    );
+    assert_near(tint(&tints(&GRID, &clipped)[0], cell), DVec3::ONE, "clipped");
     let black = SeenPaint {
         shown: DVec3::splat(1e-5),
         expected: DVec3::splat(2e-4),
         ..seen(cell, 0, PAINT)[0]
     };
-    let tint = tint(&tints(&GRID, &[black; 100], &constants)[0], cell);
+    let tint = tint(&tints(&GRID, &[black; 100])[0], cell);
     assert!((0.9..1.0).contains(&tint.x), "{tint}");
 }
