@@ -35,30 +35,30 @@ fn penumbra_radius_m(height_m: f32, receiver: u32, light: u32) -> f32 {
 // A point of a disc across the ray to the light, moved along that ray onto the receiver: the disc's shadow is longer by
 // 1 / sine of the light's elevation, away from the light.
 fn slanted(disc: vec2f, point: ReceiverPoint, light: u32) -> ReceiverPoint {
-  let at = globals.receivers[point.receiver].lights[light];
-  let to_light = normalize(at.xyz - at.w * vec3f(point.in_plane.x, 0.0, point.in_plane.y));
+  let at = globals.receivers[receiver_of(point)].lights[light];
+  let to_light = normalize(at.xyz - at.w * vec3f(point.xy.x, 0.0, point.xy.y));
   let longer = to_light.xz * (dot(to_light.xz, disc) / (to_light.y * (1.0 + to_light.y)));
-  return ReceiverPoint(point.receiver, point.in_plane + disc + longer);
+  return point_on(receiver_of(point), point.xy + disc + longer);
 }
 
 fn visibility_at(texel: vec2i, point: ReceiverPoint, half_pixel_m: f32, light: u32) -> f32 {
   // A light behind the receiver casts no shadow on it.
-  if globals.receivers[point.receiver].lights[light].y <= 0.0 { return 1.0; }
+  if globals.receivers[receiver_of(point)].lights[light].y <= 0.0 { return 1.0; }
   let here = textureLoad(warp, texel, light, 0);
   // Never less than half a pixel, so that a hard edge is antialiased.
-  let tallest_m = baseline.tallest_m[point.receiver];
-  let reach_m = max(penumbra_radius_m(tallest_m, point.receiver, light), half_pixel_m);
+  let tallest_m = baseline.tallest_m[receiver_of(point)];
+  let reach_m = max(penumbra_radius_m(tallest_m, receiver_of(point), light), half_pixel_m);
   var height_sum = 0.0;
   var n_blocked = 0.0;
   for (var k = 0u; k < baseline.n_blocker_taps; k++) {
     let disc = reach_m * disc_point(k, baseline.n_blocker_taps);
-    let tap = warp_near(ReceiverPoint(point.receiver, point.in_plane + disc), light);
+    let tap = warp_near(point_on(receiver_of(point), point.xy + disc), light);
     height_sum += tap.a * tap.z;
     n_blocked += tap.a;
   }
   if n_blocked == 0.0 { return 1.0 - here.a; }
   if n_blocked == f32(baseline.n_blocker_taps) && here.a == 1.0 { return 0.0; }
-  let radius_m = max(penumbra_radius_m(height_sum / n_blocked, point.receiver, light), half_pixel_m);
+  let radius_m = max(penumbra_radius_m(height_sum / n_blocked, receiver_of(point), light), half_pixel_m);
   var blocked = 0.0;
   for (var k = 0u; k < baseline.n_filter_taps; k++) {
     let disc = radius_m * disc_point(k, baseline.n_filter_taps);
@@ -71,8 +71,8 @@ fn visibility_at(texel: vec2i, point: ReceiverPoint, half_pixel_m: f32, light: u
 fn fs_soften(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let point = receiver_point(at.xy);
   if !is_hit(point) { return vec4f(1.0); }
-  let next = globals.receivers[point.receiver].plane_from_region_px * vec3f(at.xy + vec2f(1.0, 0.0), 1.0);
-  let half_pixel_m = select(0.0, 0.5 * distance(next.xy / next.z, point.in_plane), next.z > 0.0);
+  let next = globals.receivers[receiver_of(point)].plane_from_region_px * vec3f(at.xy + vec2f(1.0, 0.0), 1.0);
+  let half_pixel_m = select(0.0, 0.5 * distance(next.xy / next.z, point.xy), next.z > 0.0);
   var visibility = vec4f(1.0);
   for (var light = 0u; light < globals.n_lights; light++) {
     visibility[light] = visibility_at(vec2i(at.xy), point, half_pixel_m, light);

@@ -97,8 +97,8 @@ fn vs_toy(@location(0) in_anchor: vec3f, @location(1) physical_in_anchor: vec3f)
 }
 
 @fragment
-fn fs_toy(in: Surface) -> @location(0) vec4f {
-  let region_px = (in.physical_clip.xy / in.physical_clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
+fn fs_toy(@location(0) physical_clip: vec4f) -> @location(0) vec4f {
+  let region_px = (physical_clip.xy / physical_clip.w * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
   let uv = (region_px + globals.region_origin_px) / vec2f(textureDimensions(frame));
   return vec4f(textureSampleLevel(frame, linear_sampler, uv, 0.0).rgb, 1.0);
 }

@@ -21,23 +21,15 @@ struct Term {
   @location(1) taps: vec4f,
 }
 
-struct Found {
-  texel: vec2i,
-  is_found: bool,
-  taps: u32,
-}
+// What a search found: xy is the texel, z is 1 where there is one, w the taps that were taken.
+alias Found = vec4i;
 
-// What will do as a sample: its receiver, and bit s where the set s will.
-struct Wanted {
-  receiver: u32,
-  sets: u32,
-}
-
-fn is_eligible(texel: vec2i, wanted: Wanted) -> bool {
+// Whether a texel will do as a sample: of `receiver`, and of a set s whose bit is 1 in `sets`.
+fn is_eligible(texel: vec2i, receiver: u32, sets: u32) -> bool {
   let size = vec2i(textureDimensions(eligible));
   if any(texel < vec2i(0)) || any(texel >= size) { return false; }
   let label = textureLoad(eligible, texel, 0).r;
-  return label / N_SETS == wanted.receiver && ((wanted.sets >> (label % N_SETS)) & 1u) != 0u;
+  return label / N_SETS == receiver && ((sets >> (label % N_SETS)) & 1u) != 0u;
 }
 
 fn ratio_at(texel: vec2i) -> vec3f {
@@ -75,16 +67,16 @@ fn n_rings_around(at: vec2f) -> u32 {
 }
 
 // Where the shadow of each light of the set came from, and rings around.
-fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
+fn search(texel: vec2i, lights: u32, receiver: u32, sets: u32) -> Found {
   var n_rings = 0u;
   for (var light = 0u; light < globals.n_lights; light++) {
     if ((lights >> light) & 1u) == 0u { continue; }
     let warped = textureLoad(warp, texel, light, 0).xy;
     let start = vec2i(floor(warped));
-    if is_eligible(start, wanted) { return Found(start, true, 0u); }
+    if is_eligible(start, receiver, sets) { return vec4i(start, 1, 0); }
     n_rings = max(n_rings, n_rings_around(warped));
   }
-  var taps = 0u;
+  var taps = 0;
   for (var ring = 1u; ring <= n_rings; ring++) {
     var best = 1e9;
     var found = vec2i(0);
@@ -96,7 +88,7 @@ fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
         let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(baseline.n_ring_directions) * 6.2831853;
         let candidate = vec2i(floor(warped + f32(ring) * baseline.ring_step_px * vec2f(cos(turn), sin(turn))));
         taps++;
-        if is_eligible(candidate, wanted) {
+        if is_eligible(candidate, receiver, sets) {
           let away = distance(vec2f(candidate) + 0.5, warped);
           if away < best {
             best = away;
@@ -105,9 +97,9 @@ fn search(texel: vec2i, lights: u32, wanted: Wanted) -> Found {
         }
       }
     }
-    if best < 1e9 { return Found(found, true, taps); }
+    if best < 1e9 { return vec4i(found, 1, taps); }
   }
-  return Found(vec2i(0), false, taps);
+  return vec4i(0, 0, 0, taps);
 }
 
 @fragment
@@ -126,10 +118,10 @@ fn fs_search(@builtin(position) at: vec4f) -> Term {
     var remaining = seen_sets[source];
     while remaining != 0u {
       let sets = closest_sets(lights, remaining);
-      let found = search(texel, lights, Wanted(source, sets));
-      taps += found.taps;
-      if found.is_found {
-        let term = term_at(texel, found.texel, receiver, source != receiver);
+      let found = search(texel, lights, source, sets);
+      taps += u32(found.w);
+      if found.z == 1 {
+        let term = term_at(texel, found.xy, receiver, source != receiver);
         return Term(vec4f(term, f32(label_of(receiver, lights))), vec4f(f32(taps)));
       }
       remaining &= ~sets;

@@ -40,16 +40,22 @@ struct WarpTexel {
 }
 
 @fragment
-fn fs_source(in: Warped) -> WarpTexel {
-  if in.height_m < 0.0 || receiver_at(vec2i(in.clip.xy)) != in.receiver { discard; }
+fn fs_source(
+  @builtin(position) at: vec4f,
+  @location(0) source: vec3f,
+  @location(1) height_m: f32,
+  @location(2) @interpolate(flat) light: u32,
+  @location(3) @interpolate(flat) receiver: u32,
+) -> WarpTexel {
+  if height_m < 0.0 || receiver_at(vec2i(at.xy)) != receiver { discard; }
   // A vertex whose real shadow the camera does not face is looked for where its new one is.
-  var region_px = in.clip.xy;
-  if in.source.z > 0.0 {
-    let ndc = in.source.xy / in.source.z;
+  var region_px = at.xy;
+  if source.z > 0.0 {
+    let ndc = source.xy / source.z;
     region_px = (ndc * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
   }
   // Heights below a light map to (0, 1], the light itself to 1: the highest occluder wins under `Greater`.
-  let at = globals.receivers[in.receiver].lights[in.light];
-  let reach_m = select(1.0, at.y, at.w > 0.0);
-  return WarpTexel(vec4f(region_px, in.height_m, 1.0), saturate(in.height_m / reach_m));
+  let light_in_plane = globals.receivers[receiver].lights[light];
+  let reach_m = select(1.0, light_in_plane.y, light_in_plane.w > 0.0);
+  return WarpTexel(vec4f(region_px, height_m, 1.0), saturate(height_m / reach_m));
 }

@@ -42,8 +42,9 @@ struct Appearance {
 @fragment
 fn fs_clean(@builtin(position) at: vec4f) -> Appearance {
   let texel = vec2i(at.xy);
-  let own = Appearance(vec4f(frame_at(texel), 1.0), vec4f(lit_at(texel), 1.0), vec4f(base_at(texel), 1.0));
-  if textureLoad(validity, texel, 0).g == 1.0 { return own; }
+  if textureLoad(validity, texel, 0).g == 1.0 {
+    return Appearance(vec4f(frame_at(texel), 1.0), vec4f(lit_at(texel), 1.0), vec4f(base_at(texel), 1.0));
+  }
   let last = vec2i(globals.region_size_px) - 1;
   let here = textureLoad(gbuffer_depth, texel, 0);
   var color = vec4f(0.0);
@@ -63,6 +64,8 @@ fn fs_clean(@builtin(position) at: vec4f) -> Appearance {
   }
   if color.a > 0.0 { return Appearance(color / color.a, vec4f(lit / color.a, 1.0), vec4f(base / color.a, 1.0)); }
   // A part too thin to have such a pixel: its own is the best there is.
-  if here > 0.0 { return own; }
+  if here > 0.0 {
+    return Appearance(vec4f(frame_at(texel), 1.0), vec4f(lit_at(texel), 1.0), vec4f(base_at(texel), 1.0));
+  }
   return Appearance(vec4f(0.0), vec4f(0.0), vec4f(0.0));
 }

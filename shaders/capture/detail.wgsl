@@ -23,26 +23,22 @@ const DETAIL: f32 = 0.08;
 const SHADOW: f32 = 0.85;
 const LIT: f32 = 0.98;
 
-struct Own {
-  // Plate times residual, and plate, squared; 0 where the frame does not show the receiver.
-  product: vec3f,
-  energy: vec3f,
-  model: vec3f,
-}
-
-fn own(texel: vec2i, receiver: u32) -> Own {
-  let nothing = Own(vec3f(0.0), vec3f(0.0), vec3f(1.0));
+// Adds a pixel's plate times residual, and its plate squared, where the frame shows the receiver; returns the model there, 1
+// where it does not.
+fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: ptr<function, vec3f>) -> vec3f {
   let at = vec2f(texel) + 0.5;
-  if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return nothing; }
+  if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return vec3f(1.0); }
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
-  if point.receiver != receiver || textureLoad(validity, texel, 0).r == 0.0 || b.a < 1.0 { return nothing; }
+  if receiver_of(point) != receiver || textureLoad(validity, texel, 0).r == 0.0 || b.a < 1.0 { return vec3f(1.0); }
   let f = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb / fit.gain.rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   // What is nearly black in the plate tells nothing.
   let lit = select(vec3f(0.0), b.rgb, b.rgb >= vec3f(DARKEST_USABLE));
-  return Own(lit * (f - b.rgb * model), lit * lit, model);
+  *product += lit * (f - b.rgb * model);
+  *energy += lit * lit;
+  return model;
 }
 
 fn ratio(product: vec3f, energy: vec3f) -> vec3f {
@@ -52,19 +48,18 @@ fn ratio(product: vec3f, energy: vec3f) -> vec3f {
 @fragment
 fn fs_separate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2i(position.xy);
-  let receiver = receiver_point(position.xy).receiver;
+  let receiver = receiver_of(receiver_point(position.xy));
   if receiver == MAX_RECEIVERS { return vec4f(0.0); }
-  let here = own(texel, receiver);
-  let exact = ratio(here.product, here.energy);
-  let left = largest(here.model);
-  if left >= LIT { return vec4f(exact, 1.0); }
   var product = vec3f(0.0);
   var energy = vec3f(0.0);
+  let left = largest(add_own(texel, receiver, &product, &energy));
+  let exact = ratio(product, energy);
+  if left >= LIT { return vec4f(exact, 1.0); }
+  product = vec3f(0.0);
+  energy = vec3f(0.0);
   for (var y = -RADIUS_PX; y <= RADIUS_PX; y++) {
     for (var x = -RADIUS_PX; x <= RADIUS_PX; x++) {
-      let other = own(texel + vec2i(x, y), receiver);
-      product += other.product;
-      energy += other.energy;
+      add_own(texel + vec2i(x, y), receiver, &product, &energy);
     }
   }
   let smooth_residual = ratio(product, energy);

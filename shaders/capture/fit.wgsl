@@ -83,7 +83,7 @@ fn observe(texel: vec2u) -> Observation {
 
 fn receiver_equation(seen: Observation, channel: u32) -> Equation {
   var eq: Equation;
-  if seen.weight[channel] == 0.0 || seen.point.receiver != step.receiver { return eq; }
+  if seen.weight[channel] == 0.0 || receiver_of(seen.point) != step.receiver { return eq; }
   let b = seen.plate[channel];
   let total = plate_falloff(seen.point)[channel];
   eq.value = seen.frame[channel] / fit.gain[channel];

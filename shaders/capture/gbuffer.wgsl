@@ -31,9 +31,15 @@ struct GbufferTexel {
 }
 
 @fragment
-fn fs_describe(in: Surface) -> GbufferTexel {
-  let base = vec4f(base_color(in.uv, in.color), 1.0);
-  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
-  let normal = unit_normal(in.normal);
-  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in.in_anchor));
+fn fs_describe(
+  @builtin(position) at: vec4f,
+  @location(0) interpolated_normal: vec3f,
+  @location(1) uv: vec2f,
+  @location(2) color: vec4f,
+  @location(3) in_anchor: vec3f,
+) -> GbufferTexel {
+  let base = vec4f(base_color(uv, color), 1.0);
+  if is_behind_receiver(at.xy, at.w) { discard; }
+  let normal = unit_normal(interpolated_normal);
+  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in_anchor));
 }

@@ -38,7 +38,7 @@ fn label_of(receiver: u32, lights: u32) -> u32 {
 // The receiver that a texel shows; where there is only one, all belongs to it.
 fn receiver_at(texel: vec2i) -> u32 {
   if globals.n_receivers == 1u { return 0u; }
-  return receiver_point(vec2f(texel) + 0.5).receiver;
+  return receiver_of(receiver_point(vec2f(texel) + 0.5));
 }
 
 // How far the shade of the lights `has` is from that of the lights `wanted`: first by how many lights they differ, and

@@ -43,13 +43,19 @@ struct Globals {
 
 @group(0) @binding(0) var<uniform> globals: Globals;
 
-struct ReceiverPoint {
-  // Which receiver it is a point of: MAX_RECEIVERS where the pixel sees none.
-  receiver: u32,
-  in_plane: vec2f,
+// A point of a receiver: (x, z) in its plane, and its index, MAX_RECEIVERS where the pixel sees none.
+// A vector, since drivers of older Adreno keep structs in fragment shaders at 16 bits. Source: KhronosGroup/WebGL issue 3351.
+alias ReceiverPoint = vec3f;
+
+const NO_RECEIVER = vec3f(0.0, 0.0, f32(MAX_RECEIVERS));
+
+fn point_on(receiver: u32, in_plane: vec2f) -> ReceiverPoint {
+  return vec3f(in_plane, f32(receiver));
 }
 
-const NO_RECEIVER: ReceiverPoint = ReceiverPoint(MAX_RECEIVERS, vec2f(0.0));
+fn receiver_of(point: ReceiverPoint) -> u32 {
+  return u32(point.z);
+}
 
 fn is_within(rect: vec4f, in_plane: vec2f) -> bool {
   return all(in_plane >= rect.xy) && all(in_plane <= rect.zw);
@@ -64,7 +70,7 @@ fn surface_point(region_px: vec2f) -> ReceiverPoint {
     if p.z <= inverse_depth { continue; }
     let in_plane = p.xy / p.z;
     if is_within(globals.receivers[k].rect, in_plane) {
-      nearest = ReceiverPoint(k, in_plane);
+      nearest = point_on(k, in_plane);
       inverse_depth = p.z;
     }
   }
@@ -74,22 +80,22 @@ fn surface_point(region_px: vec2f) -> ReceiverPoint {
 // The same, but none where that is the back of it: of the front alone it is known what light falls there.
 fn receiver_point(region_px: vec2f) -> ReceiverPoint {
   let nearest = surface_point(region_px);
-  if ((globals.seen_from_behind >> nearest.receiver) & 1u) != 0u { return NO_RECEIVER; }
+  if ((globals.seen_from_behind >> receiver_of(nearest)) & 1u) != 0u { return NO_RECEIVER; }
   return nearest;
 }
 
 fn is_hit(point: ReceiverPoint) -> bool {
-  return point.receiver < MAX_RECEIVERS;
+  return receiver_of(point) < MAX_RECEIVERS;
 }
 
 // Irradiance of light `i` at a receiver point as a multiple of that at the receiver's reference point: cos / d^2, where
 // the cosine is height over distance. None where the light is behind the receiver.
 fn falloff(i: u32, point: ReceiverPoint) -> f32 {
-  let light = globals.receivers[point.receiver].lights[i];
+  let light = globals.receivers[receiver_of(point)].lights[i];
   if light.y <= 0.0 { return 0.0; }
   if light.w == 0.0 { return 1.0; }
-  let reference = globals.receivers[point.receiver].reference_in_plane;
-  let to_here = distance(light.xyz, vec3f(point.in_plane.x, 0.0, point.in_plane.y));
+  let reference = globals.receivers[receiver_of(point)].reference_in_plane;
+  let to_here = distance(light.xyz, vec3f(point.xy.x, 0.0, point.xy.y));
   let to_reference = distance(light.xyz, vec3f(reference.x, 0.0, reference.y));
   let ratio = to_reference / to_here;
   return ratio * ratio * ratio;
@@ -97,7 +103,7 @@ fn falloff(i: u32, point: ReceiverPoint) -> f32 {
 
 // Where a receiver's point is seen; outside the region where it is behind the camera.
 fn region_px_of(point: ReceiverPoint) -> vec2f {
-  let at = globals.receivers[point.receiver].clip_from_plane * vec3f(point.in_plane, 1.0);
+  let at = globals.receivers[receiver_of(point)].clip_from_plane * vec3f(point.xy, 1.0);
   if at.z <= 0.0 { return vec2f(-1.0); }
   return (at.xy / at.z * vec2f(0.5, -0.5) + 0.5) * globals.region_size_px;
 }

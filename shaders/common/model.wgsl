@@ -13,7 +13,7 @@
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
   var total = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
-    total += fit.receivers[point.receiver].direct_fraction[i].rgb * (falloff(i, point) - 1.0);
+    total += fit.receivers[receiver_of(point)].direct_fraction[i].rgb * (falloff(i, point) - 1.0);
   }
   return total;
 }
@@ -26,13 +26,13 @@ fn bounced(ambient: f32) -> f32 {
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   var ambient_fraction = vec3f(1.0);
-  for (var i = 0u; i < globals.n_lights; i++) { ambient_fraction -= fit.receivers[point.receiver].direct_fraction[i].rgb; }
-  return ambient * ambient_fraction / total + fit.receivers[point.receiver].bounce.rgb * bounced(ambient);
+  for (var i = 0u; i < globals.n_lights; i++) { ambient_fraction -= fit.receivers[receiver_of(point)].direct_fraction[i].rgb; }
+  return ambient * ambient_fraction / total + fit.receivers[receiver_of(point)].bounce.rgb * bounced(ambient);
 }
 
 // Light `i`'s share of the plate's radiance at a point, where the plate's falloff is `total`.
 fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
-  return fit.receivers[point.receiver].direct_fraction[i].rgb * falloff(i, point) / total;
+  return fit.receivers[receiver_of(point)].direct_fraction[i].rgb * falloff(i, point) / total;
 }
 
 fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {

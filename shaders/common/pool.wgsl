@@ -23,7 +23,7 @@ fn is_cell(receiver: u32, cell: vec2u) -> bool {
 fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
   let grid = grids.grids[receiver];
   let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);
-  return ReceiverPoint(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
+  return point_on(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
 }
 
 // Adds a cell's value, of which `n_points` points are evidence, to what was known.

@@ -91,16 +91,9 @@ fn shadow_likeness(residual: vec3f) -> f32 {
   return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
-struct Receiver {
-  color: vec3f,
-  frame: vec3f,
-  // By what the model has changed since the frame, where the receiver shows.
-  change: vec3f,
-  // How far the frame may stand where it shows the toy as well: 1 where the change is little.
-  keep_mixed: f32,
-}
-
-fn receiver(position: vec4f) -> Receiver {
+// The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the weight of
+// the camera pixel where toy and receiver mix: 1 where the change is little.
+fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let image_texel = texel + vec2u(globals.region_origin_px);
@@ -110,9 +103,13 @@ fn receiver(position: vec4f) -> Receiver {
   let lit = fit.gain.rgb * b.rgb;
   let evident = textureLoad(validity, texel, 0);
   // Nothing is known of what is behind.
-  if b.a == 0.0 { return Receiver(f, f, vec3f(0.0), 1.0); }
+  *change = vec4f(0.0, 0.0, 0.0, 1.0);
+  if b.a == 0.0 { return f; }
   // Beyond the receivers nothing changes but that the real toy goes.
-  if !is_hit(point) { return Receiver(mix(lit, f, evident.r), f, vec3f(0.0), 1.0 - evident.r); }
+  if !is_hit(point) {
+    *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
+    return mix(lit, f, evident.r);
+  }
   let uv = at / globals.region_size_px;
   let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
@@ -136,8 +133,9 @@ fn receiver(position: vec4f) -> Receiver {
   let kept = mix(own, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
-  return Receiver(max(mix(f, mix(made, kept, keep), inside), vec3f(0.0)), f, lit * (after - before),
-    select(1.0 - evident.r, 0.0, has_moved || evident.a < 1.0) * is_near);
+  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || evident.a < 1.0) * is_near;
+  *change = vec4f(lit * (after - before), keep_mixed);
+  return max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
 }
 
 fn drawn_toy(texel: vec2u) -> vec4f {
@@ -189,16 +187,16 @@ fn stillness(texel: vec2i) -> f32 {
 @fragment
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2u(position.xy);
+  let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let toy = toy_layer(texel);
   if toy.a == 1.0 {
-    let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
     return vec4f(mix(toy.rgb, frame_color, stillness(vec2i(texel))), 1.0);
   }
-  let behind = receiver(position);
-  let laid = (1.0 - toy.a) * behind.color + toy.rgb;
+  var change = vec4f(0.0);
+  let laid = (1.0 - toy.a) * receiver(position, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
-  if behind.keep_mixed == 0.0 { return vec4f(laid, 1.0); }
-  let kept = behind.frame + (1.0 - toy.a) * behind.change;
+  if change.a == 0.0 { return vec4f(laid, 1.0); }
+  let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let still = stillness(vec2i(texel));
-  return vec4f(max(mix(laid, kept, still * behind.keep_mixed), vec3f(0.0)), 1.0);
+  return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
 }

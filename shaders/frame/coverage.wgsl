@@ -31,8 +31,8 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
 }
 
 @fragment
-fn fs_cover(in: Moved) -> @location(0) vec4f {
+fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
   // w is the inverse depth of what the position sees.
-  if is_behind_receiver(in.clip.xy + position_px(in.index), in.clip.w) { discard; }
+  if is_behind_receiver(at.xy + position_px(index), at.w) { discard; }
   return vec4f(COVERED_POSITION);
 }

@@ -16,7 +16,11 @@ fn vs_physical(@location(0) physical_in_anchor: vec3f, @location(1) in_anchor: v
 }
 
 @fragment
-fn fs_moved(in: Surface) -> @location(0) vec4f {
-  if is_behind_receiver(in.clip.xy, in.clip.w) { discard; }
-  return vec4f(moved(region_px(in.shown_clip), region_px(in.physical_clip)));
+fn fs_moved(
+  @builtin(position) at: vec4f,
+  @location(0) shown_clip: vec4f,
+  @location(1) physical_clip: vec4f,
+) -> @location(0) vec4f {
+  if is_behind_receiver(at.xy, at.w) { discard; }
+  return vec4f(moved(region_px(shown_clip), region_px(physical_clip)));
 }

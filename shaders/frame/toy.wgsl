@@ -70,18 +70,13 @@ fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
   return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
 }
 
-struct PhysicalPoint {
-  depth: f32,
-  region_px: vec2f,
-  base: vec3f,
-}
-
-// The camera's colour of a point of the physical toy under the light `lit`, alpha 0 where something hides it.
+// The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the base
+// colour `base`; alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
 // outline where `appearance` carried its colours.
-fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
-  let at = point.region_px - 0.5;
+fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4f {
+  let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
   let last = globals.region_size_px - 1.0;
@@ -92,8 +87,8 @@ fn camera_color(point: PhysicalPoint, lit: vec3f) -> vec4f {
     if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
     let texel = vec2u(tap);
     let surface = textureLoad(gbuffer_depth, texel, 0);
-    if surface > point.depth && !is_same_surface(surface, point.depth) { continue; }
-    if is_other_material(texel, point.base) { continue; }
+    if surface > depth && !is_same_surface(surface, depth) { continue; }
+    if is_other_material(texel, base) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
@@ -137,20 +132,28 @@ struct Drawn {
 }
 
 @fragment
-fn fs_toy(in: Surface) -> Drawn {
-  let base = base_color(in.uv, in.color);
-  let normal = unit_normal(in.normal);
-  let physical_normal = unit_normal(in.physical_normal);
-  let physical_facing = facing(in.physical_in_anchor, physical_normal);
-  let stretch = select(0.0, physical_facing / max(facing(in.in_anchor, normal), physical_facing), physical_facing > 0.0);
-  let clip = globals.clip_from_anchor * vec4f(in.physical_in_anchor, 1.0);
+fn fs_toy(
+  @builtin(position) at: vec4f,
+  @location(0) in_anchor: vec3f,
+  @location(1) interpolated_normal: vec3f,
+  @location(2) uv: vec2f,
+  @location(3) color: vec4f,
+  @location(4) physical_in_anchor: vec3f,
+  @location(5) interpolated_physical_normal: vec3f,
+) -> Drawn {
+  let base = base_color(uv, color);
+  let normal = unit_normal(interpolated_normal);
+  let physical_normal = unit_normal(interpolated_physical_normal);
+  let physical_facing = facing(physical_in_anchor, physical_normal);
+  let stretch = select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
+  let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
-  let lit = toy_radiance_over_base(normal, light_received(normal, in.in_anchor));
-  let unseen = fit.gain.rgb * base * tint(in.physical_in_anchor) * lit;
-  let pixel = camera_color(PhysicalPoint(clip.z / clip.w, physical_px, base), lit);
+  let lit = toy_radiance_over_base(normal, light_received(normal, in_anchor));
+  let unseen = fit.gargb * base * tint(physical_in_anchor) * lit;
+  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  if is_behind_receiver(in.clip.xy - offset_px, in.clip.w) { discard; }
-  let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in.in_anchor, 1.0)), physical_px);
-  let is_relit = select(light_change(vec2i(in.clip.xy), lit), 1.0, is_moved == 1.0);
+  if is_behind_receiver(at.xy - offset_px, at.w) { discard; }
+  let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
+  let is_relit = select(light_change(vec2i(at.xy), lit), 1.0, is_moved == 1.0);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
 }

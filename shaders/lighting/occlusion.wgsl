@@ -40,8 +40,11 @@ fn vs_route(@builtin(vertex_index) index: u32, @builtin(instance_index) receiver
 
 // Below all points where the pixel shows the receiver, above them where it does not.
 @fragment
-fn fs_route(in: Routed) -> @builtin(frag_depth) f32 {
-  return select(1.0, 0.0, receiver_point(in.clip.xy * light_points.texel_px).receiver == in.receiver);
+fn fs_route(
+  @builtin(position) at: vec4f,
+  @location(0) @interpolate(flat, either) receiver: u32,
+) -> @builtin(frag_depth) f32 {
+  return select(1.0, 0.0, receiver_of(receiver_point(at.xy * light_points.texel_px)) == receiver);
 }
 
 struct Flattened {
@@ -68,7 +71,7 @@ struct Hidden {
 }
 
 @fragment
-fn fs_cover(in: Flattened) -> Hidden {
+fn fs_cover(@location(0) height_m: f32, @location(1) @interpolate(flat, either) depth: f32) -> Hidden {
   // What lies under the receiver casts nothing on it: it is above no point.
-  return Hidden(vec4f(HIDDEN_POINT), select(0.0, in.depth, in.height_m >= 0.0));
+  return Hidden(vec4f(HIDDEN_POINT), select(0.0, depth, height_m >= 0.0));
 }

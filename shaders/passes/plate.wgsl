@@ -40,15 +40,11 @@ const LEAST_COSINE: f32 = 0.1;
 // Weight against that of the best below which a plate is not looked at.
 const LEAST_WEIGHT: f32 = 0.02;
 
-struct Candidate {
-  plate_px: vec2f,
-  // How well the plate saw the point: positive wherever it did.
-  quality: f32,
-  // 1 well inside the plate, 0 at its border.
-  inside: f32,
-}
+// What a plate has of a point: xy is where it shows it, in pixels; z how well it saw it, positive wherever it did; w is 1 well
+// inside the plate and 0 at its border.
+alias Candidate = vec4f;
 
-const UNSEEN: Candidate = Candidate(vec2f(0.0), 0.0, 0.0);
+const UNSEEN = vec4f(0.0);
 
 fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
   return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
@@ -56,16 +52,16 @@ fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
 
 // Where a receiver's point is in the space of another receiver.
 fn in_other_plane(point: ReceiverPoint, other: u32) -> vec3f {
-  let own_from_anchor = globals.receivers[point.receiver].plane_from_anchor;
+  let own_from_anchor = globals.receivers[receiver_of(point)].plane_from_anchor;
   let rotation = mat3x3f(own_from_anchor[0].xyz, own_from_anchor[1].xyz, own_from_anchor[2].xyz);
-  let in_anchor = transpose(rotation) * (vec3f(point.in_plane.x, 0.0, point.in_plane.y) - own_from_anchor[3].xyz);
+  let in_anchor = transpose(rotation) * (vec3f(point.xy.x, 0.0, point.xy.y) - own_from_anchor[3].xyz);
   return (globals.receivers[other].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
 }
 
 // Whether another receiver stands between plate `k`'s camera and a point.
 fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
   for (var other = 0u; other < globals.n_receivers; other++) {
-    if other == point.receiver { continue; }
+    if other == receiver_of(point) { continue; }
     let camera = views.plates[k].camera_in_plane[other].xyz;
     let end = in_other_plane(point, other);
     if camera.y * end.y >= 0.0 { continue; }
@@ -78,27 +74,27 @@ fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
 // Plate pixels per pixel here, by area, of which fewer than one lose detail: a homography of determinant D scales areas
 // by D / w^3, and two in a row by the product.
 fn detail(k: u32, point: ReceiverPoint, region_px: vec2f, plate_w: f32) -> f32 {
-  let here = globals.receivers[point.receiver].plane_from_region_px;
+  let here = globals.receivers[receiver_of(point)].plane_from_region_px;
   let here_w = (here * vec3f(region_px, 1.0)).z;
-  let there = views.plates[k].plate_px_from_plane[point.receiver];
+  let there = views.plates[k].plate_px_from_plane[receiver_of(point)];
   let scale = determinant(here) / (here_w * here_w * here_w) * determinant(there) / (plate_w * plate_w * plate_w);
   return min(abs(scale), 1.0);
 }
 
 // What plate `k` has of the point seen at `region_px`.
 fn candidate(k: u32, point: ReceiverPoint, region_px: vec2f) -> Candidate {
-  let at = views.plates[k].plate_px_from_plane[point.receiver] * vec3f(point.in_plane, 1.0);
+  let at = views.plates[k].plate_px_from_plane[receiver_of(point)] * vec3f(point.xy, 1.0);
   if at.z <= 0.0 { return UNSEEN; }
   let px = at.xy / at.z;
   let size = vec2f(textureDimensions(plates));
   let to_border = min(px, size - px);
   let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
-  let own = views.camera_in_plane[point.receiver];
-  let camera = views.plates[k].camera_in_plane[point.receiver];
+  let own = views.camera_in_plane[receiver_of(point)];
+  let camera = views.plates[k].camera_in_plane[receiver_of(point)];
   let is_same_side = camera.y * own.y > 0.0;
   if inside == 0.0 || !is_same_side || is_hidden(k, point) { return UNSEEN; }
-  let cosine = dot(direction_to(camera, point.in_plane), direction_to(own, point.in_plane));
-  return Candidate(px, detail(k, point, region_px, at.z) * pow(max(cosine, LEAST_COSINE), ANGLE_POWER), inside);
+  let cosine = dot(direction_to(camera, point.xy), direction_to(own, point.xy));
+  return vec4f(px, detail(k, point, region_px, at.z) * pow(max(cosine, LEAST_COSINE), ANGLE_POWER), inside);
 }
 
 // Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
@@ -130,7 +126,7 @@ fn point_beyond(region_px: vec2f) -> ReceiverPoint {
   if is_hit(point) { return point; }
   let p = globals.receivers[0].plane_from_region_px * vec3f(region_px, 1.0);
   if p.z <= 0.0 { return point; }
-  return ReceiverPoint(0u, p.xy / p.z);
+  return point_on(0u, p.xy / p.z);
 }
 
 @fragment
@@ -145,20 +141,20 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   var best_quality = 0.0;
   for (var k = 0u; k < views.n_plates; k++) {
     candidates[k] = candidate(k, point, at.xy);
-    best_quality = max(best_quality, candidates[k].quality);
+    best_quality = max(best_quality, candidates[k].z);
   }
   if best_quality == 0.0 { return vec4f(0.0); }
   // Against the best one, so that powers of what is poor do not underflow where there is nothing better.
   var weights: array<f32, MAX_PLATES>;
   var best = 0.0;
   for (var k = 0u; k < views.n_plates; k++) {
-    weights[k] = candidates[k].inside * pow(candidates[k].quality / best_quality, CHOICE_POWER);
+    weights[k] = candidates[k].w * pow(candidates[k].z / best_quality, CHOICE_POWER);
     best = max(best, weights[k]);
   }
   var sum = vec4f(0.0);
   for (var k = 0u; k < views.n_plates; k++) {
     if weights[k] == 0.0 || weights[k] < LEAST_WEIGHT * best { continue; }
-    sum += weights[k] * vec4f(sharp_color(k, candidates[k].plate_px), 1.0);
+    sum += weights[k] * vec4f(sharp_color(k, candidates[k].xy), 1.0);
   }
   return vec4f(sum.rgb / sum.a, 1.0);
 }

@@ -7,6 +7,8 @@ use naga::{
     Type, TypeInner,
 };
 
+use crate::fragment::struct_values;
+
 /// What a shader may use beyond plain WGSL: nothing.
 ///
 /// wgpu derives naga's capabilities from the features asked for and from the downlevel flags of the adapter. The one
@@ -39,6 +41,7 @@ pub(crate) fn problems(source: &str, parts: &[&Part]) -> Vec<String> {
     let constants = parts.iter().flat_map(|part| part.constants);
     problems.extend(constants.filter_map(|constant| constant_problem(&module, constant)));
     problems.extend(entry_point_problems(&module));
+    problems.extend(struct_values(&module, &info));
     for (index, entry) in module.entry_points.iter().enumerate() {
         let counts = counts(&module, entry, info.get_entry_point(index));
         let too_many = counts.into_iter().filter(|(_, count, limit)| count > limit);

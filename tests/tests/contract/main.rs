@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod check;
+mod fragment;
 
 use app_core::internals::{
     MAX_CELLS, N_COLUMNS, PixelRect, Plan, PlaneRect, SceneFacts, Shader, grids_over, phone_limits, shaders,
@@ -216,6 +217,29 @@ fn faults_in_bindings_are_found() {
         &["Extra", "mirror"],
         "a struct that the host lacks",
     );
+}
+
+#[test]
+fn structs_in_fragment_shaders_are_found() {
+    let shader = |body: &str| {
+        format!(
+            "struct Pair {{ a: f32, b: f32 }}\n\
+             struct In {{ @builtin(position) at: vec4f }}\n\
+             fn pair(a: f32) -> Pair {{ return Pair(a, a); }}\n\
+             fn sum(a: f32) -> f32 {{ {body} }}\n\
+             @fragment fn fs_sum(@builtin(position) at: vec4f) -> @location(0) vec4f {{ return vec4f(sum(at.x)); }}"
+        )
+    };
+    assert_eq!(problems(&shader("return a;"), &[]), Vec::<String>::new());
+    let values = ["return pair(a).b;", "return Pair(a, a).b;", "let p = Pair(); return p.a;"];
+    for body in values {
+        assert_found(&problems(&shader(body), &[]), &["a struct as a value"], body);
+    }
+    for body in ["var p: Pair; return p.a;", "var p: array<Pair, 2>; return p[1].a;"] {
+        assert_found(&problems(&shader(body), &[]), &["sum: a struct as a variable"], body);
+    }
+    let input = shader("return a;").replace("(@builtin(position) at: vec4f)", "(in: In)").replace("at.x", "in.at.x");
+    assert_found(&problems(&input, &[]), &["fs_sum: a struct as a variable"], "an input");
 }
 
 #[test]
