@@ -1,8 +1,8 @@
 //! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made from samples of it.
 //!
 //! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
-//! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with a model of our own in its place where that
-//! is more accurate: see the architecture below.
+//! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with an additive model in its place where
+//! that is more accurate: see the architecture below.
 #![doc = include_str!("../doc/architecture.md")]
 #![doc = include_str!("../doc/spaces.md")]
 #![doc = include_str!("../doc/passes.md")]
@@ -28,7 +28,7 @@ mod stage;
 pub use crate::core::{Core, CoreError};
 pub use wgpu;
 
-/// What only the project's own tests and harness use. It changes without notice.
+/// Internals for the project's own tests and harness. They change without notice.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::baseline::plan::BaselinePlan;
@@ -62,7 +62,7 @@ pub mod internals {
     pub use crate::readback::inject::InjectedVisibility;
     pub use crate::readback::{FloatMap, Map};
 
-    /// Every shader there is.
+    /// Every shader of the registry.
     pub fn shaders() -> impl Iterator<Item = &'static Shader> {
         let rooms = [
             crate::model::lighting::SHADERS,

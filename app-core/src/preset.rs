@@ -1,4 +1,4 @@
-//! Presets: how much work a frame may cost.
+//! Presets: named settings of cost and accuracy.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,7 +16,8 @@ pub enum Preset {
     /// The default.
     #[default]
     Balanced,
-    /// As `balanced`, with a finer picture of the toy and less noise in the shadow: for pictures rather than for a live view.
+    /// As `balanced`, with a finer picture of the toy and less noise in the shadow: for pictures rather than for a
+    /// live view.
     Best,
 }
 
@@ -35,7 +36,7 @@ impl Preset {
         }
     }
 
-    /// How the preset makes a picture, and what it spends.
+    /// Method and settings of the preset.
     #[must_use]
     pub fn settings(self) -> Settings {
         match self {
@@ -50,7 +51,7 @@ impl Preset {
     }
 }
 
-/// What `balanced` spends.
+/// Settings of `balanced`.
 pub const BALANCED: ModelSettings = ModelSettings {
     n_light_points: 64,
     n_ambient_directions: 64,
@@ -62,7 +63,7 @@ pub const BALANCED: ModelSettings = ModelSettings {
     is_shadow_withheld: false,
 };
 
-/// What `best` spends.
+/// Settings of `best`.
 pub const BEST: ModelSettings = ModelSettings {
     ambient_divisor: 2,
     n_toy_draws: 4,
@@ -71,16 +72,16 @@ pub const BEST: ModelSettings = ModelSettings {
     ..BALANCED
 };
 
-/// The constants that the papers leave open, tuned for the lowest mean shadow RMSE over four sessions of the bundled toy
-/// (`tests/make/session.py`: the bundled one, `bulb-uniform`, `area-wood` and `bulb-tiles`), one after the other:
+/// The constants that the papers leave open, tuned for the lowest mean shadow RMSE over four sessions of the bundled
+/// toy (`tests/make/session.py`: the bundled one, `bulb-uniform`, `area-wood` and `bulb-tiles`), one after the other:
 ///
 /// - box radius 4, 20, 40 px: 2.66, 2.30, 2.30, with a margin of 3 px and a seam of 4 px;
 /// - margin 1, 3, 6 px: 2.35, 2.30, 2.32, with a box of 20 px;
 /// - seam 8, 4, 1 px: 2.43, 2.32, 2.26, with a margin of 6 px; a margin of 4 px then gave 2.24;
 /// - box radius 30 px: 2.23; 32 directions instead of 16: the same; twice the blocker taps or four times the filter
 ///   taps: the same within 0.01;
-/// - kernel of PCSS round on the receiver, slanted with the light, slanted but for the search of blockers: 2.47, 2.35, 2.27
-///   on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there: 2.54;
+/// - kernel of PCSS round on the receiver, slanted with the light, slanted but for the search of blockers: 2.47,
+///   2.35, 2.27 on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there: 2.54;
 /// - `flat`, ratio 0.35, 0.40, 0.50: 5.50, 4.38, 9.18.
 pub const BASELINE: BaselineSettings = BaselineSettings {
     constant_ratio: None,
@@ -94,17 +95,17 @@ pub const BASELINE: BaselineSettings = BaselineSettings {
     n_filter_taps: 64,
 };
 
-/// The two ways to a picture.
+/// Settings of one of the two methods.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settings {
     /// The additive model of the receiver: see the architecture.
     Model(ModelSettings),
-    /// The published method, or its simplest stand-in.
+    /// The published method as a baseline, or its simplest stand-in.
     Baseline(BaselineSettings),
 }
 
-/// What the model spends.
+/// Settings of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelSettings {
     /// Points over each light, a multiple of 16 up to 64, of a light whose penumbra is wider than a pixel.
@@ -121,18 +122,18 @@ pub struct ModelSettings {
     pub n_self_shadow_points: usize,
     /// Texels along each side of one such depth map.
     pub self_shadow_tile_px: u32,
-    /// Whether the real shadow is cleared of the photograph's noise, so that it is no noisier than the new one beside it.
+    /// Whether the real shadow is denoised, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
-    /// Whether the real shadow is kept from all but the first fits, and the physical pose made like any other: see
-    /// [`Core::withhold_shadow`](crate::core::Core::withhold_shadow). No preset does so.
+    /// Whether the real shadow is withheld from all but the first fits, and the physical pose made like any other:
+    /// see [`Core::withhold_shadow`](crate::core::Core::withhold_shadow). No preset does so.
     pub is_shadow_withheld: bool,
 }
 
 /// The constants that the papers leave open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaselineSettings {
-    /// Shadow over plate where no light reaches, for shadows of constant strength, each light's the same; without it the
-    /// real shadow is sampled.
+    /// Shadow over plate where no light reaches, for shadows of constant strength, each light's the same; without it
+    /// the real shadow is sampled.
     pub constant_ratio: Option<f32>,
     /// Distance kept from the edges of the eligible shadow.
     pub eligible_margin_px: i32,
@@ -152,13 +153,13 @@ pub struct BaselineSettings {
     pub n_filter_taps: u32,
 }
 
-/// A preset asked for by a name that it does not have.
+/// A preset name that does not exist.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("preset \"{asked}\" is not built; there are {known}")]
 pub struct UnknownPreset {
-    /// What was asked for.
+    /// The name that was asked for.
     pub asked: String,
-    /// The names there are.
+    /// The names that exist.
     pub known: String,
 }
 

@@ -6,7 +6,7 @@
 // CPU reference: reference/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and 3.5.
 
 struct Summed {
-  // The label whose rows are summed; 0 sums columns, of texels of `receiver`, of what is summed already.
+  // The label whose rows are summed; 0 sums columns of these sums, in texels of `receiver`.
   label: u32,
   receiver: u32,
 }

@@ -1,6 +1,7 @@
-// Which sets of lights are shadowed anywhere in mask 3c, so that no search looks for what is nowhere.
+// Sets of lights whose shadows occur in mask 3c, so that `search` skips sets that occur nowhere.
 //
-// Reads: mask 3c. Writes: a word a receiver, bit s where the set s occurs; the words start at 0.
+// Reads: eligible (mask 3c). Writes: seen_sets, one word per receiver, bit s where the set s occurs; the words start
+// at 0.
 // CPU reference: reference/census.rs.
 
 @group(1) @binding(0) var eligible: texture_2d<u32>;

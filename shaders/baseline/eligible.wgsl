@@ -1,12 +1,13 @@
-// The paper's masks 3b and 3c, of all lights and receivers: g is the real shadow with its penumbra, r the part of it to
-// sample from, labelled with its receiver and the set of lights whose umbra it lies in.
+// The paper's masks 3b and 3c, of all lights and receivers: g is the real shadow with its penumbra, r the part of it
+// to sample from, labelled with its receiver and the set of lights whose umbra contains it.
 //
-// To sample from is what the camera sees of the receiver where each light is either hidden or in full sight, and the same
-// for a margin around: a penumbra, of whichever light, is neither.
+// Eligible are pixels that show the receiver with each light either hidden or fully visible, and the same within a
+// margin around them: penumbrae, of whichever light, are excluded.
 //
-// Reads: mask 3a, visibility of each light with the physical toy. Writes: a label; 0 or 1.
-// CPU reference: reference/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b is the soft shadow made binary) and 4.6
-// (a mask a light); 2019, section 5.7 (a subregion a receiver). The margin is ours: a pixel at an edge is half lit, or half toy.
+// Reads: masks (3a), visibility of each light with the physical toy. Writes: a label; 0 or 1.
+// CPU reference: reference/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b is the soft shadow made
+// binary) and 4.6 (a mask per light); 2019, section 5.7 (a subregion per receiver). The margin is an addition: a
+// pixel at an edge is half lit, or half toy.
 
 @group(1) @binding(0) var masks: texture_2d<f32>;
 @group(1) @binding(1) var visibility: texture_2d<f32>;

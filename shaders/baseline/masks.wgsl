@@ -1,6 +1,6 @@
 // The paper's mask 3a: where the camera sees the physical toy.
 //
-// Reads: physical positions in stage space. Writes: 0 or 1.
+// Reads: physical positions in anchor space. Writes: 0 or 1.
 // Source: Casas et al. 2018, section 4.2.
 
 @vertex

@@ -1,15 +1,16 @@
 // Percentage-closer soft shadows of the animated toy, of each light, in the edge region.
 //
-// The kernel is a disc across the ray to the light, as it is in a shadow map, projected to the receiver and on to the
-// image. Its radius follows from the light's size and the mean height of the blockers around, on the receiver, as far as the
-// tallest may lie; where all blocker taps agree there is no edge and nothing is filtered.
+// The kernel is a disc perpendicular to the ray to the light, as it is in a shadow map, projected to the receiver and
+// on to the image. Its radius follows from the light's size and the mean height of the blockers, which are searched
+// on the receiver within the penumbra of the tallest; where all blocker taps agree there is no edge and nothing is
+// filtered.
 //
-// Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], a channel a light.
+// Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], one channel per light.
 // CPU reference: reference/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
 
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 
-// Beyond a receiver's end the shadow goes on over its neighbour, which meets it there.
+// Beyond a receiver's edge the adjacent receiver's texels are read: shadows meet at the edge.
 fn warp_near(point: ReceiverPoint, light: u32) -> vec4f {
   let region_px = region_px_of(point);
   if any(region_px < vec2f(0.0)) || any(region_px >= globals.region_size_px) { return vec4f(0.0); }
@@ -22,9 +23,8 @@ fn disc_point(k: u32, n: u32) -> vec2f {
   return sqrt((f32(k) + 0.5) / f32(n)) * vec2f(cos(turn), sin(turn));
 }
 
-// Radius on the receiver of the shadow of a light's disc through a point at `height_m`, which is no more than that height:
-// a disc that fills more than 45 degrees around the vertical, up to all when the point is as high as the light, has no
-// end of its penumbra.
+// Penumbra radius on the receiver of an occluder at `height_m`, at most that height: a disc that fills more than 45
+// degrees around the vertical, up to all when the occluder is as high as the light, has an unbounded penumbra.
 fn penumbra_radius_m(height_m: f32, receiver: u32, light: u32) -> f32 {
   let at = globals.receivers[receiver].lights[light];
   let radius = baseline.light_radii[light];
@@ -32,8 +32,8 @@ fn penumbra_radius_m(height_m: f32, receiver: u32, light: u32) -> f32 {
   return radius * height_m / max(at.y - at.w * height_m, radius);
 }
 
-// A point of a disc across the ray to the light, moved along that ray onto the receiver: the disc's shadow is longer by
-// 1 / sine of the light's elevation, away from the light.
+// A point of a disc perpendicular to the ray to the light, projected along that ray onto the receiver: the projection
+// is longer by 1 / sine of the light's elevation, away from the light.
 fn slanted(disc: vec2f, point: ReceiverPoint, light: u32) -> ReceiverPoint {
   let at = globals.receivers[receiver_of(point)].lights[light];
   let to_light = normalize(at.xyz - at.w * vec3f(point.xy.x, 0.0, point.xy.y));

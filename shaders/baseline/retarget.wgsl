@@ -1,12 +1,14 @@
-// The published picture: plate in the masks of toy and shadow with a linear seam, the new shadows over it, the toy by
-// projective texturing.
+// The baseline's picture: plate in the masks of toy and shadow with a linear seam, the new shadows over it, the toy
+// by projective texturing.
 //
-// Light after light, PCSS mixes the receiver without and with that light's shadow (Algorithm 1), each as the lights before
-// left it. That is a mean over all sets of lights, a set's weight the product of what is hidden of its lights and what is
-// seen of the others, and its colour that of the real shadow of just these lights (section 4.6).
+// Algorithm 1 blends by PCSS between the receiver without and with a light's shadow, light after light. That is a
+// weighted mean over all sets of lights: a set's weight is the product of 1 - V over its lights and V over the
+// others, its colour that of the real shadow of just these lights (section 4.6).
 //
-// Reads: frame, plate, masks 3a and 3b, visibility of each light, shadow terms of each set. Writes: linear colour, opaque.
-// CPU reference: reference/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4, 4.3, 4.4 and 4.6.
+// Reads: frame, plate, masks (3a), eligible (3b), visibility of each light, terms of each set. Writes: linear colour,
+// opaque.
+// CPU reference: reference/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4,
+// 4.3, 4.4 and 4.6.
 
 @group(1) @binding(0) var frame: texture_2d<f32>;
 @group(1) @binding(1) var plate: texture_2d<f32>;
@@ -16,7 +18,7 @@
 @group(1) @binding(5) var linear_sampler: sampler;
 @group(1) @binding(6) var eligible: texture_2d<u32>;
 
-// How much of a pixel is cropped: 1 in the masks, falling linearly to 0 over the seam.
+// Blend weight of the plate: 1 in the masks, falling linearly to 0 over the seam.
 fn cropped(texel: vec2i) -> f32 {
   let last = vec2i(textureDimensions(masks)) - 1;
   let seam = baseline.seam_px;
@@ -24,13 +26,15 @@ fn cropped(texel: vec2i) -> f32 {
   for (var y = -seam; y <= seam; y++) {
     for (var x = -seam; x <= seam; x++) {
       let other = clamp(texel + vec2i(x, y), vec2i(0), last);
-      if textureLoad(masks, other, 0).r > 0.0 || textureLoad(eligible, other, 0).g != 0u { nearest = min(nearest, length(vec2f(f32(x), f32(y)))); }
+      if textureLoad(masks, other, 0).r > 0.0 || textureLoad(eligible, other, 0).g != 0u {
+        nearest = min(nearest, length(vec2f(f32(x), f32(y))));
+      }
     }
   }
   return saturate(1.0 - nearest / (f32(seam) + 1.0));
 }
 
-// Sums of the terms of the set itself or, where it has none near, of the one least unlike it that has.
+// Sums of the terms of the set itself or, where it has none in the box, of the most similar set that has.
 fn sums_near(texel: vec2i, lights: u32) -> vec4f {
   let own = textureLoad(terms, texel, lights - 1u, 0);
   if own.a > 0.0 { return own; }
@@ -47,7 +51,7 @@ fn sums_near(texel: vec2i, lights: u32) -> vec4f {
   return sums;
 }
 
-// The receiver where the lights of a set are hidden and all others seen.
+// Colour of the receiver with the lights of a set hidden and all others visible.
 fn shaded(texel: vec2i, lights: u32, lit: vec3f, b: vec3f) -> vec3f {
   let is_textured = ((baseline.textured_receivers >> receiver_at(texel)) & 1u) != 0u;
   if baseline.is_constant == 1u { return pow(baseline.constant_ratio, f32(countOneBits(lights))) * b; }
@@ -58,7 +62,7 @@ fn shaded(texel: vec2i, lights: u32, lit: vec3f, b: vec3f) -> vec3f {
   return select(term, term * b, is_textured);
 }
 
-// How much of all lights' discs is hidden for the lights of a set and seen for the others.
+// Weight of a set: product of 1 - V over its lights and V over the others.
 fn weight(v: vec4f, lights: u32) -> f32 {
   var product = 1.0;
   for (var light = 0u; light < globals.n_lights; light++) {
@@ -74,7 +78,7 @@ fn fs_receiver(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let f = textureLoad(frame, image_texel, 0).rgb;
   let plate_texel = textureLoad(plate, texel, 0);
   let b = plate_texel.rgb;
-  // What no plate shows stays as it is.
+  // Without a plate the frame passes through.
   if plate_texel.a == 0.0 { return vec4f(f, 1.0); }
   let lit = mix(f, b, cropped(texel));
   let v = textureLoad(visibility, texel, 0);
@@ -93,7 +97,8 @@ struct Surface {
 
 @vertex
 fn vs_toy(@location(0) in_anchor: vec3f, @location(1) physical_in_anchor: vec3f) -> Surface {
-  return Surface(globals.clip_from_anchor * vec4f(in_anchor, 1.0), globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0));
+  return Surface(globals.clip_from_anchor * vec4f(in_anchor, 1.0),
+    globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0));
 }
 
 @fragment

@@ -1,14 +1,14 @@
-// The shadow term of each texel of the new shadows: the warped sample where the same lights are shadowed there, else the
-// closest such sample.
+// The shadow term of each texel of the new shadows: the warped sample where the same lights are hidden there, else
+// the closest such sample.
 //
-// Where no sample of the receiver has the same lights, the closest of those sets that differ least will do, and where it
-// has no sample at all another receiver's: the papers name this as where their method fails.
+// If the receiver has no sample with the same lights hidden, the closest of the most similar sets is taken, and if it
+// has no sample at all another receiver's: the papers name this case as a failure of the method.
 //
-// Reads: warp of each light, mask 3c and the sets that occur in it, frame, plate. Writes: term (ratio to the plate, or
-// colour), and the texel's label, 0 where nothing was found; taps taken.
-// CPU reference: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a ring, the
-// closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio stands the right way up here: shadow
-// over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
+// Reads: warp of each light, eligible (mask 3c), seen_sets, frame, plate. Writes: term (ratio to the plate, or
+// colour), and the texel's label, 0 where nothing was found; number of taps.
+// CPU reference: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a
+// ring, the closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio is corrected here
+// to shadow over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
 
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 @group(1) @binding(1) var eligible: texture_2d<u32>;
@@ -35,7 +35,7 @@ fn is_eligible(texel: vec2i, receiver: u32, sets: u32) -> bool {
 fn ratio_at(texel: vec2i) -> vec3f {
   let shaded = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
   let lit = textureLoad(plate, texel, 0).rgb;
-  // Black in the plate tells nothing of the shadow: no change. Nor does a shadow add light: noise in the dark would.
+  // The ratio over a black plate is undefined: no change. It is at most 1: noise in the dark would add light.
   return select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0));
 }
 
@@ -46,7 +46,7 @@ fn term_at(texel: vec2i, found: vec2i, receiver: u32, borrowed: bool) -> vec3f {
   return textureLoad(frame, found + vec2i(globals.region_origin_px), 0).rgb;
 }
 
-// Of the sets in `remaining`, those least unlike `wanted`.
+// The sets in `remaining` that are most similar to `wanted`.
 fn closest_sets(wanted: u32, remaining: u32) -> u32 {
   var least = 0xffffffffu;
   var accepted = 0u;
@@ -60,13 +60,13 @@ fn closest_sets(wanted: u32, remaining: u32) -> u32 {
   return accepted;
 }
 
-// Rings around a point that have a part in the region; of those beyond, its farthest corner is on none.
+// Number of rings around a point that may intersect the region, given its farthest corner.
 fn n_rings_around(at: vec2f) -> u32 {
   let farthest_px = length(max(abs(at), abs(globals.region_size_px - at)));
   return min(baseline.n_rings, u32(farthest_px / baseline.ring_step_px));
 }
 
-// Where the shadow of each light of the set came from, and rings around.
+// Searches at the warped position of each light of the set, then in rings around it.
 fn search(texel: vec2i, lights: u32, receiver: u32, sets: u32) -> Found {
   var n_rings = 0u;
   for (var light = 0u; light < globals.n_lights; light++) {
@@ -84,7 +84,7 @@ fn search(texel: vec2i, lights: u32, receiver: u32, sets: u32) -> Found {
       if ((lights >> light) & 1u) == 0u { continue; }
       let warped = textureLoad(warp, texel, light, 0).xy;
       for (var k = 0u; k < baseline.n_ring_directions; k++) {
-        // Every other ring is turned by half a step, so that rays are not left out altogether.
+        // Every other ring is rotated by half a step, so that directions in between are sampled too.
         let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(baseline.n_ring_directions) * 6.2831853;
         let candidate = vec2i(floor(warped + f32(ring) * baseline.ring_step_px * vec2f(cos(turn), sin(turn))));
         taps++;
@@ -114,7 +114,7 @@ fn fs_search(@builtin(position) at: vec4f) -> Term {
   var taps = 0u;
   for (var k = 0u; k < globals.n_receivers; k++) {
     let source = (receiver + k) % globals.n_receivers;
-    // A set that occurs may still be out of reach, so that others get their turn.
+    // A set that occurs may still be out of range: then the remaining ones are searched.
     var remaining = seen_sets[source];
     while remaining != 0u {
       let sets = closest_sets(lights, remaining);

@@ -1,9 +1,9 @@
-// The real shadow of one light warped to the animated pose: for each texel of the new shadow, where in the frame its
-// vertex's real shadow lies.
+// The real shadow of one light warped to the animated pose: for each texel of the new shadow, the position in the
+// frame of its vertex's real shadow.
 //
 // The animated mesh, flattened from the light, is the geometry; the flattened physical mesh gives the texture
-// coordinates. Where several parts of the toy shade one texel the one closest to the light stays.
-// Each receiver has its own shadow, cut off where another receiver is seen.
+// coordinates. Where several parts of the toy overlap in a texel the one closest to the light is kept.
+// Each receiver has its own shadow, cut off where another receiver is visible.
 //
 // Reads: positions of both poses. Writes: source in region_px, occluder's height over the receiver in metres, 1.
 // Source: Casas et al. 2018, sections 3.2 and 4.5; 2019, section 5.7.
@@ -48,7 +48,7 @@ fn fs_source(
   @location(3) @interpolate(flat) receiver: u32,
 ) -> WarpTexel {
   if height_m < 0.0 || receiver_at(vec2i(at.xy)) != receiver { discard; }
-  // A vertex whose real shadow the camera does not face is looked for where its new one is.
+  // A vertex whose real shadow is behind the camera samples at the texel of its new one.
   var region_px = at.xy;
   if source.z > 0.0 {
     let ndc = source.xy / source.z;

@@ -1,9 +1,9 @@
-// The plate, with an estimate where no plate shows the place.
+// The plate, completed by an estimate where no plate covers the pixel.
 //
-// At first the estimate is smooth, so that the fit can find the shadow in it. Then a pixel that shows the receiver tells
-// its own B = frame / (gain M), with all its texture, as far as enough light is left; what the toy hides, or bleeds into,
-// stays smooth.
-// Reads: plate, frame, evidence, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
+// The first estimate is smooth, so that the fit can find the shadow in it. The final one is B = frame / (gain M) per
+// pixel of the receiver, with all its texture, as far as enough light is left; pixels that the toy hides, or bleeds
+// into, stay smooth.
+// Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate. CPU reference: reference/estimate.rs.
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
@@ -16,9 +16,9 @@
 
 override IS_FINAL: bool = false;
 
-// Weight of an estimated pixel in the fit, and how it is told from a photographed one.
+// Alpha of an estimated pixel: marks it as such, and is its weight in the fit.
 const ESTIMATED: f32 = 0.25;
-// Light left, in plates, from which a pixel tells its own plate in full, and below which not at all.
+// Light left, in plates, above which a pixel's own estimate is used in full, and below which not at all.
 const TELLS_ALL: f32 = 0.3;
 const TELLS_NONE: f32 = 0.1;
 

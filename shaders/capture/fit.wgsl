@@ -1,13 +1,15 @@
-// Sums of the weighted normal equations, for a receiver, for the toy, or for the levels of the light.
+// Sums of the weighted normal equations, for a receiver, for the toy, or for gain and intensities.
 //
-// Receiver: frame / gain = plate c (A + bounce A (1 - A) + sum_i share_i falloff_i (level_i V_i - A) / plate_falloff)
-// is linear in (c, c bounce, c share_i), with plate_falloff and gain taken from the step before; c corrects the gain.
-// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i level_i max(n.l_i, 0) V_i), V_i with its shadow on itself.
-// Levels: frame = gain plate (ambient_model + sum_i level_i f_i V_i) is linear in (gain, gain level_i).
-// Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the step
-// before. Sums run over pixels here and over workgroups in `fit_solve`.
+// Receiver: frame / gain = plate c (A + bounce A (1 - A)
+//   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
+// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
+// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i with self-shadowing.
+// Intensities: frame = gain plate (ambient_model + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
+// Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
+// previous step. Sums run over pixels here and over workgroups in `fit_solve`.
 //
-// Reads: frame, plate, evidence, visibility, ambient, object. Writes: rows of 27 sums, one a workgroup and channel.
+// Reads: frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 27 sums, one per workgroup and
+// channel.
 // CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
 
 @group(1) @binding(0) var<uniform> step: FitStep;
@@ -31,7 +33,7 @@ const N_PART: u32 = 9u;
 const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
-// As above for the toy, of whose light from itself and curved faces the model does not know.
+// As above for the toy, whose interreflections and curved faces are not modelled.
 const TOY_CAUCHY_SCALE: f32 = 0.12;
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
@@ -52,16 +54,16 @@ fn frame_at(texel: vec2u) -> vec3f {
   return textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
 }
 
-// What a pixel of a receiver shows, all that its equations are made of.
+// Measurements at a pixel of a receiver: the inputs of its equations.
 struct Observation {
   point: ReceiverPoint,
   frame: vec3f,
   plate: vec3f,
   ambient: f32,
   visibility: vec4f,
-  // 0 where it is no evidence.
+  // 0 where the pixel is masked out or unusable.
   weight: vec3f,
-  // The plate there is an estimate, made with the levels as they were.
+  // The plate there is an estimate, made with the previous intensities.
   is_estimated: bool,
 }
 
@@ -112,7 +114,7 @@ fn intensity_equation(seen: Observation, channel: u32) -> Equation {
     predicted += fit.intensity[i][channel] * column;
     if !seen.is_estimated { eq.columns[2u + i] = column; }
   }
-  // It tells the exposure alone.
+  // An estimated plate constrains the gain alone.
   if seen.is_estimated { eq.columns[0] = predicted; }
   let gain = fit.gain[channel];
   eq.weight = seen.weight[channel];
@@ -130,7 +132,9 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   let received = textureLoad(gbuffer_received, texel, 0);
   eq.columns[0] = base[channel];
   eq.columns[1] = base[channel] * normal.y;
-  for (var i = 0u; i < globals.n_lights; i++) { eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i]; }
+  for (var i = 0u; i < globals.n_lights; i++) {
+    eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i];
+  }
   let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
   eq.weight = is_usable(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }

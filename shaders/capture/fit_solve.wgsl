@@ -1,7 +1,7 @@
-// Solves the normal equations that `fit` summed, per channel, with weak priors that decide what the frame does not show.
+// Solves the normal equations that `fit` summed, per channel, with weak priors for under-constrained unknowns.
 //
-// Reads: rows of sums, and those kept of frames before, since place and toy stay the same when the camera moves.
-// Writes: the solution, and in the last step the sums to keep.
+// Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
+// Writes: the solution, and in the last step the accumulated sums.
 // CPU reference: reference/fit.rs.
 
 @group(1) @binding(0) var<uniform> step: FitStep;
@@ -13,19 +13,19 @@
 const N_SUMS: u32 = 27u;
 // Weight of the priors against the energy of the first column.
 const PRIOR_WEIGHT: f32 = 1e-4;
-// Weight by which a light keeps the power it had, against the energy of the ambient light.
+// Weight of a light's previous intensity, against the energy of the ambient light.
 const INTENSITY_WEIGHT: f32 = 1e-3;
-// Weight by which further receivers keep the gain that the first one tells: there is one exposure.
+// Weight of the first receiver's gain for the other receivers: there is one exposure.
 const SAME_GAIN_WEIGHT: f32 = 10.0;
-// Sums of frames before weigh at most as much as this many frames like the latest.
+// Cap of the accumulated sums' weight, in frames like the latest.
 const MAX_FRAMES: f32 = 8.0;
 // Weight of the three channels' common solution, for the toy, against their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
-// Bounce of a toy of middle grey: the mean over channels of what sessions of the bundled toy show.
+// Bounce of a toy of middle grey: the mean over channels in sessions of the bundled toy.
 const PRIOR_BOUNCE: f32 = 0.27;
-// All lights together, half of the plate's radiance; each as if it gave as much as the others at one metre.
+// Direct fraction of all lights together, half of the plate's radiance; each as if of equal intensity at one metre.
 const PRIOR_DIRECT_FRACTION: f32 = 0.5;
-// Shares sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
+// Direct fractions sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
 
@@ -43,13 +43,13 @@ fn irradiance(receiver: u32, i: u32) -> f32 {
   return light.y / (distance_m * distance_m * distance_m);
 }
 
-// What a light's irradiance on the receiver that is fitted is, over that on the first.
+// A light's irradiance on the fitted receiver, over that on the first.
 fn of_first(i: u32) -> f32 {
   let first = irradiance(0u, i);
   return select(0.0, irradiance(step.receiver, i) / first, first > 0.0);
 }
 
-// A light's share of the first receiver's radiance, before any is seen.
+// Prior of a light's direct fraction on the first receiver.
 fn first_share(light: u32) -> f32 {
   var total = 0.0;
   for (var i = 0u; i < step.n_columns - 2u; i++) { total += irradiance(0u, i); }
@@ -57,15 +57,17 @@ fn first_share(light: u32) -> f32 {
   return PRIOR_DIRECT_FRACTION * irradiance(0u, light) / total;
 }
 
-// What is expected of a receiver before it is seen in shadow. Of the first, common values; of the others, that the same
-// lights shine on them, amid as much ambient light.
+// Prior of a receiver's unknowns. For the first, common values; for the others, the same lights, amid as much ambient
+// light.
 fn receiver_prior(column: u32, channel: u32) -> f32 {
   if column == 0u { return 1.0; }
   if column == 1u { return select(solution.receivers[0].bounce[channel], PRIOR_BOUNCE, step.receiver == 0u); }
   if step.receiver == 0u { return first_share(column - 2u); }
   var total = 1.0;
-  for (var i = 0u; i < step.n_columns - 2u; i++) { total += solution.receivers[0].direct_fraction[i][channel] * (of_first(i) - 1.0); }
-  // A light behind the first receiver tells nothing there.
+  for (var i = 0u; i < step.n_columns - 2u; i++) {
+    total += solution.receivers[0].direct_fraction[i][channel] * (of_first(i) - 1.0);
+  }
+  // A light behind the first receiver has no fraction there.
   if irradiance(0u, column - 2u) == 0.0 {
     return select(0.0, PRIOR_DIRECT_FRACTION / f32(step.n_columns - 2u), irradiance(step.receiver, column - 2u) > 0.0);
   }
@@ -142,7 +144,7 @@ fn solve_receiver(channel: u32) {
   if unknowns[0] > 0.0 { store_receiver(channel, light_energy / energy); }
 }
 
-// Nothing is seen of the receiver: it is as expected.
+// No valid pixel shows the receiver: it takes the prior.
 fn assume_receiver(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { unknowns[i] = receiver_prior(i, channel); }
   store_receiver(channel, 0.0);
@@ -158,7 +160,9 @@ fn solve_intensities(channel: u32) {
   solve();
   if unknowns[0] <= 0.0 { return; }
   solution.gain[channel] = unknowns[0];
-  for (var i = 2u; i < step.n_columns; i++) { solution.intensity[i - 2u][channel] = max(unknowns[i] / unknowns[0], 0.0); }
+  for (var i = 2u; i < step.n_columns; i++) {
+    solution.intensity[i - 2u][channel] = max(unknowns[i] / unknowns[0], 0.0);
+  }
 }
 
 // A channel in which the toy is dark follows the others: light is nearly white, base colours are not.
@@ -200,7 +204,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   }
   if lane >= 3u { return; }
   if step.subject == SUBJECT_INTENSITIES { solution.gain[lane] *= step.exposure_ratio; }
-  // Without any evidence the starting values stay.
+  // Without any valid pixel the starting values stay.
   if step.subject == SUBJECT_TOY {
     if energy > 0.0 { solve_toy(lane); }
   } else if sums[lane * N_SUMS] > 0.0 {

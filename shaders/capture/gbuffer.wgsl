@@ -1,8 +1,8 @@
-// The toy in its physical pose as the camera sees it: base colour, normal, what it receives of each light, and depth.
+// The toy in its physical pose as the camera sees it: base colour, normal, received light and depth.
 //
-// Reads: physical positions and normals in stage space, materials, depth maps from the lights. Writes: base colour (linear,
-// alpha 1 on the toy), unit normal in stage space and the material's number, each light's cosine times its visibility,
-// reversed depth.
+// Reads: physical positions and normals in anchor space, materials, depth maps from the lights. Writes: base colour
+// (linear, alpha 1 on the toy), unit normal in anchor space and the material's index, each light's cosine times its
+// visibility, reversed depth.
 
 struct Vertex {
   @location(0) in_anchor: vec3f,

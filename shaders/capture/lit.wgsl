@@ -1,7 +1,7 @@
-// What the receivers look like where light falls on them, pooled on coarse grids: what a missing plate is made of.
+// Colour of the lit receivers, pooled on coarse grids: the source of an estimated plate.
 //
-// B = frame / (gain M) where the receiver is seen and little of its light is missing.
-// Reads: frame, evidence, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
+// B = frame / (gain M) where the receiver is visible and little of its light is missing.
+// Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 // CPU reference: reference/lit.rs.
 
 @group(1) @binding(3) var frame: texture_2d<f32>;
@@ -10,7 +10,7 @@
 @group(1) @binding(6) var ambient: texture_2d<f32>;
 @group(1) @binding(7) var ambient_sampler: sampler;
 
-// Power of the light that is left: shadow counts little, since its depth may not be known yet.
+// Exponent of the light that is left: shadow counts little, since its depth may not be fitted yet.
 const LIT_POWER: f32 = 8.0;
 
 fn lit_color(point: ReceiverPoint) -> vec4f {

@@ -1,9 +1,9 @@
-// What the model leaves unexplained, pooled on coarse grids: reflected colour, a faint second light, uneven ambient.
+// Residual of the model, pooled on coarse grids: reflected colour, a faint second light, uneven ambient.
 //
 // r = sum w plate (frame / gain - plate M) / sum w plate^2, never a division by one dark pixel.
 //
-// Reads: frame, plate, evidence, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of the
-// pyramids. CPU reference: reference/residual.rs.
+// Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
+// the pyramids. CPU reference: reference/residual.rs.
 
 @group(1) @binding(3) var frame: texture_2d<f32>;
 @group(1) @binding(4) var plate: texture_2d<f32>;
@@ -12,13 +12,13 @@
 @group(1) @binding(7) var ambient: texture_2d<f32>;
 @group(1) @binding(8) var ambient_sampler: sampler;
 
-// A residual this large, in plates, is something the model does not know, such as a hand: it counts half.
+// Residual, in plates, at which a point counts half: an outlier, such as a hand.
 const CAUCHY_SCALE: f32 = 0.03;
 
 struct Sums {
   product: vec3f,
   energy: vec3f,
-  // Points that are evidence, whether the model explains them or not: a hand is known to be there.
+  // Number of usable points, outliers such as a hand included.
   n_points: f32,
 }
 
@@ -35,7 +35,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   if brightness == 0.0 || b.a < 1.0 { return sums; }
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let v = textureLoad(visibility, texel, 0);
-  // At the pixel's centre, where the visibilities are those of.
+  // At the pixel's centre, where the visibilities were sampled.
   let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
   let usable = seen * is_usable(f, b.rgb);

@@ -1,26 +1,27 @@
-// What the toy's visible surface tells of its paint, summed in cells.
+// Shown and expected colours of the toy's visible paint, summed in cells.
 //
-// Each pixel that shows one surface of the toy, and is not clipped, adds what it shows, and what base colour, gain and
-// fitted light give there, to the cell that its point lies in. Sums are of integers: their order does not matter.
+// Each pixel that shows one surface of the toy, and is not clipped, adds its colour, and the one expected from base
+// colour, gain and fitted light, to the cell that contains its point. Sums are of integers: their order does not
+// matter.
 //
-// Reads: frame, evidence, the physical toy, the light on it. Writes: sums of the finest cells. CPU reference: reference/tint.rs.
+// Reads: frame, validity, gbuffer, fit. Writes: sums of the finest cells. CPU reference: reference/tint.rs.
 
-// Every how many pixels, along each side, one is taken: so few in all that no sum overflows.
+// Sampling stride in pixels along each side, so large that no sum overflows.
 @group(1) @binding(0) var<uniform> stride_px: u32;
 @group(1) @binding(1) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(2) var<storage, read_write> sums: array<atomic<u32>>;
 @group(1) @binding(3) var frame: texture_2d<f32>;
 @group(1) @binding(4) var validity: texture_2d<f32>;
 @group(1) @binding(5) var gbuffer_depth: texture_depth_2d;
-// Its w is the material.
+// w is the material's index.
 @group(1) @binding(6) var gbuffer_normal: texture_2d<f32>;
 @group(1) @binding(7) var gbuffer_received: texture_2d<f32>;
 @group(1) @binding(8) var gbuffer_base: texture_2d<f32>;
 
-// More than this would be clipped in the photograph, whatever the paint; of that many pixels sums hold no more.
+// Expected values above this are clipped in the photograph, whatever the paint; the cap also bounds the sums.
 const MOST_EXPECTED: f32 = 3.0;
 
-// The point seen at a pixel: on its ray, at its depth. The plane of the first receiver is y = 0 of the stage.
+// The point seen at a pixel: on its ray, at its depth. The plane of the first receiver is y = 0 in anchor space.
 fn seen_in_anchor(at: vec2f, depth: f32) -> vec3f {
   let depth_m = globals.clip_from_anchor[3].z / depth;
   let on_plane = globals.receivers[0].plane_from_region_px * vec3f(at, 1.0);

@@ -1,11 +1,12 @@
-// The tint of the toy's paint in every cell, from cells around where its surface is hidden: pull-push in three dimensions.
+// The tint of the toy's paint in every cell, from cells around where its surface is hidden: pull-push in a volume.
 //
-// tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest that carries evidence: paint that is nearly
-// black, as shown and as expected, is as its model says. What was seen in views before counts, too.
-// A material that was never seen keeps its model's colour. One workgroup does a material's grid.
+// tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest usable value: paint that is nearly
+// black, both shown and expected, has tint 1. Sums of earlier views count, too.
+// A material that was never seen keeps its model's colour. One workgroup fills a material's grid.
 //
-// Reads: sums of the finest cells, what was known of them. Writes: tints, level after level, finest first; afterwards
-// the finest holds (tint, 1). CPU reference: reference/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a volume.
+// Reads: sums of the finest cells, accumulated sums. Writes: tints, level after level, finest first; afterwards the
+// finest holds (tint, 1). CPU reference: reference/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a
+// volume.
 
 @group(1) @binding(0) var<storage, read> sums: array<u32>;
 // Sums of tints times certainty, and of certainties.
@@ -14,14 +15,14 @@
 
 const WORKGROUP: u32 = 256u;
 const N_LEVELS: u32 = 5u;
-// Pixels in a cell from which on it counts in full.
+// Number of pixels from which on a cell counts in full.
 const FULL_PIXELS: f32 = 16.0;
 
 fn summed(first: u32) -> vec3f {
   return vec3f(f32(sums[first]), f32(sums[first + 1u]), f32(sums[first + 2u]));
 }
 
-// Adds what a cell was seen to be to what was known of it.
+// Adds a cell's tint in this frame to its accumulated sum; returns the mean.
 fn accumulate(slot: u32) -> vec4f {
   let first = N_TINT_SUMS * slot;
   let n_pixels = f32(sums[first + 6u]);
@@ -67,7 +68,7 @@ fn cs_fill(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) gr
     }
     storageBarrier();
   }
-  // As far as nothing is known of a material, it is as its model says.
+  // Where certainty is missing for a whole material its tint is 1: the model's colour.
   if lane == 0u {
     let top = level_first(grid.x, N_LEVELS - 1u);
     tints[top] += (1.0 - tints[top].a) * vec4f(1.0);

@@ -1,6 +1,6 @@
-// Evidence without the real shadow, so that how well it is rebuilt can be measured on a photograph that has no truth.
+// Validity mask without the real shadow, to measure its reconstruction on a photograph without ground truth.
 //
-// Reads: evidence, visibility, ambient. Writes: the same marks, but none where the receiver is seen in shadow, as if the toy
+// Reads: validity, visibility, ambient. Writes: the same mask, but 0 where the receiver is in shadow, as if the toy
 // hid it; there a is 0, and a half beside the toy.
 // CPU reference: reference/withhold.rs.
 

@@ -1,4 +1,4 @@
-// Constants that the papers leave open, tuned as `preset.rs` says, and what the scene decides.
+// Constants that the papers leave open, tuned as `preset.rs` states, and properties of the scene.
 
 struct Baseline {
   // Radius of each light's disc: metres for a sphere, slope for a directional light.
@@ -9,7 +9,7 @@ struct Baseline {
   textured_receivers: u32,
   // 0: search for real shadow. 1: a constant ratio.
   is_constant: u32,
-  // Of one light.
+  // Shadow over plate of one light.
   constant_ratio: f32,
   // Distance kept from the edges of the eligible shadow.
   eligible_margin_px: i32,
@@ -26,23 +26,23 @@ struct Baseline {
 
 @group(0) @binding(1) var<uniform> baseline: Baseline;
 
-// A set of lights, those that do not reach a place: bit i stands for light i. 0 is a place in light.
+// A set of hidden lights: bit i stands for light i. 0 is fully lit.
 
-// Where a shadow is, in one number: the receiver and the lights that do not reach it; 0 where there is no shadow.
+// Label of a shadow: the receiver and the set of hidden lights in one number; 0 where there is no shadow.
 const N_SETS: u32 = 16u;
 
 fn label_of(receiver: u32, lights: u32) -> u32 {
   return select(receiver * N_SETS + lights, 0u, lights == 0u);
 }
 
-// The receiver that a texel shows; where there is only one, all belongs to it.
+// The receiver that a texel shows; if there is only one, every texel belongs to it.
 fn receiver_at(texel: vec2i) -> u32 {
   if globals.n_receivers == 1u { return 0u; }
   return receiver_of(receiver_point(vec2f(texel) + 0.5));
 }
 
-// How far the shade of the lights `has` is from that of the lights `wanted`: first by how many lights they differ, and
-// of two that differ by as many the one that hides no light too much is closer.
+// Distance between the sets of lights `has` and `wanted`: first the number of lights that differ; among equals a set
+// that hides no light too much is closer.
 fn unlikeness(wanted: u32, has: u32) -> u32 {
   return 2u * countOneBits(wanted ^ has) + select(0u, 1u, (has & ~wanted) != 0u);
 }

@@ -1,4 +1,4 @@
-// The value between cells of one level, bilinear; `at` is in cells, the centre of the first at (0, 0).
+// Bilinear interpolation between cells of one level; `at` is in cells, the centre of the first at (0, 0).
 
 fn between_cells(first: u32, size: vec2u, at: vec2f) -> vec4f {
   let low = floor(at);

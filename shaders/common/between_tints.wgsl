@@ -1,4 +1,4 @@
-// The tint between cells, trilinear.
+// Trilinear interpolation of tints.
 
 // Cells of all levels of a grid: 16, 8, 4, 2 and 1 along each side, finest first.
 const TINT_PYRAMID: u32 = 4681u;

@@ -1,13 +1,13 @@
-// What the least squares learn from the real shadow and from the real toy.
+// Solution of the least-squares fits to the real shadow and the real toy.
 
 const N_COLUMNS: u32 = 6u;
 
 struct ReceiverFit {
-  // Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
+  // Light reflected by the toy where it occludes ambient light, as a fraction of that light.
   bounce: vec4f,
-  // Each light's share of the plate's radiance at the reference point.
+  // Each light's fraction of the plate's radiance at the reference point.
   direct_fraction: array<vec4f, MAX_LIGHTS>,
-  // Energy of the light columns over that of the plate: how much real shadow the fit has seen.
+  // Energy of the light columns over that of the plate: how much real shadow is in the sums.
   contrast: vec4f,
 }
 
@@ -17,7 +17,7 @@ struct Fit {
   // Each light's power over that when the plate was taken.
   intensity: array<vec4f, MAX_LIGHTS>,
   receivers: array<ReceiverFit, MAX_RECEIVERS>,
-  // Radiance of the toy over its base colour and the gain: constant, vertical gradient, and a factor per light's cosine.
+  // Radiance of the toy over its base colour and the gain: constant, vertical gradient, a factor per light's cosine.
   toy: array<vec4f, N_COLUMNS>,
 }
 

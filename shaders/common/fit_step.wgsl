@@ -7,17 +7,17 @@ const SUBJECT_INTENSITIES: u32 = 2u;
 struct FitStep {
   // 0 in the first step: there is no solution yet, all weights are 1.
   is_reweighted: u32,
-  // Workgroups a channel, each of which leaves a row of sums a channel.
+  // Workgroups per channel, each of which writes one row of sums per channel.
   n_rows: u32,
-  // Unknowns: two, and one a light.
+  // Unknowns: two, and one per light.
   n_columns: u32,
   subject: u32,
   // The receiver that is fitted, for SUBJECT_RECEIVER.
   receiver: u32,
-  // Every how many pixels, along each side, one is taken.
+  // Sampling stride in pixels along each side.
   stride_px: u32,
-  // 1 in the last step: its sums are kept for the frames to come.
+  // 1 in the last step: its sums are accumulated.
   is_last: u32,
-  // Exposure of this picture over that of the one before, for SUBJECT_INTENSITIES; 1 once it is taken into the gain.
+  // Exposure of this picture over that of the one before, for SUBJECT_INTENSITIES; 1 once it is applied to the gain.
   exposure_ratio: f32,
 }

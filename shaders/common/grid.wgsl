@@ -1,10 +1,10 @@
-// Coarse grids over the receivers, in their own planes: what is known of a place stays known when the camera moves.
+// Coarse grids over the receivers, in plane space: cells stay in place when the camera moves.
 
 struct Grid {
   // Corner of the first cell.
   origin_in_plane: vec2f,
   cell_m: f32,
-  // Where this receiver's cells begin, all levels of its pyramid in a row.
+  // Index of this receiver's first cell; all levels of its pyramid follow in a row.
   first_cell: u32,
   // Cells of the finest level, at most 64 x 64.
   size: vec2u,
@@ -15,7 +15,7 @@ struct Grids {
   grids: array<Grid, 4u>,
 }
 
-// Most cells of a finest level.
+// Maximum number of cells of a finest level.
 const MAX_CELLS: u32 = 4096u;
 
 @group(1) @binding(0) var<uniform> grids: Grids;

@@ -1,6 +1,6 @@
 // Whether a point of the toy has moved on the screen.
 
-// Distance in pixels up to which a point stays in its pixels, and from which it has left them.
+// Distance in pixels up to which a point counts as still, and from which as moved.
 const STILL_PX: f32 = 0.05;
 const MOVED_PX: f32 = 0.2;
 

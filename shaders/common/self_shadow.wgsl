@@ -1,17 +1,18 @@
-// Shadows of the toy on itself: how much of a light reaches a point of its surface.
+// Self-shadowing of the toy: visibility of a light at a point of its surface.
 //
-// Depth maps from points of each light lie as tiles in one atlas; a point is compared with each and the answers averaged.
+// Depth maps from points of each light are tiles of one atlas; a point is compared with each and the results
+// averaged.
 // Bias: the point is moved along its normal by as much as the surface can rise between two texels of a tile.
-// Source: Williams 1978 (shadow maps), Holbert 2011 (normal offset; here in closed form), Heckbert and Herf 1997 (soft
-// shadows as a mean over light points).
+// Source: Williams 1978 (shadow maps), Holbert 2011 (normal offset; here in closed form), Heckbert and Herf 1997
+// (soft shadows as a mean over light points).
 
 const MAX_TILES: u32 = 64u;
 
 struct SelfShadow {
   // Clip space of the atlas, one tile each; depth is reversed, 0 where there is nothing.
   atlas_from_anchor: array<mat4x4f, MAX_TILES>,
-  // Per light: its first tile, its number of tiles, 0 for one that casts nothing on the toy, and the width of a texel in
-  // metres at w = 1.
+  // Per light: index of its first tile, its number of tiles, 0 for one without shadow on the toy, and the width of a
+  // texel in metres at w = 1.
   first_tile: vec4u,
   n_tiles: vec4u,
   texel_m: vec4f,
@@ -42,7 +43,7 @@ fn self_visibility(i: u32, in_anchor: vec3f, normal: vec3f, cosine: f32) -> f32 
   return sum / f32(n_tiles);
 }
 
-// Each light's cosine times its visibility: what it gives to a surface.
+// Each light's cosine times its visibility.
 fn light_received(normal: vec3f, in_anchor: vec3f) -> vec4f {
   var received = vec4f(0.0);
   for (var i = 0u; i < globals.n_lights; i++) {

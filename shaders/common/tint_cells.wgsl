@@ -1,11 +1,11 @@
 // The cells of a grid of tints.
 
-// Cells along each side of a grid, and all of them.
+// Cells along each side of a grid, and in total.
 const TINT_SIDE: u32 = 16u;
 const TINT_CELLS: u32 = 4096u; // TINT_SIDE^3
-// Sums of a cell: what is shown and what is expected, three channels each, and how many pixels they are of.
+// Sums of a cell: shown and expected colour, three channels each, and the number of pixels.
 const N_TINT_SUMS: u32 = 7u;
-// Linear 1 in the sums.
+// Fixed-point value of linear 1 in the sums.
 const TINT_UNIT: f32 = 16384.0;
 
 fn tint_index(cell: vec3u, side: u32) -> u32 {

@@ -1,5 +1,5 @@
-// How the real toy's paint differs from that of its model: photograph over what base colour and fitted light give, in the
-// cells of coarse grids over the physical toy, one grid a material.
+// Tints of the real toy's paint: photograph over base colour times fitted light, in the cells of coarse grids around
+// the physical toy, one grid per material.
 
 struct TintGrid {
   // Lowest corner of the grids, which are cubes.

@@ -1,4 +1,4 @@
-// How the toy's surface is lit: radiance over base colour, for a unit normal in stage space.
+// Cosine of the toy's surface to a light, for a unit normal in anchor space.
 
 // Cosine of the normal to light `i`, 0 where the surface is turned away.
 fn light_cosine(i: u32, normal: vec3f, in_anchor: vec3f) -> f32 {

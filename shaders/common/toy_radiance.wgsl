@@ -1,5 +1,5 @@
-// What was fitted of the light on the toy: a constant, a vertical gradient, and one factor for each light's cosine times
-// its visibility, when the light has the power it had for the plate. Over base colour and the exposure's gain.
+// Fitted radiance of the toy over base colour and gain: a constant, a vertical gradient, and one factor per light,
+// stated at the plate's intensity, for intensity times cosine times visibility.
 
 fn toy_radiance_over_base(normal: vec3f, received: vec4f) -> vec3f {
   var sum = fit.toy[0].rgb + fit.toy[1].rgb * normal.y;

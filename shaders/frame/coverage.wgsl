@@ -1,15 +1,15 @@
-// How much of each pixel the posed toy covers, counted over many positions in one pass.
+// Fraction of each pixel that the posed toy covers, counted over many positions in one pass.
 //
-// Each instance draws the mesh moved so that the pixel's centre sees its position; the target adds up. As in `occlusion`
-// each position has a depth of its own, above those before it, so that triangles that overlap do not count twice; rounding
-// of z / w is far from a step of 16 bits, in which depths are 1986 steps apart. Where any
-// triangle covers a position the toy does: no depth of the scene is asked for but that of the receivers.
+// Each instance draws the mesh moved so that the pixel's centre samples its position; blending adds up. As in
+// `occlusion` each position has a constant depth, above those before it, so that overlapping triangles do not count
+// twice; rounding of z / w is far from a step of 16 bits, in which depths are 1986 steps apart. A position counts
+// where any triangle covers it: of the scene's depths only those of the receivers are tested.
 // The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
 //
-// Reads: posed positions in stage space. Writes: COVERED_POSITION for each position that the toy covers.
+// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
-// Rows from one column's position to the next one's: of all lattices of 32 this one has the least error at a straight edge.
+// Row step from one column's position to the next: of all lattices of 32 it has the least error at a straight edge.
 const LATTICE_STEP: u32 = 9u;
 
 struct Moved {
@@ -17,7 +17,7 @@ struct Moved {
   @location(0) @interpolate(flat, either) index: u32,
 }
 
-// From the pixel's centre.
+// Offset from the pixel's centre.
 fn position_px(index: u32) -> vec2f {
   return (vec2f(vec2u(index, index * LATTICE_STEP % N_POSITIONS)) + 0.5) / f32(N_POSITIONS) - 0.5;
 }
@@ -32,7 +32,7 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
 
 @fragment
 fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
-  // w is the inverse depth of what the position sees.
+  // w is the inverse depth at the position.
   if is_behind_receiver(at.xy + position_px(index), at.w) { discard; }
   return vec4f(COVERED_POSITION);
 }

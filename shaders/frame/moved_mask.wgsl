@@ -1,6 +1,6 @@
-// Where the surface that the camera saw of the real toy is no longer in its place.
+// Moved mask: where the visible surface of the real toy has moved in the shown pose.
 //
-// Reads: both poses. Writes: 1 where the surface has moved, as part of the pixel.
+// Reads: both poses. Writes: 1 where the surface has moved, as a fraction of the pixel.
 
 struct Surface {
   @builtin(position) clip: vec4f,

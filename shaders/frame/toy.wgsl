@@ -1,15 +1,14 @@
-// The toy in the pose to be shown, drawn with its camera pixels.
+// The toy in the shown pose, textured with its camera pixels.
 //
-// Its surface takes the camera's pixels where the camera saw that point in the physical pose, scaled by how the fitted light
-// falls on the turned surface; what was hidden takes the model's base colour under the fitted light, tinted as the paint
-// beside it is.
+// Points that the camera saw in the physical pose take its pixels, scaled by the change of the fitted light on the
+// turned surface; hidden points take the model's base colour under the fitted light, times the tint.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
-// Reads: both poses, materials, the toy's own colours and the light they were seen under, the physical toy, the fit, depth
-// maps from the lights, tints. Writes: linear radiance, premultiplied, alpha what the samples meet;
-// where it shows what the camera did not see there.
+// Reads: both poses, materials, appearance and the light it was seen under, gbuffer, fit, depth maps from the lights,
+// tints. Writes: linear radiance, premultiplied, alpha the fraction of samples hit; where it differs from the
+// camera's pixel.
 
-// By which the whole picture is moved, in pixels to the right and down.
+// Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
 @group(1) @binding(1) var appearance: texture_2d<f32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
@@ -18,18 +17,19 @@
 @group(1) @binding(5) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(6) var<storage, read> tints: array<vec4f>;
 
-// A turned surface is never made more than this much brighter or darker than its camera pixel.
+// Maximum factor by which a camera pixel is brightened or darkened for a turned surface.
 const MAX_TURN: f32 = 4.0;
-// Surface per camera pixel, shown over physical, down to which pixels are carried in full, and from which not at all:
-// a surface that was seen at a grazing angle and turns to the camera has too few pixels to show.
+// Surface area per pixel, shown over physical pose, above which camera pixels are used in full, and below which not
+// at all: a surface that was seen at a grazing angle and turns to the camera has too few pixels.
 const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
-// Difference of base colours, against the lighter one, from which two points of the model are of two materials.
+// Difference of base colours, relative to the lighter one, above which two points of the model have different
+// materials.
 const OTHER_MATERIAL: f32 = 0.25;
-// Change of the light on a surface, against the light, that does not show, and that does.
+// Relative change of the light on a surface that is invisible, and that is visible in full.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
-// Weight of colours carried past the outline, against those of the surface itself.
+// Weight of colours extrapolated past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
 struct Vertex {
@@ -64,7 +64,7 @@ fn is_other_material(texel: vec2u, base: vec3f) -> bool {
   return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
 }
 
-// A camera pixel as it would be under the light `lit`, both over base colour.
+// A camera pixel relit from `was_lit` to `lit`, both radiance over base colour.
 fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
   let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
   return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
@@ -98,15 +98,15 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
   return vec4f(sum.rgb / sum.a, 1.0);
 }
 
-// Cosine between the triangle and the direction to the camera; `normal` tells its outer side.
+// Cosine between the triangle's normal and the direction to the camera; `normal` selects its outer side.
 fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
   let across = cross(dpdx(in_anchor), dpdy(in_anchor));
   let outward = unit_normal(across * sign(dot(across, normal)));
   return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
 }
 
-// How far the light on a surface is from what it was. A pixel at a fold shows several sides: that of them counts which is
-// most alike.
+// Relative change of the light on a surface, from 0 to 1. A pixel at a fold shows several faces: the most similar one
+// counts.
 fn light_change(texel: vec2i, lit: vec3f) -> f32 {
   let last = vec2i(globals.region_size_px) - 1;
   var least = 1.0;
@@ -120,14 +120,14 @@ fn light_change(texel: vec2i, lit: vec3f) -> f32 {
   return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
 }
 
-// How the real toy's paint differs from its model's at a point of the physical pose.
+// Tint at a point of the physical pose.
 fn tint(physical_in_anchor: vec3f) -> vec3f {
   return between_tints(TINT_PYRAMID * tint_grid_of(material.index), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
 }
 
 struct Drawn {
   @location(0) radiance: vec4f,
-  // Where it shows what the camera did not see in this place.
+  // 1 where the toy differs from what the camera saw at this pixel.
   @location(1) moved: vec4f,
 }
 
@@ -145,11 +145,12 @@ fn fs_toy(
   let normal = unit_normal(interpolated_normal);
   let physical_normal = unit_normal(interpolated_physical_normal);
   let physical_facing = facing(physical_in_anchor, physical_normal);
-  let stretch = select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
+  let stretch =
+    select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(normal, in_anchor));
-  let unseen = fit.gargb * base * tint(physical_in_anchor) * lit;
+  let unseen = fit.gain.rgb * base * tint(physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   if is_behind_receiver(at.xy - offset_px, at.w) { discard; }

@@ -1,21 +1,21 @@
 // Shadows of the posed toy on the receivers, from many points of a light in one pass.
 //
 // Each instance flattens the mesh from one light point onto one receiver and draws it where the camera sees it, so a
-// contact edge is as sharp as the screen. Point i is drawn for position i % 4 within the pixel; the target adds up. That
-// triangles of one point overlap must not count twice: each point has a depth of its own, above those before it, and what is
-// not above what is there is rejected. No depth of the scene, hence no bias and no acne.
-// A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` shuts out pixels that
-// show another.
+// contact edge is as sharp as the screen. Point i is drawn for position i % 4 within the pixel; blending adds up.
+// Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it,
+// and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
+// A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
+// that show another by depth.
 // Of a closed mesh only the side that faces the light is drawn: a ray that enters it leaves it again.
 //
-// Reads: posed positions in stage space. Writes: HIDDEN_POINT for each light point hidden.
+// Reads: posed positions in anchor space. Writes: HIDDEN_POINT for each light point hidden.
 // CPU reference: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
-// Here the accumulation is done by the blending of one pass rather than by one pass a point.
+// Here the accumulation is done by the blending of one pass rather than by one pass per point.
 
 struct LightPoints {
-  // Homogeneous: (position, 1) or (unit direction, 0); point k in the space of receiver r is number r n_points + k.
+  // Homogeneous: (position, 1) or (unit direction, 0); point k in the space of receiver r has index r n_points + k.
   points: array<vec4f, 256>,
-  // Size of a target's texel in the region.
+  // Size of a target's texel in region pixels.
   texel_px: vec2f,
   n_points: u32,
   _pad: u32,
@@ -31,14 +31,14 @@ struct Routed {
   @location(0) @interpolate(flat, either) receiver: u32,
 }
 
-// The whole target, for one receiver.
+// Full-screen triangle, one instance per receiver.
 @vertex
 fn vs_route(@builtin(vertex_index) index: u32, @builtin(instance_index) receiver: u32) -> Routed {
   let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
   return Routed(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), receiver);
 }
 
-// Below all points where the pixel shows the receiver, above them where it does not.
+// Depth below all points where the pixel shows the receiver, above them where it does not.
 @fragment
 fn fs_route(
   @builtin(position) at: vec4f,
@@ -59,7 +59,7 @@ fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: 
   let point = instance % light_points.n_points;
   let in_plane = (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
   var clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
-  // Brings the position to where the rasteriser looks, the pixel's centre.
+  // Moves the position to the pixel's centre, where the rasteriser samples.
   let to_centre_px = (0.5 - POSITIONS[point % 4u]) * light_points.texel_px;
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
   return Flattened(clip, in_plane.y, f32(point + 1u) / f32(light_points.n_points + 1u));
@@ -72,6 +72,6 @@ struct Hidden {
 
 @fragment
 fn fs_cover(@location(0) height_m: f32, @location(1) @interpolate(flat, either) depth: f32) -> Hidden {
-  // What lies under the receiver casts nothing on it: it is above no point.
+  // Parts under the receiver cast no shadow on it: their depth is above no point's.
   return Hidden(vec4f(HIDDEN_POINT), select(0.0, depth, height_m >= 0.0));
 }

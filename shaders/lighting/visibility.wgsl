@@ -1,6 +1,6 @@
 // Visibility of a light from the hidden light points.
 //
-// Reads: the target of occlusion. Writes: visibility in [0, 1].
+// Reads: hidden, the target of `occlusion`. Writes: visibility in [0, 1].
 // CPU reference: reference/visibility.rs.
 
 // Number of light points drawn.

@@ -1,6 +1,6 @@
 // The camera image with the work region laid over it, code for code.
 //
-// Reads: frame and composite as 8-bit codes. Writes: codes, opaque.
+// Reads: frame_codes and region_codes, 8 bits. Writes: codes, opaque.
 
 struct Placement {
   origin_px: vec2u,

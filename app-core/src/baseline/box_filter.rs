@@ -23,7 +23,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 const SLOTS: &[Slot] = &[Slot::per_use::<Summed>(), Slot::Texture];
 
 shared_struct! {
-    /// What one run sums.
+    /// Parameters of one run.
     pub(crate) struct Summed {
         pub label: u32,
         pub receiver: u32,
@@ -49,7 +49,7 @@ pub(crate) struct Inputs<'a> {
 pub(crate) struct Targets {
     /// Sums of rows.
     between: Texture,
-    /// Sums over the box, a layer a set of lights, from the set 1 on.
+    /// Sums over the box, one layer per set of lights, from the set 1 on.
     pub(crate) sums: TextureLayers,
 }
 
@@ -82,7 +82,7 @@ impl Pass {
                 let columns = Summed { label: 0, receiver };
                 let between = cleared(&targets.between.view);
                 self.sum(recorder, (inputs.scene, rows), inputs.terms, between);
-                // One receiver's columns leave the others' texels as they are.
+                // Each receiver's columns keep the texels of the others.
                 let sums = if receiver == 0 {
                     cleared(of_set)
                 } else {

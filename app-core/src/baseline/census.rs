@@ -1,4 +1,4 @@
-//! `census`: which sets of lights are shadowed anywhere in mask 3c.
+//! `census`: sets of lights whose shadows occur in mask 3c.
 
 use wgpu::BufferUsages;
 
@@ -17,7 +17,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &part!("bas
 const SLOTS: &[Slot] = &[Slot::WholeNumbers, Slot::ReadWrite];
 /// Invocations of a workgroup along each side.
 const WORKGROUP_PX: u32 = 16;
-/// A word a receiver, with bit s where the set s of lights was seen.
+/// One word per receiver, with bit s where the set s of lights occurs.
 pub(crate) type SeenSets = [u32; MAX_RECEIVERS];
 
 /// Only where the real shadow is sampled.
@@ -54,7 +54,7 @@ impl Pass {
         }
     }
 
-    /// Counts over mask 3c.
+    /// Collects the sets that occur in mask 3c.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, labels: &Texture, targets: &Targets) {
         recorder.clear(&targets.seen_sets);
         let resources = [(&labels.view).into(), (&targets.seen_sets).into()];

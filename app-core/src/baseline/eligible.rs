@@ -16,7 +16,7 @@ use crate::passes::parts::FULLSCREEN;
 pub(crate) const SHADER: Shader =
     Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/eligible")]);
 const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture];
-/// Format of the masks: r is 3c as a set of lights, g is 3b.
+/// Format of the masks: r is 3c as a label of receiver and lights, g is 3b.
 const FORMAT: TextureFormat = TextureFormat::Rg8Uint;
 
 pub(crate) struct Pass {

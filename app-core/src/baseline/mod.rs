@@ -24,7 +24,7 @@ use crate::readback::inject::{Injected, InjectedVisibility, upload};
 
 passes!(BaselinePlan: masks, warp, pcss, eligible, census, search, box_filter, retarget);
 
-/// The baseline at work.
+/// The baseline of one scene: plan, targets and passes.
 pub(crate) struct Baseline {
     pub(crate) plan: BaselinePlan,
     order: [Vec<(Path, Step)>; Change::ALL.len()],
@@ -37,14 +37,14 @@ pub(crate) struct Baseline {
     plate_pass: plate::Pass,
 }
 
-/// The passes that run when that much of a frame is new, `box_filter` several times.
+/// The passes that run for `change`, `box_filter` several times.
 pub fn planned(plan: &BaselinePlan, change: Change) -> Vec<(Path, &'static str)> {
     let steps = order(plan, change).into_iter();
     steps.map(|(path, step)| (path, step.pass())).collect()
 }
 
 impl Baseline {
-    /// Allocates what `plan` asks for.
+    /// Allocates the resources of `plan`.
     pub(crate) fn new(gpu: &Gpu, plan: BaselinePlan, globals: &Globals, uniform: &Uniform) -> Self {
         Self {
             globals: gpu.uniform("globals", globals),
@@ -59,7 +59,7 @@ impl Baseline {
         }
     }
 
-    /// Follows the camera to another view; textures stay if they are large enough.
+    /// Follows the camera to another view; textures are kept where the region keeps its size.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: BaselinePlan, globals: &Globals, uniform: &Uniform) {
         self.injected = Injected::default();
         if plan.region.size_px != self.plan.region.size_px {
@@ -78,7 +78,7 @@ impl Baseline {
         &self.targets.retarget.codes
     }
 
-    /// Encodes the frame path, and before it what the change asks for.
+    /// Encodes the frame path, and before it the capture passes that `change` needs.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,4 +1,4 @@
-//! The order of the baseline: what runs is what is planned.
+//! The order of the baseline's steps: the same list is planned and run.
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::{box_filter, census, search};
@@ -12,7 +12,7 @@ pub(crate) enum Pose {
     Shown,
 }
 
-/// One step.
+/// One step of the baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     Plate,
@@ -44,7 +44,7 @@ impl Step {
     }
 }
 
-/// What runs when that much of a frame is new.
+/// The steps that run for `change`.
 pub(crate) fn order(plan: &BaselinePlan, change: Change) -> Vec<(Path, Step)> {
     let mut steps = Vec::new();
     if change >= Change::View {
@@ -53,7 +53,7 @@ pub(crate) fn order(plan: &BaselinePlan, change: Change) -> Vec<(Path, Step)> {
         steps.push((Path::Capture, Step::Eligible));
         add_if(&mut steps, census::is_needed(plan), (Path::Capture, Step::Census));
     }
-    // At the exposure of its picture.
+    // The plate is brought to the exposure of the new picture.
     add_if(&mut steps, change == Change::Picture, (Path::Frame, Step::Plate));
     steps.extend(shadow(plan, Pose::Shown).map(on(Path::Frame)));
     add_if(&mut steps, search::is_needed(plan), (Path::Frame, Step::Search));

@@ -18,13 +18,13 @@ pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN
 const SLOTS: &[Slot] = &[Slot::Layers];
 
 pub(crate) struct Pass {
-    /// One a format of the map.
+    /// One per format of the map.
     draws: [(TextureFormat, Draw); 3],
 }
 
 /// Of the region's size.
 pub(crate) struct Targets {
-    /// A channel a light.
+    /// One channel per light.
     pub(crate) visibility: Texture,
 }
 

@@ -14,11 +14,11 @@ pub struct BaselinePlan {
     pub n_lights: u32,
     /// Receivers that they are moved on, each by itself.
     pub n_receivers: u32,
-    /// Sets of these lights, the empty one left out: each has an appearance of its own where its shadows overlap.
+    /// Non-empty sets of these lights: where its shadows overlap, each has an appearance of its own.
     pub n_sets: u32,
     /// Whether the shadow is of constant strength, rather than sampled.
     pub is_constant: bool,
-    /// What the scene does not need.
+    /// Work that the scene does not need.
     pub left_out: Vec<LeftOut>,
 }
 

@@ -1,4 +1,4 @@
-//! `retarget`: the published picture: plate in the masks, the new shadow over it, the toy by projective texturing.
+//! `retarget`: the baseline's picture: plate in the masks, the new shadow over it, the toy by projective texturing.
 
 use wgpu::{CompareFunction, DepthStencilState, StoreOp, TextureFormat, VertexFormat};
 
@@ -47,12 +47,12 @@ pub(crate) struct Inputs<'a> {
     pub(crate) terms: &'a wgpu::TextureView,
 }
 
-/// Of the region's size: two multisampled ones that stay on the chip, and the picture.
+/// Of the region's size: two multisampled ones that are never stored, and the picture.
 pub(crate) struct Targets {
     samples: Texture,
     depth: Texture,
     pub(crate) picture: Texture,
-    /// Its codes, not decoded.
+    /// View of its sRGB codes, not decoded.
     pub(crate) codes: wgpu::TextureView,
 }
 
@@ -114,7 +114,7 @@ impl Pass {
     }
 }
 
-/// For what is drawn before all else and hides nothing.
+/// Depth state of the background: no test, no write.
 fn behind_all() -> DepthStencilState {
     DepthStencilState {
         depth_write_enabled: Some(false),

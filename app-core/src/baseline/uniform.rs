@@ -1,4 +1,4 @@
-//! The shaders' view of the baseline's settings.
+//! The uniform of the baseline's settings.
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::scene_layout::SceneLayout;
@@ -9,13 +9,13 @@ use crate::passes::globals::Globals;
 use crate::preset::BaselineSettings;
 use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Surface};
 
-/// The WGSL that declares it.
+/// WGSL part of the uniform.
 pub(crate) const BASELINE: Part = part!("common/baseline", structs: [Baseline]);
-/// What the baseline's passes share: the globals and the settings.
+/// Slots that the baseline's passes share: the globals and the settings.
 pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::uniform::<Baseline>()];
 
 shared_struct! {
-    /// The settings, and what the scene decides.
+    /// The settings, and properties of the scene.
     pub struct Baseline {
         pub light_radii: [f32; MAX_LIGHTS],
         pub tallest_m: [f32; MAX_RECEIVERS],
@@ -34,7 +34,7 @@ shared_struct! {
     }
 }
 
-/// What [`SCENE_SLOTS`] hold.
+/// Resources of [`SCENE_SLOTS`].
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
@@ -47,8 +47,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The settings, and what the shaders must know of lights and receivers besides where they are. `toy` bounds the toy in
-/// any pose, in stage space.
+/// The settings, and properties of lights and receivers that the globals lack. `toy` bounds the toy in any pose, in
+/// anchor space.
 pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &BaselineSettings) -> Baseline {
     let mut light_radii = [0.0; MAX_LIGHTS];
     for (slot, light) in light_radii.iter_mut().zip(layout.lights) {

@@ -1,4 +1,4 @@
-//! `warp`: for each texel of the new shadow, where in the frame its vertex's real shadow lies.
+//! `warp`: for each texel of the new shadow, the position in the frame of its vertex's real shadow.
 
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
@@ -18,9 +18,9 @@ use crate::scene::MAX_RECEIVERS;
 pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FLATTEN, &part!("baseline/warp")]);
 /// The shown pose, which is drawn, and the physical one.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
-/// Format of the warp: source position and height need more than a half can hold.
+/// Format of the warp: source position and height need more precision than f16.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-/// Instances of a light, one a receiver.
+/// Instances of a light, one per receiver.
 #[allow(clippy::cast_possible_truncation, reason = "a handful")]
 const N_SLOTS: u32 = MAX_RECEIVERS as u32;
 
@@ -39,7 +39,7 @@ pub(crate) struct Inputs<'a> {
 
 /// Of the region's size.
 pub(crate) struct Targets {
-    /// A layer a light.
+    /// One layer per light.
     pub(crate) maps: TextureLayers,
     depth: Texture,
 }

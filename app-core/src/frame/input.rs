@@ -1,4 +1,4 @@
-//! What comes in for one frame.
+//! Inputs of one frame.
 
 use std::sync::Arc;
 
@@ -10,26 +10,27 @@ use crate::session::SessionFrame;
 
 /// A camera frame of the real, static toy, and the pose to show.
 ///
-/// Whatever of it differs from the frame before, nothing is compiled anew; see the architecture for what is learned anew.
+/// Whatever changes from frame to frame, no pipeline is recompiled; see the architecture for what is learned anew.
 #[derive(Clone, Debug)]
 pub struct FrameInput {
     /// The camera's picture, of the scene's size.
     pub image: Arc<Image>,
     /// The camera that took it.
     pub camera: Camera,
-    /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where nobody
-    /// says; the pixels decide then.
+    /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where it
+    /// is unknown; the fit then takes it from the pixels.
     pub exposure: f64,
-    /// Where the real toy stands. From the model's scene space to world: a rotation, a translation and one positive scale.
+    /// Transform of the real toy, from the model's scene space to world: a rotation, a translation and one positive
+    /// scale.
     pub world_from_object: DMat4,
-    /// The lights, where they are others than those of the scene.
+    /// The lights, where they differ from those of the scene.
     pub lights: Option<Arc<[Light]>>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
 }
 
 impl FrameInput {
-    /// Refuses what no picture could be made of.
+    /// Validates the input.
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check::camera("camera", &self.camera)?;
         InputError::at("exposure", check::number(self.exposure, &check::EXPOSURE))?;

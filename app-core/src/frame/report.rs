@@ -1,19 +1,19 @@
-//! What was done for a frame.
+//! The report of one frame.
 
 use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::pass_run::PassRun;
 use crate::plan::LeftOut;
 
-/// What was done for a frame.
+/// The report of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,
     /// What did not run, and why.
     pub skipped: Vec<LeftOut>,
-    /// The rectangle that was worked on; none when the camera frame passed through.
+    /// The work region; none when the camera frame passed through.
     pub region: Option<PixelRect>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }

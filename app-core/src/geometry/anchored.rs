@@ -1,13 +1,14 @@
-//! Receivers whose plane space begins near the toy, wherever their own begins.
+//! Receivers whose plane space has its origin near the toy, wherever their own origin is.
 //!
-//! Shaders have 32 bits: coordinates are kept small, so that a receiver may begin a kilometre away from the toy.
+//! Shaders use 32-bit floats: coordinates are kept small, so that a receiver's origin may be a kilometre away from
+//! the toy.
 
 use glam::{DMat4, DVec2, DVec3};
 
 use crate::geometry::rect::PlaneRect;
 use crate::scene::{Receiver, Surface};
 
-/// Plane spaces begin at multiples of this along the receiver's own axes, so that they stay when the toy is moved a little.
+/// Step of plane-space origins along the receiver's own axes, so that they stay when the toy is moved a little.
 const STEP_M: f64 = 0.0625;
 
 /// A receiver in a plane space of its own: y = 0, its normal along +Y, its origin below the toy.
@@ -15,14 +16,14 @@ const STEP_M: f64 = 0.0625;
 pub struct AnchoredReceiver {
     /// Rigid.
     pub world_from_plane: DMat4,
-    /// Where the receiver ends.
+    /// Extent of the receiver.
     pub rect: PlaneRect,
-    /// How it looks.
+    /// Its appearance.
     pub surface: Surface,
 }
 
 impl AnchoredReceiver {
-    /// Begins the plane space of `receiver` near a toy that stands at `toy_in_world`.
+    /// Puts the origin of `receiver`'s plane space near a toy at `toy_in_world`.
     #[must_use]
     pub fn near(receiver: &Receiver, toy_in_world: DVec3) -> Self {
         let toy = receiver.world_from_plane.inverse().transform_point3(toy_in_world);

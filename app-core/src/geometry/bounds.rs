@@ -49,7 +49,7 @@ impl Bounds {
     }
 }
 
-/// A ball around all of a posed toy, in stage space.
+/// A ball around all of a posed toy, in anchor space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Its middle.

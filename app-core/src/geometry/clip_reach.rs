@@ -1,5 +1,5 @@
-//! What a toy reaches in its physical pose, over a whole clip and in poses shown besides, in anchor space: bounds that no
-//! camera changes.
+//! Extent of a toy in its physical pose, over a whole clip and in further shown poses, in anchor space: independent
+//! of cameras.
 
 use glam::{DMat4, DVec3};
 
@@ -43,8 +43,7 @@ impl ClipReach {
         })
     }
 
-    /// Takes in a pose of the same toy, which a tracker gave or which lies between the moments; tells whether it reached
-    /// farther than those before.
+    /// Includes a pose of the same toy, from a tracker or between the moments; returns whether the bounds grew.
     pub(crate) fn grow(&mut self, posed: &PosedMesh) -> bool {
         let mut has_grown = false;
         for point in points(posed) {
@@ -59,7 +58,7 @@ impl ClipReach {
         has_grown
     }
 
-    /// What toy and shadows reach in a view.
+    /// Extent of toy and shadows in a view.
     pub(crate) fn on_view<'a>(&self, view: &'a View, layout: &SceneLayout<'_>) -> Reach<'a> {
         let mut reach = Reach::new(view, &self.bounds, layout);
         self.outline.points().for_each(|p| reach.include(p));

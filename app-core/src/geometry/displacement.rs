@@ -1,13 +1,13 @@
-//! How far points lie apart in the pictures of two cameras, or in one picture of two poses.
+//! Distances between the image positions of points seen by two cameras, or in two poses.
 
 use glam::{DMat4, DVec3};
 
 use crate::geometry::view::{NEAR_M, View};
 
-/// Cameras whose pictures lie closer are one: at the sharpest edge, of 200 codes a pixel, two codes.
+/// Below this distance two cameras count as the same: at the sharpest edge, of 200 codes a pixel, two codes.
 const SAME_VIEW_PX: f64 = 0.01;
 
-/// Whether two cameras show `points_in_world`, and what lies between them, alike.
+/// Whether two cameras project `points_in_world`, and points between them, to the same pixels.
 pub(crate) fn is_same_view(views: [&View; 2], points_in_world: &[DVec3]) -> bool {
     views[0] == views[1] || between_views(views, points_in_world) < SAME_VIEW_PX
 }
@@ -36,7 +36,7 @@ pub(crate) fn between_poses(
     distances.fold(0.0, f64::max)
 }
 
-/// Between two homogeneous image positions, as [`View::image_px_from`] has them.
+/// Between two homogeneous image positions, as [`View::image_px_from`] returns them.
 fn distance_px(a: DVec3, b: DVec3) -> f64 {
     match (a.z > NEAR_M, b.z > NEAR_M) {
         (false, false) => 0.0,

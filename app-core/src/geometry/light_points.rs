@@ -20,11 +20,12 @@ pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
     }
 }
 
-/// `n_points` points over the light's disc as the toy at `target_in_plane` sees it, each standing for an equal area.
+/// `n_points` points over the light's disc as seen from the toy at `target_in_plane`, each representing an equal
+/// area.
 ///
 /// The disc of a sphere faces the toy; seen from anywhere near the toy it is the sphere's outline.
-/// Source: Vogel 1979 (sunflower spiral). Of 64 points every fourth is spread over the whole light again, so that each
-/// position within a pixel of `occlusion` sees all of it.
+/// Source: Vogel 1979 (sunflower spiral). Of 64 points every fourth is spread over the whole light again, so that
+/// each position within a pixel of `occlusion` samples all of it.
 #[must_use]
 pub fn light_points(
     light: &Light,
@@ -85,7 +86,8 @@ impl Disc {
     }
 }
 
-/// `n_directions` directions over the hemisphere, cosine-weighted: each stands for an equal share of ambient light.
+/// `n_directions` directions over the hemisphere, cosine-weighted: each represents an equal fraction of ambient
+/// light.
 ///
 /// Source: Malley's method, points on a disc lifted to the hemisphere.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Geometry in 64 bits: the camera, the receivers, the lights, and what toy and shadows reach in the picture.
+//! Geometry in 64 bits: the camera, the receivers, the lights, and the extent of toy and shadows in the picture.
 
 pub(crate) mod anchored;
 pub(crate) mod bounds;

@@ -1,4 +1,4 @@
-//! What bounds a toy over a whole clip, from whatever camera or light: its farthest points by direction.
+//! Bounds of a toy over a whole clip, from whatever camera or light: its farthest points by direction.
 
 use glam::DVec3;
 
@@ -7,11 +7,12 @@ const N_SIDE_BINS: usize = 8;
 const N_BINS: usize = 6 * N_SIDE_BINS * N_SIDE_BINS;
 /// Directions in which a bin keeps its farthest point: outwards, and 45 degrees from that to each of four sides.
 const N_KEPT: usize = 5;
-/// What points that are not kept can lie outwards of those that are, relative to their distance from the middle:
-/// 1 - cos of half a bin's diagonal, rounded up.
+/// Largest distance of dropped points beyond the kept ones, relative to their distance from the middle: 1 - cos of
+/// half a bin's diagonal, rounded up.
 const SLACK: f64 = 0.02;
 
-/// Some hundred points whose hull holds all that were included, but for 1/200 of the size of thin parts far off.
+/// Some hundred points whose convex hull contains all that were included, but for 1/200 of the size of thin parts far
+/// off.
 #[derive(Clone, Debug)]
 pub struct Outline {
     middle: DVec3,
@@ -29,7 +30,7 @@ impl Outline {
         }
     }
 
-    /// Takes in a point.
+    /// Includes a point.
     pub fn include(&mut self, point: DVec3) {
         let offset = point - self.middle;
         let (slot, directions) = bin(offset);

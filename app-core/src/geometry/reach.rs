@@ -1,7 +1,7 @@
 //! The work region: the rectangle of the camera image that toy and shadows can reach.
 //!
-//! Its pixels are receiver points through homographies, so passes that draw in a receiver's plane draw straight onto
-//! the pixels that show it: texel and pixel coincide, and an edge in the plane is as sharp as the screen allows.
+//! Homographies map its pixels to receiver points, so passes that draw in a receiver's plane draw straight onto the
+//! pixels that show it: texel and pixel coincide, and an edge in the plane is as sharp as the screen allows.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 
@@ -11,32 +11,32 @@ use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::{NEAR_M, View};
 
-/// The ambient light that the toy takes away counts out to this many toy heights from its footprint.
+/// Occlusion of ambient light by the toy counts out to this many toy heights from its footprint.
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
-/// What is known of a receiver is kept out to this many toy sizes from the toy: a low light's shadow has no end.
+/// Scene state of a receiver is kept out to this many toy sizes from the toy: a low light's shadow is unbounded.
 const KEPT_REACH_SIZES: f64 = 6.0;
-/// Grows around what a toy and its shadows reach in the picture and on the receivers, point by point.
+/// Extent of a toy and its shadows in the picture and on the receivers, grown point by point.
 #[derive(Clone, Debug)]
 pub struct Reach<'a> {
     view: &'a View,
     world_from_anchor: DMat4,
     planes: Vec<PlaneReach>,
-    /// How far around its footprint the toy takes ambient light away.
+    /// Radius around the toy's footprint within which it occludes ambient light.
     ambient_reach_m: f64,
     min_px: DVec2,
     max_px: DVec2,
-    /// A point behind the camera: the rectangle has no bound.
+    /// A point is behind the camera: the rectangle is unbounded.
     is_endless: bool,
 }
 
-/// The same on one receiver.
+/// The extent on one receiver.
 #[derive(Clone, Debug)]
 struct PlaneReach {
     world_from_plane: DMat4,
     plane_from_anchor: DMat4,
-    /// Where the receiver ends.
+    /// Extent of the receiver itself.
     receiver: PlaneRect,
-    /// What is reached on a receiver that is seen from behind changes nothing in the picture.
+    /// False for a receiver that is seen from behind: it changes nothing in the picture.
     is_seen: bool,
     /// Corners of each light's disc, boxed: their shadows bound those of the whole light.
     sources: Vec<DVec4>,
@@ -45,7 +45,7 @@ struct PlaneReach {
 }
 
 impl<'a> Reach<'a> {
-    /// Starts empty, for a toy within `toy`, in stage space.
+    /// Starts empty, for a toy within `toy`, in anchor space.
     #[must_use]
     pub fn new(view: &'a View, toy: &Bounds, layout: &SceneLayout<'_>) -> Self {
         let world_from_anchor = layout.world_from_anchor();
@@ -84,7 +84,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Takes in a point of the toy, in stage space, its shadows and the receivers near it.
+    /// Includes a point of the toy, in anchor space, its shadows and the receivers near it.
     pub fn include(&mut self, in_anchor: DVec3) {
         self.include_px(
             self.view
@@ -124,13 +124,13 @@ impl<'a> Reach<'a> {
         })
     }
 
-    /// What toy and shadows reach of each receiver, as far as it is kept.
+    /// Extent of toy and shadows on each receiver, within the rectangle that is kept.
     #[must_use]
     pub fn plane_rects(&self) -> Vec<PlaneRect> {
         self.planes.iter().map(|plane| plane.rect).collect()
     }
 
-    /// The shadow of a point over receiver `k`; what lies under it casts none.
+    /// Includes the shadow of a point over receiver `k`; points under it are moved up onto it.
     fn include_shadow(&mut self, k: usize, in_plane: DVec3, source: DVec4) {
         let shadow = shadow_of(in_plane.with_y(in_plane.y.max(0.0)), source);
         if shadow.z > 0.0 {
@@ -174,8 +174,8 @@ fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
 }
 
 impl View {
-    /// The rectangle that a toy within `toy`, in stage space, and its shadows can reach, or `None` when it is out of the
-    /// picture.
+    /// The rectangle that a toy within `toy`, in anchor space, and its shadows can reach, or `None` when it is out of
+    /// the picture.
     #[must_use]
     pub fn region(&self, toy: &Bounds, layout: &SceneLayout<'_>) -> Option<PixelRect> {
         let mut reach = Reach::new(self, toy, layout);

@@ -1,15 +1,15 @@
-//! What stands where: receivers, lights and the toy.
+//! Layout of a scene: receivers, lights and the toy.
 
 use glam::{DMat4, DVec3};
 
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::scene::Light;
 
-/// Receivers, lights and where the toy is.
+/// Receivers, lights and the position of the toy.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneLayout<'a> {
-    /// The planes that catch the shadow, at least one; those after the fourth are left out. The first one's plane space is the
-    /// anchor.
+    /// The planes that catch the shadow, at least one; those after the fourth are left out. The first one's plane
+    /// space is the anchor.
     pub receivers: &'a [AnchoredReceiver],
     /// At most four lights; further ones are left out.
     pub lights: &'a [Light],
@@ -18,7 +18,7 @@ pub struct SceneLayout<'a> {
 }
 
 impl SceneLayout<'_> {
-    /// The first receiver's plane space, which has the toy.
+    /// Transform of anchor space, the first receiver's plane space.
     #[must_use]
     pub fn world_from_anchor(&self) -> DMat4 {
         self.receivers

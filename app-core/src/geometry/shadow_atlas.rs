@@ -1,4 +1,4 @@
-//! Where the depth maps of the toy lie: one tile of an atlas for each of a light's points, made to hold all of the toy.
+//! Layout of the toy's depth maps: one tile of an atlas for each of a light's points, made to hold all of the toy.
 
 use glam::{DMat4, DVec3, DVec4, Vec4, Vec4Swizzles};
 
@@ -21,7 +21,7 @@ pub struct ShadowAtlas {
 /// The depth map of one light point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
-    /// The light's number.
+    /// Index of the light.
     pub light: usize,
     /// Clip space of the atlas; depth is reversed, 0 where there is nothing.
     pub atlas_from_anchor: DMat4,
@@ -41,8 +41,8 @@ impl ShadowAtlas {
         }
     }
 
-    /// The tiles of each light's points over a toy within `toy`, light by light. A light inside that ball, from where no
-    /// frustum holds all of the toy, gets none.
+    /// The tiles of each light's points over a toy within `toy`, light by light. A light inside that ball, from where
+    /// no frustum holds all of the toy, gets none.
     #[must_use]
     pub fn tiles(&self, light_points: &[&[Vec4]], toy: &Sphere) -> Vec<Tile> {
         let used = 1.0 - 2.0 * RIM_TEXELS / f64::from(self.tile_px);
@@ -84,11 +84,11 @@ fn frusta(points: &[Vec4], n_points: usize, toy: &Sphere) -> Vec<Frustum> {
     frusta.unwrap_or_default()
 }
 
-/// What a light point sees of the toy.
+/// Frustum of a light point around the toy.
 struct Frustum {
     /// Depth is reversed, from 1 at the ball's near side; w is the distance along the axis, 1 for a directional light.
     clip_from_anchor: DMat4,
-    /// Width of what is seen, at w = 1.
+    /// Width of the frustum, at w = 1.
     width_m: f64,
 }
 

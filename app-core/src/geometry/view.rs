@@ -1,4 +1,4 @@
-//! A camera: every transform between the image, the stage and the receivers' planes, composed in f64.
+//! A camera: every transform between image, anchor and plane spaces, composed in f64.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
@@ -20,7 +20,7 @@ pub struct View {
 }
 
 impl View {
-    /// What a camera sees.
+    /// The view of a camera.
     #[must_use]
     pub fn new(image_px: UVec2, camera: &Camera) -> Self {
         Self {
@@ -102,8 +102,8 @@ impl View {
         (region_px_from_image_px * self.image_px_from_plane(world_from_plane)).inverse()
     }
 
-    /// Widest penumbra that a toy within `toy`, boxed in a receiver's plane space, casts there from `light`, in pixels at
-    /// the toy's distance.
+    /// Widest penumbra that a toy within `toy`, boxed in a receiver's plane space, casts there from `light`, in
+    /// pixels at the toy's distance.
     ///
     /// An edge at height h, at distance D from a disc of radius R that is a height d over the receiver, makes a
     /// penumbra of 2 R h D / (d - h)^2 along the light; a far disc of half-angle b at elevation e one of
@@ -119,7 +119,7 @@ impl View {
         let width_m = match *light {
             Light::Sphere { radius_m, .. } => {
                 let above_toy_m = light_at.y - height_m;
-                // A light no higher than the toy has no end of its penumbra.
+                // A light no higher than the toy has an unbounded penumbra.
                 if above_toy_m <= 0.0 {
                     return if radius_m > 0.0 { f64::INFINITY } else { 0.0 };
                 }

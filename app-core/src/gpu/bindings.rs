@@ -1,4 +1,4 @@
-//! What shaders read and write: the slots of a bind group, and groups that are made once and kept.
+//! Bindings of shaders: the slots of a bind group, and bind groups that are cached.
 
 use std::collections::HashMap;
 use std::num::NonZeroU64;
@@ -11,33 +11,33 @@ use wgpu::{
 use super::device::Device;
 use super::uniforms::Uniforms;
 
-/// Group of what all passes share: the globals, and what a method adds to them.
+/// Group shared by all passes: the globals, and a method's own uniforms.
 pub(crate) const GROUP_SCENE: usize = 0;
 /// Group of a pass's own inputs and outputs.
 pub(crate) const GROUP_PASS: usize = 1;
-/// Group of what changes from draw to draw.
+/// Group of resources that change from draw to draw.
 pub(crate) const GROUP_DRAW: usize = 2;
-/// Bind groups that a phone has.
+/// Bind groups available on a phone.
 pub(crate) const N_GROUPS: usize = 4;
 
-/// What a binding of a group holds; its number is its place in the group.
+/// Type of a binding; its index among the slots is its binding number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Slot {
-    /// A uniform of that many bytes, in a buffer of its own.
+    /// A uniform of so many bytes, in a buffer of its own.
     Uniform(usize),
-    /// A uniform of that many bytes that is written for each use.
+    /// A uniform of so many bytes, written for each use at a dynamic offset.
     PerUse(usize),
     /// A storage buffer to read.
     Read,
     /// A storage buffer to read and write, in compute shaders.
     ReadWrite,
-    /// A picture whose texels are loaded.
+    /// A texture whose texels are loaded.
     Texture,
-    /// Layers of pictures whose texels are loaded.
+    /// A texture array whose texels are loaded.
     Layers,
-    /// A picture of whole numbers.
+    /// A texture of unsigned integers.
     WholeNumbers,
-    /// A picture that is filtered.
+    /// A filterable texture.
     Filtered,
     /// A depth map.
     Depth,
@@ -48,7 +48,7 @@ pub(crate) enum Slot {
 }
 
 impl Slot {
-    /// A uniform that lasts.
+    /// A uniform in a buffer of its own.
     pub(crate) const fn uniform<T>() -> Self {
         Self::Uniform(size_of::<T>())
     }
@@ -111,7 +111,7 @@ impl Slot {
     }
 }
 
-/// What is bound to a slot.
+/// Resource bound to a slot.
 #[derive(Clone, Copy)]
 pub(crate) enum Resource<'a> {
     /// A whole buffer.
@@ -155,7 +155,7 @@ impl<'a> From<&'a wgpu::Sampler> for Resource<'a> {
     }
 }
 
-/// A resource by its identity; it lives as long as the group that it is in.
+/// A resource as a cache key; it lives as long as the group that holds it.
 #[derive(Clone, PartialEq, Eq, Hash)]
 enum Held {
     Buffer(wgpu::Buffer),
@@ -182,10 +182,10 @@ pub(crate) struct Layout {
     pub(crate) raw: wgpu::BindGroupLayout,
 }
 
-/// A group by its slots and what they hold.
+/// Cache key of a group: its slots and resources.
 type GroupKey = (&'static [Slot], Vec<Held>);
 
-/// Layouts by their slots, and groups by what they hold: each is made once.
+/// Cached layouts by slots, and groups by slots and resources: each is created once.
 #[derive(Default)]
 pub(crate) struct BindingCache {
     layouts: Mutex<HashMap<&'static [Slot], Layout>>,
@@ -212,7 +212,7 @@ impl BindingCache {
         layout.clone()
     }
 
-    /// The group that holds `resources`, in the order of the layout's slots: the one from before if there was one.
+    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
     pub(crate) fn group(
         &self,
         (device, uniforms): (&Device, &Uniforms),
@@ -238,7 +238,7 @@ impl BindingCache {
         group.clone()
     }
 
-    /// Lets go of all groups, and so of what nothing but them holds: for when textures were replaced by larger ones.
+    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
     pub(crate) fn release_groups(&self) {
         locked(&self.groups).clear();
     }

@@ -1,4 +1,4 @@
-//! Buffers of our own, and the commands that fill them.
+//! Buffers, and the commands that fill them.
 
 use wgpu::BufferUsages;
 
@@ -29,7 +29,7 @@ impl Gpu {
         })
     }
 
-    /// Overwrites the beginning of a buffer, before what is submitted next.
+    /// Overwrites the beginning of a buffer, before the next submission.
     pub(crate) fn write<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, values: &[T]) {
         self.queue.write_buffer(buffer, 0, bytemuck::cast_slice(values));
     }

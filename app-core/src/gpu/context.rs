@@ -1,4 +1,4 @@
-//! The device: asked for with the limits of a phone, whatever the machine could offer.
+//! The device: requested with the limits of a phone on every machine.
 
 use std::fmt;
 use std::pin::pin;
@@ -32,42 +32,42 @@ pub enum GpuError {
         "no graphics adapter: {reason}; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one"
     )]
     NoAdapter {
-        /// What was found.
+        /// Why none fits.
         reason: String,
     },
-    /// The adapter gave no device with the limits that we need.
+    /// The adapter gave no device with the required limits.
     #[error("adapter {adapter} gives no device: {reason}")]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
-        /// What the driver said.
+        /// The driver's message.
         reason: String,
     },
     /// The device refused work: out of memory, most often.
     #[error("the device refused work: {reason}")]
     Refused {
-        /// What the driver said first.
+        /// The driver's first message.
         reason: String,
     },
     /// The surface cannot be drawn on.
     #[error("drawing on the surface: {reason}")]
     Surface {
-        /// What the driver said.
+        /// The driver's message.
         reason: String,
     },
     /// The device was lost, or a read-back failed.
     #[error("reading back from the device: {reason}")]
     ReadBack {
-        /// What the driver said.
+        /// The driver's message.
         reason: String,
     },
 }
 
-/// Device and queue, and everything that is made once a device.
+/// Device and queue, and everything that is created once per device.
 pub struct Gpu {
     pub(crate) device: Device,
     pub(crate) queue: wgpu::Queue,
-    /// None for a device that somebody else opened.
+    /// None for an adopted device.
     pub(crate) adapter: Option<wgpu::Adapter>,
     pub(crate) uniforms: Uniforms,
     pub(crate) samplers: Samplers,
@@ -76,7 +76,7 @@ pub struct Gpu {
     info: wgpu::AdapterInfo,
 }
 
-/// The limits that every phone we aim at has; tests run under them too.
+/// The limits of every phone that is supported; tests run under them too.
 #[must_use]
 pub fn phone_limits() -> wgpu::Limits {
     // Camera images are wider than the 2048 texels that the oldest devices offer.
@@ -111,12 +111,12 @@ impl Gpu {
                     adapter: adapter.get_info().name,
                     reason: error.to_string(),
                 })?;
-        // What comes outside of `guarded`, such as the loss of the device: without a handler it would end the program.
+        // Errors outside of `guarded`, such as the loss of the device: without a handler they would end the program.
         device.on_uncaptured_error(Arc::new(|_: wgpu::Error| ()));
         Self::new(device, queue, Some(adapter))
     }
 
-    /// Works on a device that somebody else opened.
+    /// Adopts a device that the caller opened.
     ///
     /// # Errors
     /// When it falls short of the limits of a phone.
@@ -150,12 +150,12 @@ impl Gpu {
         })
     }
 
-    /// Does `work` on the device, and fails where the device refused any of it.
+    /// Runs `work` on the device, and fails where the device refused any of it.
     pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
         guarded(&self.device.raw, work)
     }
 
-    /// Objects that the device was asked to make so far, by kind.
+    /// Number of objects created on the device so far, by kind.
     pub(crate) fn n_created(&self) -> [u64; Kind::ALL.len()] {
         self.device.n_created()
     }
@@ -175,13 +175,13 @@ impl Gpu {
         self.bindings.layout(&self.device, slots)
     }
 
-    /// The group that holds `resources`, in the order of the layout's slots: the one from before if there was one.
+    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
     pub(crate) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> wgpu::BindGroup {
         let on = (&self.device, &self.uniforms);
         self.bindings.group(on, layout, resources)
     }
 
-    /// Lets go of all groups, and so of what nothing but them holds: for when textures were replaced by larger ones.
+    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
     pub(crate) fn release_groups(&self) {
         self.bindings.release_groups();
     }
@@ -192,7 +192,7 @@ impl Gpu {
         format!("{} ({})", self.info.name, self.info.driver_info)
     }
 
-    /// Whether the adapter is a processor that plays at being a graphics card.
+    /// Whether the adapter is a software renderer on the CPU.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
@@ -205,7 +205,7 @@ impl fmt::Debug for Gpu {
     }
 }
 
-/// Collects what a device refuses of `work` on this thread, whoever else handles its errors.
+/// Collects the errors of `work` on this thread, whatever other handlers the device has.
 fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GpuError> {
     let filters = [
         wgpu::ErrorFilter::Internal,
@@ -227,7 +227,7 @@ fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GpuE
     }
 }
 
-/// What a future has at once; off the web an error scope always does.
+/// The value of a future that is ready at once, as an error scope always is off the web.
 fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     match pin!(future).poll(&mut context) {

@@ -1,4 +1,4 @@
-//! The device, which counts what it is asked to make: a frame that changes nothing but pose, picture or view makes nothing.
+//! The device, which counts the objects it creates: a frame that changes only pose, picture or view creates none.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -15,15 +15,15 @@ pub enum Kind {
     View,
     /// Samplers.
     Sampler,
-    /// Groups of resources.
+    /// Bind groups.
     BindGroup,
-    /// Layouts of such groups, and of all groups of a pipeline.
+    /// Layouts of bind groups and of pipelines.
     Layout,
-    /// Shaders as modules.
+    /// Shader modules.
     Module,
     /// Render and compute pipelines.
     Pipeline,
-    /// Sets of queries.
+    /// Query sets.
     QuerySet,
 }
 
@@ -42,7 +42,7 @@ impl Kind {
     ];
 }
 
-/// A device, and how many objects it was asked to make, whether they still live or not.
+/// A device, and the number of objects it created, whether they still live or not.
 #[derive(Debug)]
 pub(crate) struct Device {
     pub(crate) raw: wgpu::Device,
@@ -57,7 +57,7 @@ impl Device {
         }
     }
 
-    /// Objects that were made so far, in the order of [`Kind::ALL`].
+    /// Number of objects created so far, in the order of [`Kind::ALL`].
     pub(crate) fn n_created(&self) -> [u64; Kind::ALL.len()] {
         self.counts.each_ref().map(|count| count.load(Ordering::Relaxed))
     }
@@ -138,7 +138,7 @@ impl Device {
         self.raw.create_query_set(descriptor)
     }
 
-    /// An encoder of commands, one a submission: not counted.
+    /// A command encoder, one per submission: not counted.
     pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
         self.raw
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())

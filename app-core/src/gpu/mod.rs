@@ -1,4 +1,4 @@
-//! The thin layer over wgpu: the device and what is made once on it, textures and buffers, recording with what ran, read-back.
+//! The thin layer over wgpu: device and caches, textures and buffers, recording of what ran, read-back.
 //!
 //! Everything that is created on the device is created here, and counted.
 

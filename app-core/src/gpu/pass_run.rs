@@ -1,11 +1,11 @@
-//! What is told of passes that ran.
+//! Records of the passes that ran.
 
 /// Which of the two paths a pass belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Path {
-    /// What is learned of a place or a view of it.
+    /// Updates of scene state from a view.
     Capture,
-    /// What is made for every picture.
+    /// Rendering of every picture.
     Frame,
 }
 

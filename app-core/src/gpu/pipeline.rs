@@ -1,4 +1,4 @@
-//! Pipelines: made once a device, whatever scene or view asks for them.
+//! Pipelines: compiled once per device, whatever scene or view uses them.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -16,19 +16,19 @@ pub(crate) type Groups = [&'static [Slot]; N_GROUPS];
 /// A vertex stream of one attribute: its shader location and format.
 pub(crate) type Stream = (u32, VertexFormat);
 
-/// All that a render pipeline depends on.
+/// Description of a render pipeline, its cache key.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DrawSpec {
     pub(crate) shader: &'static Shader,
     pub(crate) vertex: &'static str,
     pub(crate) fragment: &'static str,
     pub(crate) groups: Groups,
-    /// One a vertex buffer, in the order of its slots.
+    /// One per vertex buffer, in the order of its slots.
     pub(crate) streams: &'static [Stream],
     pub(crate) targets: Vec<ColorTargetState>,
     pub(crate) n_samples: u32,
     pub(crate) depth: Option<DepthStencilState>,
-    /// Which side of a triangle is not drawn.
+    /// Side of a triangle that is not drawn.
     pub(crate) culled: Option<Face>,
     /// Values of `override` constants.
     pub(crate) constants: Vec<(&'static str, u32)>,
@@ -57,7 +57,7 @@ impl DrawSpec {
     }
 }
 
-/// All that a compute pipeline depends on.
+/// Description of a compute pipeline, its cache key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ComputeSpec {
     pub(crate) shader: &'static Shader,
@@ -68,7 +68,6 @@ pub(crate) struct ComputeSpec {
 /// A pipeline, and the layouts of its groups.
 #[derive(Clone, Debug)]
 pub(crate) struct Pipeline<T> {
-    /// The pass's name.
     pub(crate) name: &'static str,
     pub(crate) raw: T,
     pub(crate) layouts: [Option<Layout>; N_GROUPS],
@@ -79,7 +78,7 @@ pub(crate) type Draw = Pipeline<wgpu::RenderPipeline>;
 /// A compute pipeline.
 pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
 
-/// Everything that was compiled on a device.
+/// Cache of everything compiled on a device.
 #[derive(Default)]
 pub(crate) struct PipelineCache {
     modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
@@ -191,7 +190,7 @@ fn pipeline_layout(
     (layouts, layout)
 }
 
-/// The value under `key`, made outside the lock where there is none: compiling takes its time.
+/// The value under `key`, created outside the lock where there is none: compiling takes its time.
 fn cached<K: Clone + Eq + Hash, V: Clone>(
     cache: &Mutex<HashMap<K, V>>,
     key: &K,

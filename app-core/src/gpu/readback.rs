@@ -1,4 +1,4 @@
-//! Reading back what the device made: blocking, for replay and tests.
+//! Read-back of buffers and textures: blocking, for replay and tests.
 
 use super::context::{Gpu, GpuError};
 
@@ -59,7 +59,7 @@ impl Gpu {
         let failed = |reason: String| GpuError::ReadBack { reason };
         let (sender, receiver) = std::sync::mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver waits below; if it is gone, so is the need for an answer.
+            // The receiver waits below; if it is gone, the result is not needed.
             let _ = sender.send(result);
         });
         self.device

@@ -1,4 +1,4 @@
-//! Recording of one submission: each pass with its name, what it is given and, where that is asked for, its time stamps.
+//! Recording of one submission: each pass with its name, its bindings and, on request, its time stamps.
 
 use super::bindings::Resource;
 use super::context::Gpu;
@@ -10,7 +10,7 @@ use super::uniforms::Written;
 /// Commands being recorded.
 pub(crate) struct Recorder<'g> {
     pub(crate) gpu: &'g Gpu,
-    /// The path that passes are put down to.
+    /// The path to which passes are attributed.
     pub(crate) path: Path,
     raw: wgpu::CommandEncoder,
     uniforms: Written,
@@ -23,7 +23,7 @@ pub(crate) struct Recorder<'g> {
 pub(crate) struct Group {
     index: u32,
     raw: wgpu::BindGroup,
-    /// Where the uniform of this use begins.
+    /// Dynamic offset of the uniform of this use.
     offset: Option<u32>,
 }
 
@@ -48,7 +48,7 @@ impl<'g> Recorder<'g> {
         }
     }
 
-    /// The same with `uniform`, which is this use's alone, where the resources have [`Resource::PerUse`].
+    /// The same with `uniform`, for this use alone, in place of [`Resource::PerUse`].
     pub(crate) fn bind_with<T, U: bytemuck::Pod>(
         &mut self,
         pipeline: &Pipeline<T>,
@@ -113,7 +113,6 @@ impl<'g> Recorder<'g> {
         render.0.draw(0..3, 0..1);
     }
 
-    /// Runs a compute shader.
     pub(crate) fn compute(&mut self, compute: &Compute, groups: &[Group], workgroups: [u32; 3]) {
         self.count(compute.name);
         let stamps = self
@@ -147,7 +146,7 @@ impl<'g> Recorder<'g> {
             .copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), to.size());
     }
 
-    /// Hands the commands to the device; returns the passes that are in them.
+    /// Submits the commands; returns the passes that are in them.
     pub(crate) fn submit(mut self) -> Vec<PassRun> {
         if let Some(timer) = self.timer.take() {
             timer.resolve(&mut self.raw);
@@ -191,14 +190,13 @@ impl Render<'_> {
         groups.iter().for_each(|group| self.set(group));
     }
 
-    /// Sets one group.
     pub(crate) fn set(&mut self, group: &Group) {
         self.0
             .set_bind_group(group.index, &group.raw, group.offset.as_slice());
     }
 }
 
-/// An attachment that starts at zero and is kept.
+/// An attachment that is cleared to zero and stored.
 pub(crate) fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
     wgpu::RenderPassColorAttachment {
         view,
@@ -211,7 +209,7 @@ pub(crate) fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachme
     }
 }
 
-/// An attachment whose texels stay where nothing is drawn.
+/// An attachment that keeps its texels where nothing is drawn.
 pub(crate) fn loaded(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
     wgpu::RenderPassColorAttachment {
         ops: wgpu::Operations {
@@ -222,7 +220,7 @@ pub(crate) fn loaded(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachmen
     }
 }
 
-/// A multisampled attachment that starts at zero, never leaves the chip and is resolved into `target`.
+/// A multisampled attachment that is cleared to zero, never stored, and resolved into `target`.
 pub(crate) fn resolved<'a>(
     view: &'a wgpu::TextureView,
     target: &'a wgpu::TextureView,

@@ -4,9 +4,9 @@ use super::device::Device;
 
 #[derive(Debug)]
 pub(crate) struct Samplers {
-    /// Between texels, up to the border.
+    /// Bilinear between texels, clamped to the edge.
     pub(crate) linear: wgpu::Sampler,
-    /// 1 where the map is no nearer than what is compared with it, filtered; depth is reversed.
+    /// Filtered comparison, 1 where the compared depth is as near as the map's, or nearer; depth is reversed.
     pub(crate) nearer: wgpu::Sampler,
 }
 

@@ -1,17 +1,17 @@
-//! Shaders: WGSL joined from parts, each part beside the host's side of what it declares.
+//! Shaders: WGSL joined from parts, each part with the host's mirrors of its declarations.
 
 use std::hash::{Hash, Hasher};
 
 use super::shared::Mirror;
 
-/// A file of WGSL, and what the host shares with it.
+/// A file of WGSL, and the declarations that the host shares.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// Path below `shaders`, without its ending.
     pub path: &'static str,
     /// The WGSL.
     pub text: &'static str,
-    /// The host's side of structs that it declares.
+    /// Host mirrors of structs that it declares.
     pub structs: &'static [Mirror],
     /// The host's values of constants that it declares.
     pub constants: &'static [(&'static str, f64)],
@@ -57,7 +57,7 @@ impl Hash for Shader {
     }
 }
 
-/// What follows the last slash.
+/// The part of `path` after the last slash.
 const fn file_name(path: &'static str) -> &'static str {
     let mut first = path.len();
     while first > 0 && path.as_bytes()[first - 1] != b'/' {

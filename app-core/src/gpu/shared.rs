@@ -1,4 +1,4 @@
-//! Structs that the host shares with shaders, and how they are laid out: a test compares each with the WGSL through naga.
+//! Structs shared with shaders, and their layout: a test compares each with the WGSL through naga.
 
 /// A struct as Rust lays it out.
 #[derive(Clone, Copy, Debug)]
@@ -20,11 +20,11 @@ pub struct Member {
     pub offset: usize,
     /// Bytes.
     pub size: usize,
-    /// What its numbers are; none for a struct, whose members are compared by themselves.
+    /// Its scalar type; none for a struct, whose members are compared by themselves.
     pub kind: Option<NumberKind>,
 }
 
-/// What a number is.
+/// A scalar type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberKind {
     /// `f32`.
@@ -35,13 +35,13 @@ pub enum NumberKind {
     Unsigned,
 }
 
-/// A struct that shaders see as well.
+/// A struct that shaders share.
 pub(crate) trait Shared: bytemuck::Pod {
     /// Its layout.
     const MIRROR: Mirror;
 }
 
-/// What a member is made of.
+/// Scalar type of a member.
 pub(crate) trait Numbers {
     /// None for a struct.
     const KIND: Option<NumberKind>;

@@ -29,7 +29,7 @@ impl Window {
         let mut config = surface
             .get_default_config(adapter, width.max(1), height.max(1))
             .ok_or_else(|| failed("the adapter offers no configuration for it"))?;
-        // The picture holds codes; a surface that encodes once more would show them too bright.
+        // The picture holds sRGB codes; a surface that encodes once more would show them too bright.
         config.format = config.format.remove_srgb_suffix();
         surface.configure(&gpu.device.raw, &config);
         Ok(Self {

@@ -1,14 +1,14 @@
-//! Time stamps: how long each pass of the latest submission took on the device. Only for those who ask.
+//! Time stamps: device time of each pass of the latest submission, on request.
 
 use super::context::{Gpu, GpuError};
 use super::pass_run::{PassTime, Path};
 
-/// Most passes of one submission that are timed.
+/// Maximum number of timed passes of one submission.
 const MAX_TIMED: u32 = 512;
 /// Bytes of one time stamp.
 const STAMP_BYTES: u64 = 8;
 
-/// Stamps on the device, and whose they are.
+/// Stamps on the device, and the passes they belong to.
 pub(crate) struct Timer {
     queries: wgpu::QuerySet,
     stamps: wgpu::Buffer,
@@ -16,7 +16,7 @@ pub(crate) struct Timer {
 }
 
 impl Timer {
-    /// None where the device cannot tell.
+    /// None where the device has no time stamps.
     pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
         if !gpu
             .device
@@ -42,12 +42,12 @@ impl Timer {
         })
     }
 
-    /// Forgets the submission before.
+    /// Drops the records of the submission before.
     pub(crate) fn start(&mut self) {
         self.passes.clear();
     }
 
-    /// Where the stamps of the next pass go: its first of two places; none when all are taken.
+    /// Query index of the first of the next pass's two stamps; none when all are taken.
     pub(crate) fn next(&mut self, path: Path, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
         let index = u32::try_from(self.passes.len())
             .ok()
@@ -56,7 +56,7 @@ impl Timer {
         Some((&self.queries, 2 * index))
     }
 
-    /// Encodes that the stamps are kept.
+    /// Encodes the copy of the stamps to their buffer.
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let n_queries = 2 * u32::try_from(self.passes.len()).unwrap_or(MAX_TIMED);
         if n_queries > 0 {
@@ -64,7 +64,8 @@ impl Timer {
         }
     }
 
-    /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first run.
+    /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first
+    /// run.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
         let bytes = gpu.read_buffer(&self.stamps)?;
         let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);

@@ -8,7 +8,7 @@ use super::device::Device;
 
 /// Bytes of one submission's uniforms: the widest, a baseline with four lights on four receivers, takes 40 KiB.
 const CAPACITY: usize = 128 << 10;
-/// What offsets are multiples of on every device.
+/// Alignment of offsets, valid on every device.
 const ALIGNMENT: usize = 256;
 
 /// The buffer of a device.
@@ -29,7 +29,7 @@ impl Uniforms {
         }
     }
 
-    /// What a uniform of `n_bytes` is bound to; the offset comes with each use.
+    /// Binding of a uniform of `n_bytes`; the offset comes with each use.
     pub(crate) fn binding(&self, n_bytes: usize) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: &self.buffer,
@@ -55,7 +55,7 @@ impl Written {
         u32::try_from(offset).unwrap_or(u32::MAX)
     }
 
-    /// Hands them to the device.
+    /// Writes them to the device's buffer.
     pub(crate) fn write(&self, queue: &wgpu::Queue, uniforms: &Uniforms) {
         if !self.bytes.is_empty() {
             queue.write_buffer(&uniforms.buffer, 0, &self.bytes);

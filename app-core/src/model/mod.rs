@@ -1,5 +1,4 @@
-//! The additive model of the receivers at work: the scene state, both paths' targets and passes, and what runs when how much
-//! of a frame is new.
+//! The additive model of the receivers: scene state, targets and passes of both paths, sequenced by what changed.
 
 pub(crate) mod capture;
 pub(crate) mod diagnostics;
@@ -32,7 +31,7 @@ use crate::plan::Change;
 use crate::readback::FloatMap;
 use crate::readback::inject::{InjectedVisibility, upload};
 
-/// The additive model at work.
+/// The additive model of one scene.
 pub(crate) struct Model {
     pub(crate) state: SceneState,
     pub(crate) region: Region,
@@ -51,7 +50,7 @@ struct Passes {
     frame: frame::Passes,
 }
 
-/// What both paths run, by how much of a frame is new.
+/// The steps of both paths, by change.
 struct Order {
     capture: [Vec<capture::order::Step>; Change::ALL.len()],
     frame: Vec<frame::Step>,
@@ -66,7 +65,7 @@ impl Order {
     }
 }
 
-/// The passes that run when that much of a frame is new, each as often as it runs but for the steps of a fit.
+/// The passes that run for `change`, each as often as it runs but for the steps of a fit.
 pub fn planned(plan: &Plan, change: Change) -> Vec<(Path, &'static str)> {
     let order = Order::new(plan);
     let captured = order.capture[change as usize]
@@ -79,7 +78,7 @@ pub fn planned(plan: &Plan, change: Change) -> Vec<(Path, &'static str)> {
         .collect()
 }
 
-/// What a new picture of a known view needs anew, such as the toy's colours, counts as the frame's.
+/// Capture passes that run for a new picture of a known view, such as the toy's colours, count as the frame path's.
 fn capture_path(change: Change) -> Path {
     if change >= Change::View {
         Path::Capture
@@ -89,7 +88,7 @@ fn capture_path(change: Change) -> Path {
 }
 
 impl Model {
-    /// Allocates what `plan` asks for. `light_points` has the points of each of its lights, receiver by receiver.
+    /// Allocates the resources of `plan`. `light_points` has the points of each of its lights, receiver by receiver.
     pub(crate) fn new(
         gpu: &Gpu,
         plan: Plan,
@@ -113,7 +112,7 @@ impl Model {
         }
     }
 
-    /// Follows the camera to another view; textures stay if they are large enough.
+    /// Follows the camera to another view; textures are kept if they suffice.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
         if plan.region.size_px == self.region.rect().size_px && self.captured.serves(&plan) {
             self.captured.light.injected = None;
@@ -128,7 +127,7 @@ impl Model {
         self.region.follow(gpu, plan, globals);
     }
 
-    /// Moves lights and toy, whose number and materials stay.
+    /// Moves lights and toy, whose number and materials stay the same.
     pub(crate) fn relocate(&mut self, gpu: &Gpu, light_points: Vec<Vec<Vec4>>, toy: &Sphere) {
         self.lighting.relocate(gpu, light_points);
         self.state.tints.surround(gpu, toy);
@@ -139,7 +138,7 @@ impl Model {
         &self.drawn.by_pass.composite.codes
     }
 
-    /// Encodes the frame path, and before it what the change asks for.
+    /// Encodes the frame path, and before it the capture steps that `change` needs.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

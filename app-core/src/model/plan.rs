@@ -1,5 +1,4 @@
-//! The plan of a scene: what is drawn from how many points, in which sizes, and what is left out. Pure data, made without a
-//! device.
+//! The plan of a scene: numbers of points, sizes of maps, and what is left out. Pure data, made without a device.
 //!
 //! Both paths take their order from it (`capture::order`, `frame::order`).
 
@@ -15,25 +14,26 @@ use crate::scene::MAX_LIGHTS;
 const HARD_PENUMBRA_PX: f64 = 1.0;
 /// Light points of a hard edge: one for each position within a pixel, so that it stays antialiased.
 const N_HARD_POINTS: usize = 4;
-/// Steps of the reweighted least squares; each more moved no share by 1e-3 on the sessions they were chosen on.
+/// Steps of the reweighted least squares; each more moved no direct fraction by 1e-3 on the sessions they were chosen
+/// on.
 const N_FIT_STEPS: u32 = 5;
-/// Steps from a solution that is known: for a new view of a known place, or a new picture of a known view.
+/// Steps from a known solution: for a new view of a known scene, or a new picture of a known view.
 const N_REFINE_STEPS: u32 = 2;
 /// Workgroups of one sum, enough to fill a phone's cores.
 pub(crate) const MAX_FIT_ROWS: u32 = 64;
-/// Pixels enough to tell the fit's few unknowns; more only cost time.
+/// Pixels that suffice for the fit's few unknowns; more only cost time.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
-/// How one light's visibility is made.
+/// The plan of one light's visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightPlan {
     /// Points drawn: 4 for a hard edge, else a multiple of 16.
     pub n_points: usize,
 }
 
-/// What is allocated and run for a scene.
+/// Sizes and numbers of all that is allocated and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The work region.
@@ -46,13 +46,13 @@ pub struct Plan {
     pub ambient_px: UVec2,
     /// Receivers that shadows are moved on.
     pub n_receivers: u32,
-    /// Whether what no plate shows is estimated.
+    /// Whether the plate is estimated where none was photographed.
     pub is_plate_estimated: bool,
-    /// Draws of the shown toy, each by a part of a pixel beside the others.
+    /// Draws of the shown toy, each offset by a fraction of a pixel.
     pub n_toy_draws: u32,
-    /// Whether the noise of the real shadow is removed.
+    /// Whether the real shadow is denoised.
     pub is_noise_removed: bool,
-    /// Whether the real shadow is kept from all but the first fits.
+    /// Whether the real shadow is withheld from all but the first fits.
     pub is_shadow_withheld: bool,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
@@ -60,11 +60,11 @@ pub struct Plan {
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
     pub n_refine_steps: u32,
-    /// Every how many region pixels, along each side, the fit takes one.
+    /// Sampling stride of the fit, in region pixels, along each side.
     pub fit_stride_px: u32,
     /// Workgroups of one sum of the fit.
     pub n_fit_rows: u32,
-    /// What the scene does not need.
+    /// Work that the scene does not need.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -108,7 +108,7 @@ impl Plan {
 }
 
 impl Plan {
-    /// The plan of another view of the same place: lights keep their points, so that nothing changes but what is seen.
+    /// The plan of another view of the same scene: lights keep their points, so that only the view changes.
     #[must_use]
     pub fn for_view(&self, facts: &SceneFacts, settings: &ModelSettings) -> Self {
         Self {

@@ -33,7 +33,7 @@ impl Model {
         map.map(Some)
     }
 
-    /// Parts of pixels, from the count that `coverage` made.
+    /// Covered fractions of pixels, from the counts of `coverage`.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
         let mut map = read_texture(gpu, &self.drawn.by_pass.coverage.covered.count.raw)?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
@@ -42,7 +42,7 @@ impl Model {
         Ok(map)
     }
 
-    /// The lights' share, worked out here from what was fitted: no pass has it as a texture.
+    /// The lights' direct fraction, computed here from the fit: no pass has it as a texture.
     fn read_direct_fraction(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
         let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.state.solution)?);
         let plan = &self.region.plan;
@@ -62,7 +62,7 @@ impl Model {
         })
     }
 
-    /// Waits for the device and returns the filled residuals on a receiver; empty for one there is none of.
+    /// Waits for the device and returns the filled residuals on a receiver; empty where it has none.
     pub(crate) fn read_residual(&self, gpu: &Gpu, receiver: usize) -> Result<FloatMap, GpuError> {
         let grid = self.state.layout.grids[receiver];
         let cells = gpu.read_buffer(&self.state.residual.cells)?;
@@ -78,8 +78,8 @@ impl Model {
     }
 }
 
-/// Sum over lights of share falloff / (1 - sum share + sum share falloff), with the falloff cos / d^2 against the
-/// reference point, as the shaders' model has it; 0 beside the receivers.
+/// Sum over lights of fraction falloff / (1 - sum fraction + sum fraction falloff), with the falloff cos / d^2
+/// against the reference point, as in the shaders' model; 0 beside the receivers.
 fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     let Some((index, in_plane)) = receiver_point(globals, region_px) else {
         return Vec3::ZERO;
@@ -105,7 +105,7 @@ fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     direct / total
 }
 
-/// The nearest receiver seen at a pixel, and the point of it; none where that is its back.
+/// The nearest receiver seen at a pixel, and its point there; none where that is its back.
 fn receiver_point(globals: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
     let receivers = globals.receivers.iter().take(globals.n_receivers as usize);
     let hits = receivers.enumerate().filter_map(|(index, receiver)| {

@@ -1,4 +1,4 @@
-//! The work region of the latest view: its plan, and what the shaders know of it.
+//! The work region of the latest view: its plan and its globals.
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::Gpu;
@@ -7,7 +7,7 @@ use crate::passes::globals::Globals;
 
 pub(crate) struct Region {
     pub(crate) plan: Plan,
-    /// What `globals` holds.
+    /// Contents of `globals`.
     pub(crate) uniform: Globals,
     pub(crate) globals: wgpu::Buffer,
 }

@@ -1,4 +1,4 @@
-//! What every pass knows of the scene: the region, the receivers and the lights, as the shaders have it.
+//! Uniforms shared by all passes: region, receivers, lights.
 
 use glam::{DMat3, DMat4, DVec2};
 
@@ -12,17 +12,17 @@ use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 
-/// The WGSL that declares it.
+/// WGSL part of the globals.
 pub(crate) const GLOBALS: Part = part!(
     "common/globals",
     structs: [ReceiverPlane, Globals],
     constants: [MAX_LIGHTS, MAX_RECEIVERS],
 );
-/// Group of passes that read nothing else of the scene.
+/// Slots of passes that read nothing else of the scene.
 pub(crate) const GLOBALS_GROUP: &[Slot] = &[Slot::uniform::<Globals>()];
 
 shared_struct! {
-    /// A receiver as a view has it.
+    /// A receiver in a view.
     pub struct ReceiverPlane {
         pub plane_from_anchor: [[f32; 4]; 4],
         pub plane_from_region_px: Mat3Columns,
@@ -35,7 +35,7 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// What every pass knows of the scene.
+    /// Uniforms shared by all passes.
     pub struct Globals {
         pub clip_from_anchor: [[f32; 4]; 4],
         pub receivers: [ReceiverPlane; MAX_RECEIVERS],
@@ -54,7 +54,7 @@ shared_struct! {
 /// Width of the fade into untouched pixels at an inner border of the region.
 pub(crate) const BORDER_PX: u32 = 24;
 
-/// The region `rect` of a camera's picture.
+/// The globals of the region `rect` of a camera's picture.
 #[must_use]
 pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globals {
     let world_from_anchor = layout.world_from_anchor();
@@ -135,7 +135,7 @@ fn narrowed(metres: f64) -> f32 {
     metres as f32
 }
 
-/// A 3 x 3 matrix as uniforms have it.
+/// A 3 x 3 matrix in uniform layout.
 pub(crate) fn columns(m: DMat3) -> Mat3Columns {
     m.as_mat3().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0])
 }

@@ -1,8 +1,8 @@
-//! The list of a path's passes, from which follow its modules, its pipelines, its targets and its shaders.
+//! The list of a path's passes, which generates its modules, its pipelines, its targets and its shaders.
 
 use crate::gpu::context::Gpu;
 
-/// For passes that write to what others own.
+/// Targets of passes that write to those of others.
 pub(crate) struct NoTargets;
 
 impl NoTargets {
@@ -11,23 +11,23 @@ impl NoTargets {
     }
 }
 
-/// A pass's name, and what compiles it.
+/// A pass's name, and the function that compiles it.
 pub(crate) type WarmUp = (&'static str, fn(&Gpu));
 
-/// Declares the modules of a path's passes, in the order in which they first run, and of each its `Pass` and its `SHADER`;
-/// after the type of a plan, its `Targets` as well.
+/// Declares the modules of a path's passes, in the order in which they first run, and of each its `Pass` and its
+/// `SHADER`; after the type of a plan, its `Targets` as well.
 macro_rules! passes {
     ($plan:ty: $($pass:ident),* $(,)?) => {
         $crate::passes::list::passes!($($pass),*);
 
-        /// What the path's passes draw to, of each those of its own.
+        /// The targets of the path's passes.
         #[allow(dead_code, reason = "there are passes that write to what others own")]
         pub(crate) struct Targets {
             $(pub(crate) $pass: $pass::Targets,)*
         }
 
         impl Targets {
-            /// Allocates what `plan` asks for.
+            /// Allocates the resources of `plan`.
             pub(crate) fn new(gpu: &$crate::gpu::context::Gpu, plan: &$plan) -> Self {
                 Self {
                     $($pass: $pass::Targets::new(gpu, plan),)*
@@ -54,7 +54,7 @@ macro_rules! passes {
         /// The passes' shaders.
         pub(crate) const SHADERS: &[&$crate::gpu::shader::Shader] = &[$(&$pass::SHADER),*];
 
-        /// Compiles one pass each, to be found compiled when the path is made.
+        /// Compiles one pass each, ahead of its first use.
         pub(crate) const WARM_UPS: &[$crate::passes::list::WarmUp] =
             &[$((stringify!($pass), |gpu| drop($pass::Pass::new(gpu)))),*];
     };

@@ -1,5 +1,5 @@
-//! Passes that several paths run, and what passes share, each pass under the one name that its shader, label and time stamp
-//! have.
+//! Passes that several paths run, and code shared by passes. A pass has one name: shader, module, label and time
+//! stamp.
 //!
 //! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
 

@@ -1,4 +1,4 @@
-//! Parts of WGSL that shaders of several rooms join, and that share nothing with the host.
+//! Parts of WGSL that shaders of several modules join, without mirrors on the host.
 
 use crate::gpu::shader::{Part, part};
 
@@ -14,5 +14,5 @@ pub(crate) const FLATTEN: Part = part!("common/flatten");
 pub(crate) const FULLSCREEN: Part = part!("common/fullscreen");
 /// Whether a point of the toy has moved on the screen.
 pub(crate) const MOVED: Part = part!("common/moved");
-/// Which 8-bit codes can be relied on.
+/// Usable 8-bit codes.
 pub(crate) const PIXEL: Part = part!("common/pixel");

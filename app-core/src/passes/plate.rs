@@ -18,13 +18,13 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &part!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]),
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
-/// Format of a plate: finer than codes, since gains have been applied; alpha tells a photographed pixel.
+/// Format of a plate: finer than codes, since gains have been applied; alpha marks photographed pixels.
 pub(crate) const PLATE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Plates that a view's plate is made of.
+/// Maximum number of plates that a view's plate is made of.
 pub(crate) const MAX_PLATES: usize = 4;
 
 shared_struct! {
-    /// A plate as the shader has it.
+    /// Uniform of one plate.
     pub struct PlateView {
         pub plate_px_from_plane: [Mat3Columns; MAX_RECEIVERS],
         pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
@@ -33,7 +33,7 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// The plates that a view's plate is made of.
+    /// Uniform of the plates that a view's plate is made of.
     pub struct PlateViews {
         pub plates: [PlateView; MAX_PLATES],
         pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],

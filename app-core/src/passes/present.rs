@@ -18,7 +18,7 @@ pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 pub(crate) const OUTPUT_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 shared_struct! {
-    /// Where the region lies.
+    /// Position and size of the region.
     pub(crate) struct Placement {
         pub origin_px: [u32; 2],
         pub size_px: [u32; 2],

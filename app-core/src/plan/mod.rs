@@ -1,5 +1,5 @@
-//! What plans are made of, whatever the method: facts of a scene, passes on their paths, and what is left out. Pure data,
-//! made without a device.
+//! Common parts of both methods' plans: facts of a scene, how much changed, and what is left out. Pure data, made
+//! without a device.
 //!
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
 
@@ -8,7 +8,7 @@ use crate::geometry::rect::PixelRect;
 /// Facts of a scene that decide its plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFacts {
-    /// What toy and shadows can reach.
+    /// Rectangle that toy and shadows can reach.
     pub region: PixelRect,
     /// Width of each listed light's widest penumbra on the screen, in pixels.
     pub penumbra_px: Vec<f64>,
@@ -27,16 +27,16 @@ pub struct LeftOut {
     pub why: &'static str,
 }
 
-/// How much of a frame is new; each takes in those before it.
+/// What changed since the frame before; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
     /// Only the pose that is shown.
     Pose,
     /// The camera's picture.
     Picture,
-    /// The camera's place, or the part of the picture that is worked on.
+    /// The camera's pose, or the work region.
     View,
-    /// Nothing is known yet.
+    /// The scene: no scene state is reused.
     Scene,
 }
 

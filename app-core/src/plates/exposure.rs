@@ -1,4 +1,4 @@
-//! Exposures: what brings plates to one another, and the plates to a frame.
+//! Exposures: gains between plates, and from the plates to a frame.
 
 use glam::{DVec2, DVec3, UVec2};
 
@@ -9,20 +9,20 @@ use crate::plates::choice::view_of;
 use crate::plates::sight::Sight;
 use crate::scene::{Image, Plate, Scene};
 
-/// Places along each side of a plate where its exposure is compared with another's.
+/// Sample points along each side of a plate, at which its exposure is compared with another's.
 const N_COMPARED: u32 = 48;
-/// Half the side of the square that is averaged there: misplaced plates still agree.
+/// Half the side of the square that is averaged at each: misaligned plates still agree.
 const COMPARED_RADIUS_PX: i64 = 3;
 /// Codes that are neither mostly quantisation nor perhaps clipped.
 const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
-/// Difference between two plates, relative, at which a place counts half.
+/// Difference between two plates, relative, at which a sample counts half.
 const CAUCHY_SCALE: f64 = 0.05;
-/// Fewer places than this tell no exposure.
+/// Minimum number of samples of a gain.
 const FEWEST_COMPARED: usize = 16;
 /// Steps of the reweighted least squares.
 const N_STEPS: usize = 8;
 
-/// What brings each plate to the exposure of the first, per channel of linear light; 1 where they share no place.
+/// Gain of each plate to the exposure of the first, per channel of linear light; 1 where they share no sample.
 pub(crate) fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3> {
     let decoded = decoded();
     let mut gains: Vec<DVec3> = Vec::new();
@@ -39,10 +39,10 @@ pub(crate) fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec
     gains
 }
 
-/// What brings the exposure of the scene's first plate to that of a frame, per channel of linear light; 1 where they share
-/// no place. `chosen` are plates that are seen from there, `gains` what brings each of the scene's to the first.
+/// Gain of the scene's first plate to the exposure of a frame, per channel of linear light; 1 where they share no
+/// sample. `chosen` are indices of plates that are seen from there, `gains` bring each of the scene's to the first.
 ///
-/// Places `within`, which holds all of toy and shadows, count only where too few others are shared.
+/// Samples `within`, which contains all of toy and shadows, count only where too few others are shared.
 pub(crate) fn match_frame(
     (scene, receivers): (&Scene, &[AnchoredReceiver]),
     frame: &Plate,
@@ -74,16 +74,16 @@ pub(crate) fn match_frame(
     }
 }
 
-/// A place that two pictures show.
+/// A point that two pictures show.
 struct Shared {
-    /// Where the first one shows it.
+    /// Its position in the first one.
     px: DVec2,
     /// Mean colours around it.
     here: DVec3,
     there: DVec3,
 }
 
-/// Places that both of two pictures show.
+/// Points that both of two pictures show.
 fn shared_places<'a>(
     (scene, receivers): (&'a Scene, &'a [AnchoredReceiver]),
     plate: &'a Plate,
@@ -102,7 +102,7 @@ fn shared_places<'a>(
     })
 }
 
-/// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright to tell.
+/// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright.
 fn mean_color(image: &Image, px: DVec2, linear_of_code: &[f64; 256]) -> Option<DVec3> {
     #[allow(clippy::cast_possible_truncation, reason = "a pixel of an image")]
     let centre = [px.x.floor() as i64, px.y.floor() as i64];
@@ -135,7 +135,7 @@ fn decoded() -> [f64; 256] {
     decoded
 }
 
-/// The factor that brings the first of each pair to the second, per channel; 1 where there are too few.
+/// The gain from the first of each pair to the second, per channel; 1 where there are too few.
 fn gain_of(pairs: &[(DVec3, DVec3)]) -> DVec3 {
     if pairs.len() < FEWEST_COMPARED {
         return DVec3::ONE;
@@ -143,8 +143,8 @@ fn gain_of(pairs: &[(DVec3, DVec3)]) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|channel| robust_gain(pairs, channel)))
 }
 
-/// The factor that brings the first of each pair to the second, by reweighted least squares from the median
-/// of the ratios on: what is in shadow in one of them does not count.
+/// The gain from the first of each pair to the second, by reweighted least squares that start from the median of the
+/// ratios: what is in shadow in one of them does not count.
 fn robust_gain(pairs: &[(DVec3, DVec3)], channel: usize) -> f64 {
     let mut ratios: Vec<f64> = pairs.iter().map(|(a, b)| b[channel] / a[channel]).collect();
     ratios.sort_unstable_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The pictures of the place without the toy: which of them a view takes, on the device, and their exposures.
+//! Plates, the pictures of the scene without the toy: their choice for a view, their textures, and their exposures.
 
 pub(crate) mod choice;
 pub(crate) mod exposure;

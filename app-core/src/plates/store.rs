@@ -1,4 +1,4 @@
-//! The scene's plates on the device: those that the latest view is made of.
+//! The scene's plates on the device: those of the latest view.
 
 use bytemuck::Zeroable;
 use glam::{DVec3, UVec2};
@@ -13,11 +13,11 @@ use crate::scene::Scene;
 /// An array of plates.
 pub(crate) struct PlateStore {
     pub(crate) pictures: Texture,
-    /// Where they were taken from, and how they were exposed, as a view takes them.
+    /// Their cameras and exposures, for the latest view.
     pub(crate) views: wgpu::Buffer,
-    /// Which of the scene's plates each layer has.
+    /// Index of the scene's plate in each layer.
     loaded: Vec<Option<usize>>,
-    /// What brings each of the scene's plates to the exposure of the first.
+    /// Gain of each of the scene's plates to the exposure of the first.
     pub(crate) gains: Vec<DVec3>,
 }
 
@@ -39,7 +39,7 @@ impl PlateStore {
         }
     }
 
-    /// Uploads the plates at `indices`, in their order, as far as they are not there already.
+    /// Uploads the plates at `indices`, in their order, unless they are there already.
     pub(crate) fn load(&mut self, gpu: &Gpu, scene: &Scene, indices: &[usize]) {
         for ((layer, slot), index) in (0..).zip(&mut self.loaded).zip(indices) {
             if *slot != Some(*index) {

@@ -1,4 +1,4 @@
-//! Visibilities from outside, in place of those that the passes make.
+//! Injected visibilities, in place of those that the passes compute.
 
 use glam::UVec2;
 
@@ -22,7 +22,7 @@ pub(crate) struct Injected {
     pub(crate) shown: Option<Texture>,
 }
 
-/// A texture of the size and format of `like`, which has halves, with what `map` says.
+/// A texture of the size and format of `like`, in f16, with the values of `map`.
 pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
     let format = like.raw.format();
     let size_px = UVec2::new(like.raw.width(), like.raw.height());
@@ -38,7 +38,7 @@ pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
     texture
 }
 
-/// The IEEE 754 half next to a number in [0, 1].
+/// The IEEE 754 half nearest to a number in [0, 1].
 fn f16_from_f32(value: f32) -> u16 {
     const SMALLEST_NORMAL: f32 = 1.0 / 16384.0;
     #[allow(

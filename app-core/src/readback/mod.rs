@@ -1,4 +1,4 @@
-//! The maps between input and picture, read back for reports and tests.
+//! Intermediate maps, read back for reports and tests.
 
 pub(crate) mod inject;
 
@@ -7,7 +7,7 @@ use wgpu::TextureFormat;
 use crate::geometry::color::linear_from_srgb;
 use crate::gpu::context::{Gpu, GpuError};
 
-/// A map that the pipeline makes on its way to a picture, all of the work region.
+/// An intermediate map of the pipeline, of the work region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {
@@ -28,29 +28,30 @@ pub enum Map {
     Visibility,
     /// Visibility of the ambient light with the shown toy, in r, at a fraction of the region's size.
     Ambient,
-    /// How much of each pixel the shown toy covers, in r.
+    /// Fraction of each pixel that the shown toy covers, in r.
     Coverage,
-    /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where it is unknown.
+    /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where there is
+    /// none.
     Plate,
     /// The filled grid of residuals on the first receiver in rgb, in plates; alpha is 1.
     Residual,
-    /// Share f of the plate's radiance that all lights give together, in rgb, at the ambient maps' size; 0 beside the
-    /// receiver.
+    /// Direct fraction f of the plate's radiance, of all lights together, in rgb, at the ambient maps' size; 0 beside
+    /// the receiver.
     DirectFraction,
     /// The paper's mask 3a, the physical toy, in r.
     Masks,
-    /// The paper's masks: r labels the shadow to sample from (3c), g is 1 in the real shadow (3b). A label is 16 times the
-    /// receiver plus the set of lights that do not reach it, bit i for light i; 0 where there is nothing to sample.
+    /// The paper's masks: r labels the shadow to sample from (3c), g is 1 in the real shadow (3b). A label is 16
+    /// times the receiver plus the set of hidden lights, bit i for light i; 0 where there is nothing to sample.
     Eligible,
-    /// The paper's warp: where in the region's pixels to sample, the occluder's height in metres; alpha is coverage. The
-    /// maps of several lights lie below each other.
+    /// The paper's warp: the position to sample, in region pixels, the occluder's height in metres; alpha is
+    /// coverage. The maps of several lights lie below each other.
     Warp,
-    /// Shadow terms as they were sampled; alpha is the label of what they stand for, 0 where there is none.
+    /// Shadow terms as they were sampled; alpha is the label of their shadow, 0 where there is none.
     Terms,
-    /// Sums of shadow terms over the box; alpha is their number. The maps of several sets of lights, from the set 1 on, lie
-    /// below each other.
+    /// Sums of shadow terms over the box; alpha is their number. The maps of several sets of lights, from the set 1
+    /// on, lie below each other.
     FilteredTerms,
-    /// Candidates that the ring search looked at, in r; 0 where it was not needed.
+    /// Number of candidates that the ring search tested, in r; 0 where it was not needed.
     SearchTaps,
 }
 

@@ -1,4 +1,4 @@
-//! Turns numbers from a file, a tracker or a caller into values that the rest of the core may trust.
+//! Validates numbers from a file, a tracker or a caller.
 //!
 //! The limits are far outside any real scene. They keep the 32-bit arithmetic on the GPU finite.
 
@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use super::{Camera, Intrinsics, Light};
 
-/// A value that is refused, and where it stands.
+/// A value that is refused, and the path of its field.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{field}: {reason}")]
 pub struct InputError {
@@ -65,7 +65,7 @@ pub enum FieldError {
     /// A matrix that stretches or shears.
     #[error("the matrix scales its axes differently or shears: only one scale for all is allowed")]
     NotUniform,
-    /// A matrix that turns right hands into left ones.
+    /// A matrix that swaps handedness.
     #[error("the matrix mirrors: its axes must be right-handed")]
     Mirrored,
     /// Pictures that would take more memory than a session may.

@@ -1,4 +1,4 @@
-//! The place a toy stands in: everything that stays the same for a whole session.
+//! The scene of a toy: everything that stays the same for a whole session.
 //!
 //! World space is right-handed, +Y up, in metres.
 //! Camera space is +X right, +Y up and looks along -Z.
@@ -20,7 +20,7 @@ pub const MAX_LIGHTS: usize = 4;
 /// Receivers that shadows are moved on; on further ones they stay as photographed, with a warning.
 pub const MAX_RECEIVERS: usize = 4;
 
-/// What is known before the first frame: toy, receivers, lights, plates.
+/// The inputs that precede the first frame: toy, receivers, lights, plates.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name for people; may be empty.
@@ -31,23 +31,23 @@ pub struct Scene {
     pub height_px: u32,
     /// The toy's model.
     pub toy: Arc<Toy>,
-    /// Where the real toy stands at first; frames bring where it stands then. From the model's scene space to world: a
-    /// rotation, a translation and one positive scale.
+    /// Transform of the real toy at first; frames bring their own. From the model's scene space to world: a rotation,
+    /// a translation and one positive scale.
     pub world_from_object: DMat4,
-    /// The pose the real toy was made in.
+    /// The pose of the real toy.
     pub physical_pose: Pose,
     /// Planes that catch the shadow; at least one.
     pub receivers: Vec<Receiver>,
     /// Known lights, unless a frame brings its own. Empty when they are to be estimated.
     pub lights: Vec<Light>,
-    /// Pictures of the place without the toy. May be empty.
+    /// Pictures of the scene without the toy. May be empty.
     pub plates: Vec<Plate>,
     /// A light probe lying in the scene, where there is one.
     pub probe: Option<FresnelLens>,
 }
 
 impl Scene {
-    /// Refuses what no frame could be made of.
+    /// Validates the scene.
     pub(crate) fn check(&self) -> Result<(), InputError> {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
@@ -79,12 +79,12 @@ impl Receiver {
     }
 }
 
-/// How a receiver looks, which decides how its shadow may be sampled.
+/// Appearance of a receiver, which decides how its shadow may be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// One colour all over.
     Uniform,
-    /// Colour changes from place to place.
+    /// Colour varies over the surface.
     Textured,
 }
 
@@ -97,7 +97,7 @@ pub struct Receiver {
     pub world_from_plane: DMat4,
     /// The rectangle is `|x| <= half_extent_m.x`, `|z| <= half_extent_m.y`; both positive.
     pub half_extent_m: DVec2,
-    /// How the receiver looks.
+    /// Appearance of the receiver.
     pub surface: Surface,
 }
 
@@ -141,7 +141,7 @@ pub struct Intrinsics {
 pub struct Camera {
     /// Its projection.
     pub intrinsics: Intrinsics,
-    /// Rigid transform: where it stands.
+    /// Rigid transform: the camera's pose.
     pub world_from_camera: DMat4,
 }
 
@@ -152,7 +152,7 @@ pub struct Image {
     pub width_px: u32,
     /// Rows; at least one.
     pub height_px: u32,
-    /// `width_px * height_px * 4` bytes. Alpha is 255 unless the picture says what else it means.
+    /// `width_px * height_px * 4` bytes. Alpha is 255 unless the picture documents another meaning.
     pub rgba8: Vec<u8>,
 }
 
@@ -162,7 +162,7 @@ impl fmt::Debug for Image {
     }
 }
 
-/// A picture of the place before the toy was put there.
+/// A picture of the scene before the toy was put there.
 #[derive(Clone, Debug)]
 pub struct Plate {
     /// The camera that took it.

@@ -151,11 +151,11 @@ impl PictureStore {
     }
 }
 
-/// Looks at format and version first: another version may break every other rule.
+/// Checks format and version first: another version may break every other rule.
 fn parse_index(bytes: &[u8]) -> Result<CaptureRecord, SessionError> {
     let header: Header = match parse(bytes) {
         Ok(header) => header,
-        // What is no JSON at all is found again by reading everything, which can name the field.
+        // A syntax error is found again by parsing everything, which can name the field.
         Err(error) if !is_about_values(&error) => {
             return Err(parse::<CaptureRecord>(bytes).err().unwrap_or(error));
         }

@@ -1,4 +1,4 @@
-//! What can be wrong with a session: always the file, the field and the reason.
+//! Errors of a session: always the file, the field and the reason.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! How a session's bytes come in: a trait for the shell, and the rule for paths that all share.
+//! Access to a session's files: a trait for the shell, and the rule for paths that all share.
 
 use thiserror::Error;
 

@@ -1,8 +1,7 @@
-//! Sessions: a place, and camera frames taken in it, whatever they are stored in.
+//! Sessions: a scene, and camera frames of it, however they are stored.
 //!
-//! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that
-//! is known at once and frames that are fetched one by one. Bytes come through [`Files`], so this
-//! crate opens no file itself.
+//! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that is available at once
+//! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself.
 
 mod capture;
 mod error;
@@ -22,12 +21,12 @@ pub use capture::Capture;
 pub use error::{PictureError, SessionError, SessionErrorKind};
 pub use files::{FileError, Files, PathError, check_path};
 
-/// A place with frames taken in it.
+/// A scene with frames of it.
 pub trait Session {
-    /// What stays the same for all frames.
+    /// The scene, which stays the same for all frames.
     fn scene(&self) -> &Scene;
 
-    /// What was odd, but usable, about the session as a whole.
+    /// Warnings about the session as a whole.
     fn warnings(&self) -> &[SessionWarning];
 
     /// Number of frames; at least one.
@@ -40,7 +39,7 @@ pub trait Session {
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
 }
 
-/// One camera frame and what is to be shown in it.
+/// One camera frame and the pose to show in it.
 #[derive(Clone, Debug)]
 pub struct SessionFrame {
     /// When the frame was taken, from an origin of the session's own.
@@ -49,20 +48,19 @@ pub struct SessionFrame {
     pub image: Arc<Image>,
     /// The camera that took it.
     pub camera: Camera,
-    /// Where the real toy stands.
+    /// Transform of the real toy, from object space to world.
     pub world_from_object: DMat4,
-    /// Exposure of the picture, relative to that of the session's other frames; 1 where nobody says.
+    /// Exposure of the picture, relative to that of the session's other frames; 1 where it is unknown.
     pub exposure: f64,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
-    /// What was odd, but usable, about this frame.
+    /// Warnings about this frame.
     pub warnings: Vec<SessionWarning>,
 }
 
 /// The photographs that the camera would have taken if the toy really had moved.
 ///
-/// For scoring only. It is not part of [`Session`], so code that makes pictures from a session
-/// has no way to look at them.
+/// For scoring only. It is not part of [`Session`], so code that makes pictures from a session cannot reach them.
 pub trait GroundTruth {
     /// Fetches the truth of the frame `index`, or `None` where the session has none.
     ///
@@ -76,14 +74,14 @@ pub trait GroundTruth {
 pub struct Truth {
     /// The photograph of the moved toy.
     pub image: Image,
-    /// What each pixel shows, with plain numbers in all four channels.
+    /// Labels of each pixel, as plain numbers in all four channels.
     ///
     /// R is 255 where the moved toy is, G where the real toy is. B is 255 times one minus the
     /// smallest visibility over all lights with the moved toy, A the same with the real one.
     pub mask: Image,
 }
 
-/// Something that was put right or left out on the way in.
+/// A value that was corrected or left out while reading.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SessionWarning {
@@ -96,10 +94,10 @@ pub enum SessionWarning {
         field: String,
         /// The time as written.
         asked_secs: f64,
-        /// The time in its place.
+        /// The time that is used instead.
         used_secs: f64,
     },
-    /// Something in the toy's file is not followed.
+    /// A feature of the toy's file that is not supported.
     #[error("{file}: {warning}")]
     Toy {
         /// File of the toy.

@@ -19,7 +19,7 @@ pub(super) struct Source<'a> {
     n_decoded: Cell<usize>,
 }
 
-/// Where the numbers of an accessor lie.
+/// Layout of an accessor's numbers.
 struct Layout {
     count: usize,
     /// Numbers of one element.
@@ -43,7 +43,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Adds `n_values` to what this file fills memory with.
+    /// Adds `n_values` to the numbers that this file fills memory with.
     pub(super) fn charge(&self, field: &str, n_values: usize) -> Result<(), Flaw> {
         let found = self.n_decoded.get().saturating_add(n_values);
         self.n_decoded

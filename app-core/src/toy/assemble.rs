@@ -1,4 +1,4 @@
-//! From a file to a toy: reads each part and decides what is drawn.
+//! From a file to a toy: reads each part and selects what is drawn.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -59,7 +59,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     })
 }
 
-/// Reads what the scene draws; fails where that is nothing.
+/// Reads the drawn surfaces of the scene; fails where there are none.
 fn read_scene(
     source: &Source,
     rig: &Rig,

@@ -1,4 +1,4 @@
-//! The room a toy takes: in one pose, and over a whole clip.
+//! Bounding boxes of a toy: in one pose, and over a whole clip.
 
 use glam::{DAffine3, DVec3, Vec3};
 

@@ -1,4 +1,4 @@
-//! Checks that every part of a file goes through.
+//! Checks that apply to every part of a file.
 
 use super::error::{Flaw, ToyProblem};
 

@@ -1,4 +1,4 @@
-//! Animation clips: which value of which node moves, and for how long.
+//! Animation clips: animated values of nodes, and durations.
 
 use gltf::json::accessor::Type;
 use gltf::json::animation::{
@@ -12,12 +12,12 @@ use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::graph::{Graph, Local};
 use super::track::{Interpolation, Track};
 
-/// Number of a clip within its toy, from 0.
+/// Index of a clip within its toy, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ClipId(pub(super) usize);
 
 impl ClipId {
-    /// Number of the clip in [`Toy::clips`](super::Toy::clips), from 0.
+    /// Index of the clip in [`Toy::clips`](super::Toy::clips), from 0.
     pub fn index(self) -> usize {
         self.0
     }

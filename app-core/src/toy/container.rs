@@ -73,9 +73,9 @@ pub(super) fn allowed<T>(value: Checked<T>, field: &str) -> Result<T, Flaw> {
     }
 }
 
-/// Refuses extensions that move or encode vertices in ways not read here; says which ones are not followed.
+/// Refuses extensions that move or encode vertices in ways not read here; warns of those that are not supported.
 pub(super) fn check_extensions(root: &Root, warnings: &mut Vec<ToyWarning>) -> Result<(), Flaw> {
-    // Followed, or without effect on a toy's shape and base colour.
+    // Supported, or without effect on a toy's shape and base colour.
     const HARMLESS: [&str; 4] = [
         "KHR_mesh_quantization",
         "KHR_lights_punctual",

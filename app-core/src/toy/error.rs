@@ -1,10 +1,10 @@
-//! What can be wrong with a toy's file: always the file, the field and the reason.
+//! Errors of a toy's file: always the file, the field and the reason.
 
 use std::fmt;
 
 use thiserror::Error;
 
-/// A toy that cannot be used, or a question about it that has no answer.
+/// A toy that cannot be used, or a request that it cannot meet.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ToyError {
@@ -231,7 +231,7 @@ pub enum ToyProblem {
 }
 
 impl ToyProblem {
-    /// Says where the problem is.
+    /// Adds the path of the field.
     pub(super) fn at(self, field: impl Into<String>) -> Flaw {
         Flaw {
             field: field.into(),
@@ -240,7 +240,7 @@ impl ToyProblem {
     }
 }
 
-/// A problem and its field: an error that does not know its file yet.
+/// A problem and its field: an error without its file yet.
 #[derive(Debug)]
 pub(super) struct Flaw {
     field: String,
@@ -257,11 +257,11 @@ impl Flaw {
     }
 }
 
-/// Something in a toy's file that is not followed; the toy is usable all the same.
+/// An unsupported feature of a toy's file; the toy is usable all the same.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ToyWarning {
-    /// Points and lines throw no shadow that the method knows.
+    /// Points and lines, whose shadows are not supported.
     #[error("{field}: not made of triangles, left out")]
     PrimitiveSkipped {
         /// Path of the primitive.

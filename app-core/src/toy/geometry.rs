@@ -29,7 +29,7 @@ pub(super) struct Geometry {
     pub(super) indices: Vec<u32>,
 }
 
-/// What a morph target adds at full weight.
+/// Offsets of a morph target at full weight.
 pub(super) struct MorphTarget {
     positions: Option<Vec<Vec3>>,
     normals: Option<Vec<Vec3>>,
@@ -41,7 +41,7 @@ impl MorphTarget {
         self.positions.is_some()
     }
 
-    /// What it adds to a vertex's position.
+    /// Its offset of a vertex's position.
     pub(super) fn offset(&self, vertex: usize) -> Vec3 {
         self.positions
             .as_ref()

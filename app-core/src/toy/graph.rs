@@ -1,4 +1,4 @@
-//! The nodes of the file: who hangs below whom, and where each stands when nothing is animated.
+//! The nodes of the file: their hierarchy, and their transforms when nothing is animated.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::container::get;
 use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES};
 
-/// Every node of the file, in the scene or not: a joint may stand outside of it.
+/// Every node of the file, in the scene or not: a joint may be outside of it.
 pub(super) struct Graph {
     pub(super) nodes: Vec<Node>,
     /// Their names as authored.
@@ -155,7 +155,7 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, Flaw> {
         order.append(&mut children[node]);
         done += 1;
     }
-    // Each node has one parent at most, so those left over hang in cycles, and theirs are the lists still full.
+    // Each node has one parent at most, so those left over are in cycles, and their lists are still full.
     match children.iter().position(|left| !left.is_empty()) {
         Some(node) => Err(ToyProblem::Cycle { node }.at(format!("nodes[{node}].children"))),
         None => Ok(order),

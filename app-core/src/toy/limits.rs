@@ -14,7 +14,7 @@ pub(super) const MAX_INDICES: usize = 24 << 20;
 pub(super) const MAX_DECODED_VALUES: usize = 128 << 20;
 /// Nodes of the file.
 pub(super) const MAX_NODES: usize = 1 << 16;
-/// Joints of all skins together: each has a 16-bit number, of which the last means none.
+/// Joints of all skins together: each has a 16-bit index, of which the last means none.
 pub(super) const MAX_JOINTS: usize = (1 << 16) - 1;
 /// Morph weights of all nodes together.
 pub(super) const MAX_MORPH_WEIGHTS: usize = 1 << 20;

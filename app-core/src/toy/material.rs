@@ -1,4 +1,4 @@
-//! Materials: the base colour, which is all that a fitted light is multiplied with.
+//! Materials: the base colour, the factor of the fitted light.
 
 use gltf::json::texture::WrappingMode;
 use gltf::json::{Index, material::Material as JsonMaterial};
@@ -9,7 +9,7 @@ use super::container::{allowed, get};
 use super::error::{Flaw, ToyWarning};
 use super::texture::{Texture, TextureStore};
 
-/// How a surface looks: the base colour of the metallic-roughness model.
+/// Appearance of a surface: the base colour of the metallic-roughness model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Linear RGBA, normally from 0 to 1; multiplies the texture and the vertex colour.
@@ -21,7 +21,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// What glTF prescribes where a primitive names no material.
+    /// The default of glTF where a primitive names no material.
     pub(super) const DEFAULT: Self = Self {
         base_color_linear: [1.0; 4],
         base_color_texture: None,
@@ -34,13 +34,13 @@ impl Material {
 pub struct MaterialTexture {
     /// Index into [`Toy::textures`](super::Toy::textures).
     pub texture: usize,
-    /// How u beyond 0 to 1 is read.
+    /// Addressing of u beyond 0 to 1.
     pub wrap_u: Wrap,
-    /// How v beyond 0 to 1 is read.
+    /// Addressing of v beyond 0 to 1.
     pub wrap_v: Wrap,
 }
 
-/// What a texture shows beyond its border.
+/// Addressing of a texture beyond its border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     /// The same again.

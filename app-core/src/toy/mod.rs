@@ -2,8 +2,8 @@
 //!
 //! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
 //! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`).
-//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph weights (`rig`),
-//! the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
+//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph weights
+//! (`rig`), the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
 //! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
 //! A toy opens no file itself; pictures outside the file are left out with a warning.
@@ -48,7 +48,7 @@ use geometry::Geometry;
 use rig::Rig;
 use surface::{Draws, Surface};
 
-/// A toy's model: everything that its file says about shape, look and movement.
+/// A toy's model: shape, appearance and animation from its file.
 pub struct Toy {
     file: String,
     rig: Rig,
@@ -119,7 +119,7 @@ impl Toy {
             .collect()
     }
 
-    /// Brings a time into a clip, and says whether it lay beyond its end.
+    /// Clamps a time to a clip, and returns whether it lay beyond its end.
     ///
     /// # Errors
     /// An id of another toy, or a time that is negative or not finite.
@@ -174,7 +174,7 @@ impl Toy {
         self.draws.uvs.len()
     }
 
-    /// What in the file is not followed or was repaired.
+    /// Features of the file that are not supported or were repaired.
     pub fn warnings(&self) -> &[ToyWarning] {
         &self.warnings
     }

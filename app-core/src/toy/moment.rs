@@ -1,4 +1,4 @@
-//! What pose a toy is asked for: as authored, at a moment of a clip, or by the transforms of its nodes.
+//! Poses of a toy: as authored, at a moment of a clip, or by the transforms of its nodes.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use super::clip::ClipId;
 use super::error::ToyError;
 use super::graph::Trs;
 
-/// A pose to be taken.
+/// A pose of a toy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Pose {
     /// The nodes as they were authored.
@@ -24,7 +24,7 @@ pub enum Pose {
     Nodes(Arc<NodePose>),
 }
 
-/// Number of a node within its toy, from 0.
+/// Index of a node within its toy, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub(super) usize);
 

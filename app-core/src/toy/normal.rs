@@ -1,8 +1,8 @@
-//! Normals that stay upright: unit length, outward, never NaN.
+//! Transforms of normals: unit length, outward, never NaN.
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// Carries a normal: along the inverse transpose of `linear`, by way of the cofactors, which always exist.
+/// Transforms a normal: along the inverse transpose of `linear`, by way of the cofactors, which always exist.
 ///
 /// Falls back to the plain transform, then to the normal itself, where `linear` flattens it to nothing.
 pub(super) fn carried_normal(linear: &DMat3, normal: DVec3) -> Vec3 {
@@ -12,7 +12,7 @@ pub(super) fn carried_normal(linear: &DMat3, normal: DVec3) -> Vec3 {
     unit(candidates.into_iter().find_map(DVec3::try_normalize))
 }
 
-/// The normal of a triangle carried by `linear`; before, its corners ran counter-clockwise seen from outside.
+/// The normal of a triangle transformed by `linear`; before, its corners ran counter-clockwise seen from outside.
 pub(super) fn face_normal(linear: &DMat3, [a, b, c]: [DVec3; 3]) -> Vec3 {
     unit((handedness(linear) * (b - a).cross(c - a)).try_normalize())
 }
@@ -22,7 +22,7 @@ fn handedness(linear: &DMat3) -> f64 {
     if linear.determinant() < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// A direction is a direction: where none is left, any one will do.
+/// Any unit vector serves where the direction vanishes.
 fn unit(normal: Option<DVec3>) -> Vec3 {
     normal.map_or(Vec3::Y, |normal| normal.as_vec3())
 }

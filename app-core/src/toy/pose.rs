@@ -10,7 +10,7 @@ use super::normal::{carried_normal, face_normal};
 use super::rig::{RigPose, Set};
 use super::surface::Surface;
 
-/// The vertices of a posed toy. Keep it from frame to frame: its memory is used again.
+/// The vertices of a posed toy. Reuse it from frame to frame, which saves allocations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PosedMesh {
     /// One for each vertex, in anchor space.
@@ -103,7 +103,7 @@ fn pose_surface(
     active: &[ActiveTarget],
     (positions, normals): (&mut [Vec3], &mut [Vec3]),
 ) {
-    // Without normals each triangle has three vertices of its own, which come by one after the other.
+    // Without normals each triangle has three vertices of its own, which follow one another.
     let mut corners = [DVec3::ZERO; 3];
     surface.deform(geometry, pose, active, |vertex, position, anchor_from_mesh| {
         let linear = &anchor_from_mesh.matrix3;

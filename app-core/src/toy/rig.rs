@@ -1,4 +1,4 @@
-//! What moves the vertices: nodes, skins and clips, and where they stand at one moment.
+//! The rig: nodes, skins and clips, and their transforms at one moment.
 
 use glam::{DAffine3, DVec3};
 use gltf::json::animation::Property;
@@ -14,7 +14,7 @@ pub(super) struct Rig {
     pub(super) clips: Vec<Clip>,
 }
 
-/// What sets the nodes.
+/// Source of the nodes' transforms.
 pub(super) enum Set<'a> {
     Authored,
     /// A clip at a time.
@@ -25,7 +25,7 @@ pub(super) enum Set<'a> {
 /// The rig at one moment. `anchor` is the space that everything is posed in.
 pub(super) struct RigPose {
     pub(super) anchor_from_node: Vec<DAffine3>,
-    /// For each skin: for each joint, where it carries the vertices of a mesh.
+    /// For each skin: for each joint, its transform of a mesh's vertices.
     pub(super) anchor_from_mesh_by_joint: Vec<Vec<DAffine3>>,
     morph_weights: Vec<f64>,
 }

@@ -1,9 +1,9 @@
-//! The toy as a shape alone, for passes that need no material: corners in one place are one, and closed pieces are told
-//! from open ones.
+//! The toy as a shape alone, for passes that need no material: vertices are welded by position, and closed pieces
+//! separated from open ones.
 //!
-//! Vertices are split where normals, coordinates or materials change, which shadows do not care about: welded again, a
+//! Vertices are split where normals, coordinates or materials change, which shadows do not depend on: welded again, a
 //! mesh has a fraction of them to transform.
-//! Source: the "shadow index buffer" of meshoptimizer; here vertices are one only if no pose can part them.
+//! Source: the "shadow index buffer" of meshoptimizer; here vertices are welded only if no pose can separate them.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -16,9 +16,9 @@ use super::surface::Surface;
 /// Triangles of welded corners.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShadowIndices {
-    /// Corners of triangles, each the first of the vertices that stay with it in every pose.
+    /// Corners of triangles, each the first of the vertices that coincide with it in every pose.
     pub indices: Vec<u32>,
-    /// Which of them to draw.
+    /// Ranges of them to draw.
     pub ranges: ShadowRanges,
 }
 
@@ -27,7 +27,8 @@ pub struct ShadowIndices {
 pub struct ShadowRanges {
     /// Every triangle once.
     pub all: Range<u32>,
-    /// What hides a light where only triangles that face it are drawn: closed pieces once, open ones from both sides.
+    /// Occluders of a light where only triangles that face it are drawn: closed pieces once, open ones from both
+    /// sides.
     ///
     /// A ray to a light outside a closed piece leaves it as often as it enters it, or once more where it starts inside.
     pub facing: Range<u32>,
@@ -36,7 +37,7 @@ pub struct ShadowRanges {
 }
 
 impl ShadowRanges {
-    /// What to draw from a point, of which only triangles that face it are seen.
+    /// Range to draw from a point, of which triangles that face away are culled.
     #[must_use]
     pub fn seen_from(&self, is_within_toy: bool) -> Range<u32> {
         if is_within_toy {
@@ -81,7 +82,7 @@ impl ShadowIndices {
     }
 }
 
-/// For each vertex of the toy the first that is where it is in every pose.
+/// For each vertex of the toy the first that coincides with it in every pose.
 fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
     let movements = movements(geometries);
     let mut firsts = HashMap::new();
@@ -95,7 +96,8 @@ fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
         .collect()
 }
 
-/// For each vertex of each geometry a number that it shares with those that always move alike, drawn by the same node.
+/// For each vertex of each geometry an index that it shares with those that always move alike, drawn by the same
+/// node.
 fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
     let mut known = HashMap::new();
     let mut number = |key: Vec<u32>| {
@@ -115,7 +117,7 @@ fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// All that decides where a vertex goes in its node, bit by bit.
+/// All that determines a vertex's position in its node, bit by bit.
 fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) -> Vec<u32> {
     let bits = |point: Vec3| point.to_array().map(f32::to_bits);
     let mut key = bits(geometry.positions[vertex]).to_vec();
@@ -132,22 +134,22 @@ fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) 
     key
 }
 
-/// Triangles that hang together by their corners, and which of these pieces are closed.
+/// Connected components of the triangles, and which of these pieces are closed.
 struct Pieces {
-    /// For each vertex one nearer to the piece's root, which is its own.
+    /// Union-find parent of each vertex; the root of a piece is its own.
     parents: Vec<u32>,
-    /// For each root, whether its piece has an edge that is not met from both sides alike, or its inside without.
+    /// For each root, whether its piece has an edge that is not met from both sides alike, or is inside out.
     is_open: Vec<bool>,
 }
 
 impl Pieces {
-    /// `places` are those of all vertices, each in its node.
+    /// `places` are the positions of all vertices, each in its node.
     fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
         let mut pieces = Self {
             parents: (0..).take(places.len()).collect(),
             is_open: vec![false; places.len()],
         };
-        // How often an edge is passed upwards, less how often downwards.
+        // How often an edge is passed from lower to higher index, less how often the other way.
         let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
         for &[a, b, c] in triangles {
             for [from, to] in [[a, b], [b, c], [c, a]] {
@@ -182,7 +184,7 @@ impl Pieces {
 
     fn root(&mut self, mut corner: u32) -> u32 {
         while self.parents[corner as usize] != corner {
-            // Halves the path for those who come after.
+            // Path halving, for later lookups.
             let parent = self.parents[corner as usize];
             self.parents[corner as usize] = self.parents[parent as usize];
             corner = parent;

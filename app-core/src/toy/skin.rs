@@ -1,4 +1,4 @@
-//! Skins: which joints a vertex follows, and how much.
+//! Skins: joints of each vertex, and their weights.
 
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::accessor::Type;
@@ -27,7 +27,7 @@ pub(super) struct Influences {
     pub(super) joints: Vec<u16>,
     /// Not negative; those of a vertex sum to one.
     pub(super) weights: Vec<f32>,
-    /// Vertices whose weights had to be repaired to say so.
+    /// Vertices whose weights had to be repaired to sum to one.
     pub(super) n_repaired: usize,
 }
 
@@ -169,7 +169,7 @@ pub(super) fn read_influences(
         for (joints, weights) in &sets {
             let row = 4 * vertex..4 * vertex + 4;
             influences.weights.extend_from_slice(&weights[row.clone()]);
-            // A joint number that does not fit is out of any skin's range and is refused as such later.
+            // A joint index that does not fit is out of any skin's range and is refused as such later.
             influences
                 .joints
                 .extend(joints[row].iter().map(|&j| u16::try_from(j).unwrap_or(u16::MAX)));
@@ -181,12 +181,12 @@ pub(super) fn read_influences(
 
 /// Makes the weights of one vertex sum to one, and lets joints without weight be joint 0.
 fn repair(influences: &mut Influences, vertex: usize) {
-    // Eight bits cannot say thirds: anything closer is the rounding of a good exporter.
+    // Eight bits cannot represent thirds: any smaller difference is the rounding of a good exporter.
     const TOLERANCE: f32 = 1.0 / 255.0;
     let row = vertex * influences.n_per_vertex..(vertex + 1) * influences.n_per_vertex;
     let (weights, joints) = (&mut influences.weights[row.clone()], &mut influences.joints[row]);
     let has_negative = weights.iter().any(|&weight| weight < 0.0);
-    // Sorted out in f64, where no sum of a few f32 can overflow.
+    // Summed in f64, where no sum of a few f32 can overflow.
     let sum: f64 = weights.iter().map(|&weight| f64::from(weight.max(0.0))).sum();
     if has_negative || (sum - 1.0).abs() > f64::from(TOLERANCE) {
         influences.n_repaired += 1;

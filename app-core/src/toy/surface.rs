@@ -1,4 +1,4 @@
-//! Drawn surfaces: a primitive at a node, and its place in the toy's vertex and index buffers.
+//! Drawn surfaces: a primitive at a node, and its range of the toy's vertex and index buffers.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ pub struct Part {
     pub indices: Range<u32>,
 }
 
-/// A primitive drawn by one node; its vertices stand one after the other in the toy's buffers.
+/// A primitive drawn by one node; its vertices are contiguous in the toy's buffers.
 pub(super) struct Surface {
     /// Index into the toy's geometries.
     pub(super) geometry: usize,
@@ -30,7 +30,7 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// Where one vertex of the surface is carried.
+    /// Transform of one vertex of the surface.
     pub(super) fn anchor_from_mesh(&self, geometry: &Geometry, vertex: usize, pose: &RigPose) -> DAffine3 {
         match (&geometry.influences, self.skin) {
             (Some(influences), Some(skin)) => influences.blend(vertex, &pose.anchor_from_mesh_by_joint[skin]),
@@ -38,7 +38,7 @@ impl Surface {
         }
     }
 
-    /// Visits each vertex with its posed position and the transform that carried it there.
+    /// Visits each vertex with its posed position and its transform.
     pub(super) fn deform(
         &self,
         geometry: &Geometry,
@@ -54,14 +54,14 @@ impl Surface {
     }
 }
 
-/// Whether most vertices are carried by a transform that mirrors.
+/// Whether most vertices have a transform that mirrors.
 pub(super) fn is_mirrored(surface: &Surface, geometry: &Geometry, rest: &RigPose) -> bool {
     let n_vertices = geometry.positions.len();
     let mirrors = |&v: &usize| surface.anchor_from_mesh(geometry, v, rest).matrix3.determinant() < 0.0;
     2 * (0..n_vertices).filter(mirrors).count() > n_vertices
 }
 
-/// What is drawn in every pose: the same triangles, coordinates and colours.
+/// Draws that are the same in every pose: triangles, coordinates and colours.
 #[derive(Default)]
 pub(super) struct Draws {
     pub(super) parts: Vec<Part>,

@@ -11,7 +11,7 @@ use super::accessor::Source;
 use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::limits::{MAX_TEXELS, MAX_TEXTURE_SIDE_PX};
 
-/// A picture on a surface.
+/// A texture image.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     /// Columns; at least one.

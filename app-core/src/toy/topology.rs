@@ -30,7 +30,7 @@ pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Option<Vec<u32>> {
 pub(super) struct Corners {
     /// For each kept vertex, the one it is a copy of.
     pub(super) sources: Vec<u32>,
-    /// Corners of the triangles, as numbers of kept vertices.
+    /// Corners of the triangles, as indices of kept vertices.
     pub(super) indices: Vec<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! One animated value over time: keys, and what lies between them.
+//! One animated value over time: keys, and the interpolation between them.
 //!
 //! Source: glTF 2.0 specification, appendix C (interpolation).
 
@@ -6,7 +6,7 @@ use glam::DQuat;
 
 use super::graph::unit_rotation;
 
-/// How the value gets from key to key.
+/// Interpolation between keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
     Step,
@@ -36,7 +36,7 @@ pub(super) struct Track {
     pub(super) interpolation: Interpolation,
 }
 
-/// Two neighbouring keys and the place between them; the same key twice outside the track.
+/// Two neighbouring keys and the position between them; the same key twice outside the track.
 struct Span {
     from: usize,
     to: usize,
@@ -123,7 +123,7 @@ impl Track {
     }
 }
 
-/// What is stored for one key.
+/// Numbers stored for one key.
 struct Key<'a> {
     numbers: &'a [f32],
     width: usize,

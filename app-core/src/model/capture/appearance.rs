@@ -50,7 +50,7 @@ pub(crate) struct Inputs<'a> {
 /// Of the region's size.
 pub(crate) struct Targets {
     pub(crate) color: Texture,
-    /// Radiance over base colour that the fit gives to the pixels that a colour is from.
+    /// Fitted radiance over base colour at the pixels that a colour is from.
     pub(crate) lit: Texture,
     /// Base colour of these pixels.
     pub(crate) base: Texture,

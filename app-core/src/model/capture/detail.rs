@@ -1,4 +1,4 @@
-//! `detail`: what each pixel knows of its own residual, with the noise of the shadow taken out.
+//! `detail`: each pixel's own residual, with the noise of the shadow removed.
 
 use wgpu::TextureFormat;
 
@@ -34,7 +34,7 @@ const SLOTS: &[Slot] = &[
 /// Format of residuals, in plates.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// Only where the real shadow is cleared of noise.
+/// Only where the real shadow is denoised.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_noise_removed
 }

@@ -1,4 +1,4 @@
-//! `estimate`: the plate, with an estimate where no plate shows the place.
+//! `estimate`: the plate, completed by an estimate where no plate covers the pixel.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
@@ -41,12 +41,12 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_plate_estimated
 }
 
-/// How much of the frame an estimate may take.
+/// Spatial detail of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fineness {
-    /// Smooth: to find the shadow in.
+    /// Smooth, so that the fit can find the shadow in it.
     Smooth,
-    /// Each seen pixel tells its own, once the shadow is known.
+    /// Per pixel, once the shadow is fitted.
     Full,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct Inputs<'a> {
 
 /// Of the region's size, where it is needed.
 pub(crate) struct Targets {
-    /// What was photographed; the plate that passes read is completed from it.
+    /// The photographed plate, from which the plate that passes read is completed.
     pub(crate) photographed: Option<Texture>,
 }
 

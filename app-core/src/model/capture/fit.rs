@@ -1,4 +1,4 @@
-//! `fit`: sums of the normal equations of what the real shadow and the real toy tell of the light.
+//! `fit`: sums of the normal equations for receivers, toy and intensities.
 
 use wgpu::BufferUsages;
 
@@ -61,15 +61,15 @@ shared_struct! {
     }
 }
 
-/// What is fitted.
+/// The unknowns of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Subject {
-    /// A receiver: gain, bounce and each light's share.
+    /// A receiver: gain, bounce and each light's direct fraction.
     Receiver = 0,
     /// The toy: ambient light, its gradient and each light's strength.
     Toy = 1,
-    /// The frame's exposure and each light's power.
+    /// The frame's exposure and each light's intensity.
     Intensities = 2,
 }
 
@@ -80,12 +80,12 @@ pub(crate) struct Task {
     /// The receiver that is fitted, for [`Subject::Receiver`].
     pub(crate) receiver: u32,
     pub(crate) n_steps: u32,
-    /// The solution so far is good enough to tell outliers from.
+    /// The solution so far is good enough to down-weight outliers.
     pub(crate) is_refinement: bool,
 }
 
 impl Task {
-    /// What the shaders know of step `index`, for a picture of `exposure_ratio` times the exposure of the one before.
+    /// The uniform of step `index`, for a picture of `exposure_ratio` times the exposure of the one before.
     pub(crate) fn step(&self, plan: &Plan, index: u32, exposure_ratio: f32) -> FitStep {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
         #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
@@ -117,7 +117,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
-/// Rows of sums, one a workgroup and channel.
+/// Rows of sums, one per workgroup and channel.
 pub(crate) struct Targets {
     pub(crate) rows: wgpu::Buffer,
 }

@@ -45,7 +45,7 @@ impl Pass {
         }
     }
 
-    /// Leaves what it finds in the solution, and in the last step of a fit the sums to keep.
+    /// Writes the solution, and in the last step of a fit the accumulated sums.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

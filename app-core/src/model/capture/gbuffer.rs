@@ -28,7 +28,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the normals.
 const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Format of what each light gives.
+/// Format of each light's cosine times its visibility.
 const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 pub(crate) struct Pass {

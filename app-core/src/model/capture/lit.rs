@@ -1,4 +1,4 @@
-//! `lit`: what the receivers look like in the light, pooled on coarse grids.
+//! `lit`: colour of the lit receivers, pooled on coarse grids.
 
 use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;

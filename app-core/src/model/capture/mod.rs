@@ -1,4 +1,4 @@
-//! The capture path: what is learned of one view of the real toy and its real shadow, and how the scene state grows by it.
+//! The capture path: steps that update scene state from one view of the real toy and its real shadow.
 
 pub(crate) mod order;
 pub(crate) mod pool;
@@ -25,17 +25,17 @@ passes!(Plan:
     gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
 );
 
-/// What the capture path makes of one view, all of the region's size.
+/// Targets of the capture path, all of the region's size.
 pub(crate) struct CaptureTargets {
-    /// What light reaches in the physical pose.
+    /// Visibility of the lights in the physical pose.
     pub(crate) light: LightMaps,
-    /// The plate that all passes read, with an estimate where nothing was photographed.
+    /// The plate that all passes read, completed by an estimate.
     pub(crate) plate: Texture,
     pub(crate) by_pass: Targets,
 }
 
 impl CaptureTargets {
-    /// Allocates what `plan` asks for.
+    /// Allocates the resources of `plan`.
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
             light: LightMaps::new(gpu, plan),
@@ -44,13 +44,13 @@ impl CaptureTargets {
         }
     }
 
-    /// Whether `plan`, of a region of the same size, has all that it asks for.
+    /// Whether the targets suffice for `plan`, of a region of the same size.
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some()
     }
 }
 
-/// All that the capture path reads and writes.
+/// Inputs and targets of the capture path.
 pub(crate) struct CapturePath<'a> {
     pub(crate) region: &'a Region,
     pub(crate) captured: &'a CaptureTargets,
@@ -63,7 +63,6 @@ pub(crate) struct CapturePath<'a> {
 }
 
 impl CapturePath<'_> {
-    /// Encodes one step.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         match step {
@@ -118,7 +117,7 @@ impl CapturePath<'_> {
             views: self.pictures.plate_views,
             plates: self.pictures.plates,
         };
-        // Where it is completed afterwards, that is read from what was photographed.
+        // If `estimate` completes the plate, it reads this photographed one.
         let is_completed = estimate::is_needed(&self.region.plan);
         let photographed = self.captured.by_pass.estimate.photographed.as_ref();
         let target = photographed

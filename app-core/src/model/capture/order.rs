@@ -1,4 +1,4 @@
-//! The order of the capture path: what runs is what is planned.
+//! The order of the capture path's steps: the same list is planned and run.
 
 use crate::model::capture::estimate::{self, Fineness};
 use crate::model::capture::fit::{Subject, Task};
@@ -13,11 +13,11 @@ const N_ESTIMATE_ROUNDS: u32 = 3;
 /// One step of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// Forgets all that is known of the place.
+    /// Resets the scene state.
     Forget,
-    /// Forgets what fits and lit colours were summed from.
+    /// Resets the sums of fits and lit colours.
     ForgetSums,
-    /// What light reaches in the physical pose.
+    /// Visibility of the lights in the physical pose.
     Lighting(lighting::Step),
     Gbuffer,
     Validity,
@@ -58,7 +58,7 @@ impl Step {
     }
 }
 
-/// What runs when that much of a frame is new.
+/// The steps that run for `change`.
 pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
     let mut steps = Vec::new();
     match change {
@@ -81,7 +81,7 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
             add_view(&mut steps, plan);
             add_light(&mut steps, plan, true);
             if estimate::is_needed(plan) {
-                // The first guess was pooled with shares that nobody had seen.
+                // The first estimate was pooled with the prior's direct fractions.
                 for _ in 1..N_ESTIMATE_ROUNDS {
                     steps.push(Step::ForgetSums);
                     add_light(&mut steps, plan, true);
@@ -98,7 +98,7 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
     steps
 }
 
-/// What a view shows before anything is learned from it: geometry of the physical pose, and the plate.
+/// Inputs of the fits: geometry of the physical pose, and the plate.
 fn add_view(steps: &mut Vec<Step>, plan: &Plan) {
     steps.extend([
         Step::Lighting(lighting::Step::SelfShadow),
@@ -109,8 +109,8 @@ fn add_view(steps: &mut Vec<Step>, plan: &Plan) {
     steps.push(Step::Plate);
 }
 
-/// The light on each receiver in turn, what the first tells is what the others are expected to be; before it, a smooth
-/// estimate of what plates do not show.
+/// Fits each receiver in turn, the first as prior of the others; before it, a smooth estimate where plates are
+/// missing.
 fn add_light(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
     add_if(steps, lit::is_needed(plan), [Step::Lit, Step::FillLit]);
     add_if(
@@ -122,14 +122,14 @@ fn add_light(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
     steps.extend((0..plan.n_receivers).map(fit));
 }
 
-/// What the light on the receivers makes possible: the estimate in full, and the light on the toy.
+/// Steps that need the receivers' fits: the estimate in full, and the light on the toy.
 fn add_rest_of_fits(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
     add_if(steps, estimate::is_needed(plan), [Step::Estimate(Fineness::Full)]);
     steps.push(fit(plan, Subject::Toy, 0, is_first));
 }
 
-/// The exposure of this picture and the power of each light in it. A jump of the exposure makes every pixel an outlier, so
-/// that weights start anew.
+/// Fits exposure and intensities of this picture. A jump of the exposure makes every pixel an outlier, so that
+/// weights start anew.
 fn fit_intensities(plan: &Plan) -> Step {
     Step::Fit(Task {
         subject: Subject::Intensities,

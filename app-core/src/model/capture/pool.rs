@@ -1,4 +1,4 @@
-//! What `lit` and `residual` share: pooling pictures in the cells of coarse grids.
+//! Pooling of pictures in the cells of coarse grids, for `lit` and `residual`.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
@@ -8,7 +8,7 @@ use crate::gpu::shader::{Part, Shader, part};
 use crate::model::state::grids::CellBuffers;
 use crate::model::state::solution::{SCENE_SLOTS, Scene};
 
-/// Points of a cell, and how a cell grows by them.
+/// Sample points of a cell, and its accumulation.
 pub(crate) const POOL: Part = part!("common/pool");
 /// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
 const WORKGROUPS: u32 = 8;
@@ -17,7 +17,7 @@ pub(crate) struct Pool {
     compute: Compute,
 }
 
-/// Where is pooled.
+/// Grids and cells to pool into.
 pub(crate) struct PoolGrids<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) grids: &'a wgpu::Buffer,
@@ -26,7 +26,7 @@ pub(crate) struct PoolGrids<'a> {
 }
 
 impl Pool {
-    /// The slots begin with the grids, the cells and what is kept of them.
+    /// The slots begin with the grids, the cells and their accumulated sums.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader, slots: &'static [Slot]) -> Self {
         Self {
             compute: gpu.compute(&ComputeSpec {

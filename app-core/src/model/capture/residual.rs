@@ -1,4 +1,4 @@
-//! `residual`: what the model leaves unexplained, pooled on coarse grids.
+//! `residual`: residual of the model, pooled on coarse grids.
 
 use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;

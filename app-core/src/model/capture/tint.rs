@@ -1,4 +1,4 @@
-//! `tint`: what the toy's visible surface tells of its paint, summed in cells.
+//! `tint`: shown and expected colours of the toy's visible paint, summed in cells.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
@@ -24,7 +24,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &TINT_CELL,
     &part!("capture/tint"),
 ]);
-/// The stride, in region pixels, at which a pixel is taken; then the grid, the sums and what they are of.
+/// The sampling stride, in region pixels; then the grid, the sums and their inputs.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<u32>(),
     Slot::uniform::<TintGrid>(),
@@ -62,7 +62,7 @@ impl Pass {
         }
     }
 
-    /// Sums what a frame shows of the toy.
+    /// Sums the shown and expected colours of a frame.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, tints: &Tints) {
         recorder.clear(&tints.sums);
         let gbuffer = inputs.gbuffer;

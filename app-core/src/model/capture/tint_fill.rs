@@ -1,4 +1,4 @@
-//! `tint_fill`: how the real toy's paint differs from its model's, also where no camera has seen it.
+//! `tint_fill`: tints of the toy's paint, filled where no camera has seen it.
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
@@ -34,7 +34,7 @@ impl Pass {
         }
     }
 
-    /// Adds the sums of a frame to what is known, and fills every cell.
+    /// Accumulates the sums of a frame, and fills every cell.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, tints: &Tints) {
         let buffers = [&tints.sums, &tints.accumulated, &tints.cells];
         let own = recorder.bind(&self.compute, GROUP_PASS, &buffers.map(Into::into));

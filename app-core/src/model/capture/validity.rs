@@ -1,4 +1,4 @@
-//! `validity`: which pixels of the frame show the receiver alone, and which one surface of the toy.
+//! `validity`: mask of the pixels that show the receiver alone, and of those that show one surface of the toy.
 
 use wgpu::TextureFormat;
 
@@ -13,7 +13,7 @@ use crate::passes::parts::{DEPTH, FULLSCREEN};
 
 pub(crate) const SHADER: Shader = Shader::new(&[&DEPTH, &FULLSCREEN, &part!("capture/validity")]);
 const SLOTS: &[Slot] = &[Slot::Depth];
-/// Format of the marks: r for the receiver, g for the toy, b for the receiver well clear of the toy.
+/// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Pass {

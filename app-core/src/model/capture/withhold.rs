@@ -1,4 +1,4 @@
-//! `withhold`: evidence without the real shadow, for measuring how well that is rebuilt.
+//! `withhold`: validity mask without the real shadow, to measure its reconstruction.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
@@ -23,7 +23,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 ]);
 const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture, Slot::Filtered, Slot::Sampler];
 
-/// Only where that is asked for.
+/// Only on request.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_shadow_withheld
 }
@@ -40,7 +40,7 @@ pub(crate) struct Inputs<'a> {
 
 /// Of the region's size, where it is needed.
 pub(crate) struct Targets {
-    /// The marks as they were.
+    /// The mask with the real shadow.
     all: Option<Texture>,
 }
 
@@ -66,7 +66,7 @@ impl Pass {
         }
     }
 
-    /// Takes the real shadow out of the marks.
+    /// Clears the mask in the real shadow.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

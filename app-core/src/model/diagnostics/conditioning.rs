@@ -1,8 +1,8 @@
-//! How far each light's strength is told by the real shadow rather than assumed.
+//! Conditioning of each light's direct fraction: how far the real shadow, rather than the prior, decides it.
 //!
-//! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums over what was seen. The diagonal of its
-//! resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that the sums alone decide and 0 for one that is as assumed:
-//! of two lights whose shadows always fall together just their sum is told.
+//! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums of the normal equations. The diagonal
+//! of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that the sums alone decide and 0 for one that
+//! the prior decides: of two lights whose shadows always fall together just the sum is constrained.
 //!
 //! Source: Backus and Gilbert 1968 (resolution of an inverse problem).
 
@@ -11,8 +11,8 @@ use crate::scene::MAX_RECEIVERS;
 
 type Matrix = [[f64; N_COLUMNS]; N_COLUMNS];
 
-/// Of each light the most that any receiver tells, in the mean over channels, from 0 to 1. `sums` are those that the fits
-/// keep.
+/// Resolution of each light, from 0 to 1: the largest of the receivers' means over channels. `sums` are the
+/// accumulated sums of the fits.
 #[must_use]
 pub fn light_conditioning(sums: &[f32], n_lights: usize) -> Vec<f64> {
     let mut most = vec![0.0_f64; n_lights];
@@ -29,7 +29,7 @@ pub fn light_conditioning(sums: &[f32], n_lights: usize) -> Vec<f64> {
     most
 }
 
-/// Of each column; nothing is told where nothing was seen.
+/// Resolution of each column; 0 without any pixel.
 fn channel_resolution(sums: &[f32], n_columns: usize) -> [f64; N_COLUMNS] {
     let energy = f64::from(sums[0]);
     if energy <= 0.0 {

@@ -1,4 +1,4 @@
-//! What the scene state tells of itself: how far it is constrained, and what the model cannot explain.
+//! Diagnostics of the scene state: conditioning of the fits, and outliers of the model.
 
 pub(crate) mod conditioning;
 pub(crate) mod outliers;

@@ -1,20 +1,19 @@
-//! What the camera sees and the model cannot explain: a thing that the plate does not have, or the shadow of a light that
-//! is not listed.
+//! Outliers of the model: an object that the plate does not have, or the shadow of a light that is not listed.
 
 use crate::frame::warning::Outlier;
 
-/// Pooled residual, in plates, from which `composite` begins to leave what the camera saw: enough to tell of a shadow.
+/// Pooled residual, in plates, from which `composite` begins to keep the camera's pixels: enough to report a shadow.
 pub const OUTLIER_NONE: f32 = 0.15;
-/// Pooled residual from which it leaves that in full.
+/// Pooled residual from which it keeps them in full.
 pub const OUTLIER_ALL: f32 = 0.3;
-/// Least over most of a residual's channels, from which `composite` takes it for a shadow.
+/// Least over most of a residual's channels, from which `composite` classifies it as a shadow.
 pub const SHADOW_EVENNESS: f32 = 0.4;
-/// How well a cell must be known to count, of 1 a frame.
+/// Minimum certainty of a cell, of 1 per frame.
 const LEAST_CERTAINTY: f32 = 0.5;
-/// Fewer cells than this are an edge that is a little off.
+/// Minimum number of cells; fewer are a slightly misplaced edge.
 const FEWEST_CELLS: usize = 4;
 
-/// What the sums of a receiver's cells tell: each residual times its certainty, and the certainty.
+/// Outliers in a receiver's cells, which hold residual times certainty, and certainty.
 #[must_use]
 pub fn outliers(accumulated: &[[f32; 4]]) -> Vec<Outlier> {
     let known = accumulated.iter().filter(|cell| cell[3] >= LEAST_CERTAINTY);

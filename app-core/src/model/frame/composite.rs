@@ -65,7 +65,7 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// What is known of the light on one pose.
+/// Visibility maps of one pose.
 #[derive(Clone, Copy)]
 pub(crate) struct Light<'a> {
     pub(crate) visibility: &'a wgpu::TextureView,
@@ -84,14 +84,14 @@ pub(crate) struct Inputs<'a> {
     pub(crate) coverage: &'a wgpu::TextureView,
     pub(crate) toy: &'a toy::Targets,
     pub(crate) moved_mask: &'a wgpu::TextureView,
-    /// Each pixel's own residual; without it that is what the frame shows.
+    /// Each pixel's own residual; without it the frame's own pixels serve.
     pub(crate) detail: Option<&'a wgpu::TextureView>,
 }
 
 /// Of the region's size.
 pub(crate) struct Targets {
     pub(crate) picture: Texture,
-    /// Its codes, not decoded.
+    /// View of its sRGB codes, not decoded.
     pub(crate) codes: wgpu::TextureView,
 }
 
@@ -137,7 +137,7 @@ impl Pass {
             toy_3.into(),
             (&inputs.toy.moved.view).into(),
             inputs.moved_mask.into(),
-            // Not read where there is none.
+            // A placeholder that is not read where there is none.
             inputs.detail.unwrap_or(inputs.plate).into(),
             inputs.coverage.into(),
             Resource::PerUse,

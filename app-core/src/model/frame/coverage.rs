@@ -1,4 +1,4 @@
-//! `coverage`: how much of each pixel the posed toy covers, from many positions, in one pass.
+//! `coverage`: fraction of each pixel that the posed toy covers, from many positions, in one pass.
 
 use wgpu::{CompareFunction, Face, VertexFormat};
 
@@ -13,14 +13,14 @@ use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
 use crate::passes::toy_mesh::ToyMesh;
 
-/// How covered positions of a pixel are counted.
+/// Counting of a pixel's covered positions.
 pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
 pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BEHIND, &COVERED, &part!("frame/coverage")]);
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Positions within a pixel that the toy's coverage is counted over. RMS error of the area that a straight edge of any
 /// direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
 pub(crate) const N_POSITIONS: u32 = 32;
-/// What each covered one adds, in codes of eight bits.
+/// Increment per covered position, in 8-bit codes.
 pub(crate) const COVERED_CODES: u32 = 7;
 
 pub(crate) struct Pass {

@@ -17,7 +17,7 @@ passes!(Plan: moved_mask, toy, coverage, composite);
 /// One step of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// What light reaches in the shown pose.
+    /// Visibility of the lights in the shown pose.
     Lighting(lighting::Step),
     MovedMask,
     Toy,
@@ -38,7 +38,7 @@ impl Step {
     }
 }
 
-/// What runs for every frame.
+/// The steps that run for every frame.
 pub(crate) fn order(plan: &Plan) -> Vec<Step> {
     lighting::Step::visibilities(plan)
         .chain([lighting::Step::SelfShadow])
@@ -47,15 +47,15 @@ pub(crate) fn order(plan: &Plan) -> Vec<Step> {
         .collect()
 }
 
-/// What the frame path makes, all of the region's size.
+/// Targets of the frame path, all of the region's size.
 pub(crate) struct FrameTargets {
-    /// What light reaches in the shown pose.
+    /// Visibility of the lights in the shown pose.
     pub(crate) light: LightMaps,
     pub(crate) by_pass: Targets,
 }
 
 impl FrameTargets {
-    /// Allocates what `plan` asks for.
+    /// Allocates the resources of `plan`.
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
             light: LightMaps::new(gpu, plan),
@@ -64,7 +64,7 @@ impl FrameTargets {
     }
 }
 
-/// All that the frame path reads and writes.
+/// Inputs and targets of the frame path.
 pub(crate) struct FramePath<'a> {
     pub(crate) region: &'a Region,
     pub(crate) captured: &'a CaptureTargets,
@@ -77,7 +77,6 @@ pub(crate) struct FramePath<'a> {
 }
 
 impl FramePath<'_> {
-    /// Encodes one step.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
         let (passes, of) = (self.passes, &self.drawn.by_pass);
         match step {

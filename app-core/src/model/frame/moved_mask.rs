@@ -1,4 +1,4 @@
-//! `moved_mask`: where the surface that the camera saw of the real toy is no longer in its place.
+//! `moved_mask`: where the visible surface of the real toy has moved in the shown pose.
 
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
@@ -16,16 +16,16 @@ use crate::passes::toy_mesh::ToyMesh;
 pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &MOVED, &BEHIND, &part!("frame/moved_mask")]);
 /// Both poses: the physical one is drawn.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
-/// Format of what has moved, as part of a pixel.
+/// Format of the mask, a fraction of each pixel.
 pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// What is thinner than a pixel counts as well.
+/// Multisampling, so that parts thinner than a pixel count as well.
 const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Of the region's size: two multisampled ones that stay on the chip, and what has moved.
+/// Of the region's size: two multisampled ones that are never stored, and the mask.
 pub(crate) struct Targets {
     samples: Texture,
     depth: Texture,

@@ -1,4 +1,5 @@
-//! What light reaches in a pose: points over the lights, the passes that draw from them, and the maps that come of it.
+//! Visibility of the lights in a pose: points over the lights, the passes that draw from them, and the resulting
+//! maps.
 
 use glam::Vec4;
 
@@ -15,7 +16,7 @@ use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 
 passes!(occlusion, visibility, self_shadow);
 
-/// One step on the way to what light reaches.
+/// One step of the visibility of lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// The toy's shadow on itself.
@@ -27,7 +28,7 @@ pub(crate) enum Step {
 }
 
 impl Step {
-    /// Those that give the visibilities of a plan's lights.
+    /// The steps that compute the visibilities of a plan's lights.
     pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
         (0..plan.lights.len()).map(Self::Light).chain([Self::Ambient])
     }
@@ -41,11 +42,11 @@ impl Step {
     }
 }
 
-/// What light reaches in one pose.
+/// Visibility and self-shadow maps of one pose.
 pub(crate) struct LightMaps {
     pub(crate) visibility: visibility::Targets,
     pub(crate) self_shadow: self_shadow::Targets,
-    /// Replaces what the passes make of the lights.
+    /// Replaces the visibility of the lights that the passes compute.
     pub(crate) injected: Option<Texture>,
 }
 
@@ -59,7 +60,7 @@ impl LightMaps {
     }
 }
 
-/// Points over the lights, directions of the ambient light, and what is counted from them.
+/// Points over the lights, directions of the ambient light, and the targets that count them.
 pub(crate) struct Lighting {
     lights: Vec<LightPointsBuffer>,
     ambient: LightPointsBuffer,
@@ -68,7 +69,7 @@ pub(crate) struct Lighting {
     occlusion: occlusion::Targets,
 }
 
-/// A toy in a pose, as a view has it.
+/// A toy in a pose, in a view.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a> {
     pub(crate) globals: &'a wgpu::Buffer,

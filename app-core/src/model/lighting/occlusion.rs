@@ -18,7 +18,7 @@ use crate::passes::parts::FLATTEN;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::scene::MAX_RECEIVERS;
 
-/// What one hidden light point adds.
+/// Increment per hidden light point.
 pub(crate) const HIDDEN: Part = part!("common/hidden");
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -28,7 +28,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Most light points of one pass: each adds three codes, and 255 is the last.
+/// Maximum number of light points of one pass: each adds three codes, and 255 is the last.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
 
 shared_struct! {
@@ -42,8 +42,8 @@ shared_struct! {
 }
 
 impl LightPoints {
-    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are 4 or a multiple of 16, up to 64, in the
-    /// space of the first receiver, then those of the next.
+    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are 4 or a multiple of 16, up to
+    /// 64, in the space of the first receiver, then those of the next.
     fn new(points: &[Vec4], n_points: u32, (size_px, region_px): (UVec2, UVec2)) -> Self {
         let mut light_points = Self {
             points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
@@ -62,7 +62,7 @@ impl LightPoints {
 pub(crate) struct LightPointsBuffer {
     /// Those in the space of the first receiver, then those of the next.
     pub(crate) points: Vec<Vec4>,
-    /// Points of the light; each is in `points` once a receiver.
+    /// Points of the light; each is in `points` once per receiver.
     pub(crate) n_points: u32,
     /// Size of the maps and of the region, in texels and pixels.
     sizes: (UVec2, UVec2),
@@ -70,7 +70,7 @@ pub(crate) struct LightPointsBuffer {
 }
 
 impl LightPointsBuffer {
-    /// For maps of so many texels over a region of so many pixels.
+    /// `sizes` are those of the maps, in texels, and of the region, in pixels.
     pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, sizes: (UVec2, UVec2)) -> Self {
         let n_points = u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1);
         Self {
@@ -90,13 +90,13 @@ impl LightPointsBuffer {
         self.points = points;
     }
 
-    /// The points in stage space, which is that of the first receiver.
+    /// The points in anchor space, which is that of the first receiver.
     pub(crate) fn in_anchor(&self) -> &[Vec4] {
         &self.points[..self.n_points as usize]
     }
 }
 
-/// What hides how many points: all lights use the same, one after the other.
+/// Counts of hidden points: all lights use the same target, one after the other.
 pub(crate) struct Targets {
     pub(crate) lights: CountingTargets,
     pub(crate) ambient: CountingTargets,
@@ -113,11 +113,11 @@ impl Targets {
 
 pub(crate) struct Pass {
     cover: Draw,
-    /// Shuts out pixels that show another receiver, where there are several.
+    /// Masks pixels that show another receiver, where there are several.
     route: Draw,
 }
 
-/// A posed toy, and the points of a light that it hides.
+/// A posed toy, and the points of a light whose occlusion is tested.
 pub(crate) struct Inputs<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
     pub(crate) n_receivers: u32,
@@ -150,7 +150,7 @@ impl Pass {
         }
     }
 
-    /// Draws the caster from the light's points on each receiver, and leaves what hidden points add up to.
+    /// Draws the caster from the light's points on each receiver, and counts the hidden points in the target.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
         let groups = [
             recorder.bind(&self.cover, GROUP_SCENE, &[inputs.globals.into()]),
@@ -173,7 +173,7 @@ impl Pass {
 }
 
 impl Inputs<'_> {
-    /// What to draw of the toy, of which only triangles that face the light are seen.
+    /// Range of indices to draw, of which triangles that face away from the light are culled.
     fn triangles(&self) -> Range<u32> {
         let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
         let is_any = self.light.in_anchor().iter().any(is_within);

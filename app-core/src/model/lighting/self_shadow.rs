@@ -17,7 +17,7 @@ use crate::passes::globals::GLOBALS;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use crate::scene::MAX_LIGHTS;
 
-/// How the toy's surface is lit.
+/// Cosine of the toy's surface to a light.
 pub(crate) const TOY_LIGHT: Part = part!("common/toy_light");
 /// The maps, for passes that read them.
 pub(crate) const SELF_SHADOW_MAPS: Part =
@@ -30,12 +30,12 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 ]);
 /// Group of the maps, in this pass and where they are read.
 pub(crate) const GROUP_SELF_SHADOW: usize = 3;
-/// What the group holds where the maps are read.
+/// Slots of the group where the maps are read.
 pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>(), Slot::Depth, Slot::Comparison];
 /// And where they are drawn.
 const TILES_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Most depth maps of the toy from the lights.
+/// Maximum number of depth maps of the toy from the lights.
 pub(crate) const MAX_TILES: usize = 64;
 
 shared_struct! {
@@ -49,7 +49,7 @@ shared_struct! {
 }
 
 impl SelfShadow {
-    /// The tiles over a toy within `toy`. `light_points` are those of each light, in stage space.
+    /// The tiles over a toy within `toy`. `light_points` are those of each light, in anchor space.
     #[must_use]
     pub fn new(atlas: &ShadowAtlas, light_points: &[&[Vec4]], toy: &Sphere) -> Self {
         let mut uniform: Self = bytemuck::Zeroable::zeroed();
@@ -85,7 +85,7 @@ impl Targets {
         }
     }
 
-    /// What [`SELF_SHADOW_GROUP`] holds.
+    /// Resources of [`SELF_SHADOW_GROUP`].
     pub(crate) fn resources<'a>(&'a self, gpu: &'a Gpu) -> [Resource<'a>; 3] {
         [
             (&self.tiles).into(),
@@ -103,7 +103,7 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
-    /// Those of each light, in stage space.
+    /// Those of each light, in anchor space.
     pub(crate) light_points: &'a [&'a [Vec4]],
     pub(crate) atlas: &'a ShadowAtlas,
 }

@@ -1,4 +1,4 @@
-//! `visibility`: visibility of a light from the light points that `occlusion` found hidden.
+//! `visibility`: visibility of a light from the hidden light points that `occlusion` counted.
 
 use wgpu::{ColorTargetState, ColorWrites, TextureFormat};
 
@@ -14,7 +14,7 @@ use crate::passes::parts::FULLSCREEN;
 use crate::scene::MAX_LIGHTS;
 
 pub(crate) const SHADER: Shader = Shader::new(&[&FULLSCREEN, &HIDDEN, &part!("lighting/visibility")]);
-/// The number of light points that were drawn, and those that are hidden.
+/// The number of light points that were drawn, and the map of hidden ones.
 const SLOTS: &[Slot] = &[Slot::per_use::<u32>(), Slot::Texture];
 const CHANNELS: [ColorWrites; MAX_LIGHTS] = [
     ColorWrites::RED,
@@ -28,17 +28,17 @@ pub(crate) struct Pass {
     draws: Vec<(TextureFormat, Vec<Draw>)>,
 }
 
-/// The light points that are hidden from each texel, of those that were drawn.
+/// Counts of hidden light points per texel, and the number that was drawn.
 pub(crate) struct Inputs<'a> {
     pub(crate) hidden: &'a wgpu::TextureView,
     pub(crate) n_points: u32,
 }
 
-/// What light reaches in one pose.
+/// Visibility maps of one pose.
 pub(crate) struct Targets {
-    /// A channel a light.
+    /// One channel per light.
     pub(crate) lights: Texture,
-    /// At a part of the resolution.
+    /// At a fraction of the resolution.
     pub(crate) ambient: Texture,
 }
 

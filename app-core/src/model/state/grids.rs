@@ -1,4 +1,4 @@
-//! Coarse grids over the receivers, and the buffers of what is known in them.
+//! Coarse grids over the receivers, and the buffers of their cells.
 
 use wgpu::BufferUsages;
 
@@ -8,17 +8,17 @@ use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
 use crate::scene::MAX_RECEIVERS;
 
-/// The WGSL that declares it.
+/// WGSL part of the grids.
 pub(crate) const GRID: Part = part!("common/grid", structs: [Grid, Grids], constants: [MAX_CELLS]);
-/// Most cells of a receiver's grid, at its finest level.
+/// Maximum number of cells of a receiver's grid, at its finest level.
 pub const MAX_CELLS: usize = 64 * 64;
 /// Bytes of one cell.
 const CELL_BYTES: u64 = 16;
 /// Levels of the pyramid: 64 cells halve to one in six steps.
 const N_LEVELS: usize = 7;
-/// Most cells of a grid along a side.
+/// Maximum number of cells of a grid along a side.
 const MAX_SIDE_CELLS: u32 = 64;
-/// What a grid reaches beyond its rectangle on each side, relative: another clip reaches a little farther.
+/// Relative margin of a grid around its rectangle on each side: another clip reaches a little farther.
 const SPARE: f64 = 0.1;
 /// Size of the grid over a receiver that nothing reaches: one over anything else has a longer side.
 const UNREACHED: [u32; 2] = [1, 1];
@@ -95,7 +95,7 @@ pub(crate) struct CellBuffers {
 }
 
 impl CellBuffers {
-    /// Nothing known.
+    /// Zeroed.
     pub(crate) fn new(gpu: &Gpu, label: &str, grids: &Grids) -> Self {
         let n_cells: u32 = grids.grids.iter().map(|grid| n_pyramid_cells(grid.size)).sum();
         let usage = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
@@ -107,7 +107,7 @@ impl CellBuffers {
     }
 }
 
-/// Whether anything reaches a receiver, over more than a point.
+/// Whether toy or shadows reach a receiver, over more than a point.
 fn is_reached(rect: &PlaneRect) -> bool {
     let longest_m = (rect.max - rect.min).max_element();
     longest_m.is_finite() && longest_m > 0.0
@@ -119,7 +119,7 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
     grids.grids.iter().zip(rects).all(|(grid, rect)| {
         let origin = glam::Vec2::from(grid.origin_in_plane).as_dvec2();
         let size = glam::UVec2::from(grid.size).as_dvec2() * f64::from(grid.cell_m);
-        // A cell more or less is of no account: what lies beyond takes the value at the border.
+        // A tolerance of one cell: points beyond the grid take the value at its border.
         let slack = f64::from(grid.cell_m);
         let is_laid = grid.size != UNREACHED;
         !is_reached(rect)

@@ -1,4 +1,4 @@
-//! What is learned of a place and of the real toy, in whatever view: it stays when the camera moves.
+//! Scene state, accumulated over the views of a scene and its real toy: independent of the camera.
 
 pub(crate) mod grids;
 pub(crate) mod solution;
@@ -13,13 +13,13 @@ use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::accumulated_bytes;
 use crate::model::state::tints::Tints;
 
-/// Fits, residuals, lit colours and tints, with what they are summed from.
+/// Fits, residuals, lit colours and tints, with their accumulated sums.
 pub(crate) struct SceneState {
-    /// What the fit found.
+    /// Solution of the fits.
     pub(crate) solution: wgpu::Buffer,
-    /// Sums of the fits so far.
+    /// Accumulated sums of the fits.
     pub(crate) fit_sums: wgpu::Buffer,
-    /// What `grids` holds.
+    /// Contents of `grids`.
     pub(crate) layout: Grids,
     pub(crate) grids: wgpu::Buffer,
     pub(crate) residual: CellBuffers,
@@ -29,7 +29,7 @@ pub(crate) struct SceneState {
 }
 
 impl SceneState {
-    /// Nothing known, on `grids`, of a toy of so many materials within a ball.
+    /// Zeroed, but for the solution to start from: on `grids`, of a toy of so many materials within a ball.
     pub(crate) fn new(
         gpu: &Gpu,
         grids: Grids,
@@ -56,7 +56,7 @@ impl SceneState {
         }
     }
 
-    /// Forgets everything, so that nothing of what was wrong is left.
+    /// Resets everything, so that no wrong value is left.
     pub(crate) fn forget(&self, recorder: &mut Recorder<'_>) {
         recorder
             .gpu
@@ -66,7 +66,7 @@ impl SceneState {
         self.forget_sums(recorder);
     }
 
-    /// Forgets what fits and lit colours were summed from, and keeps what they found.
+    /// Resets the sums of fits and lit colours, and keeps their solutions.
     pub(crate) fn forget_sums(&self, recorder: &mut Recorder<'_>) {
         recorder.clear(&self.fit_sums);
         recorder.clear(&self.lit.accumulated);

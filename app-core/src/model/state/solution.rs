@@ -1,4 +1,4 @@
-//! What the fits found, and the sums that they are solved from.
+//! The solution of the fits, and the sums that it is solved from.
 
 use crate::gpu::bindings::{Resource, Slot};
 use crate::gpu::shader::{Part, part};
@@ -6,12 +6,12 @@ use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
 use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
-/// The WGSL that declares it.
+/// WGSL part of the solution.
 pub(crate) const FIT: Part = part!("common/fit", structs: [ReceiverFit, Fit], constants: [N_COLUMNS]);
-/// What the model's passes share: the globals and the fit.
+/// Slots that the model's passes share: the globals and the fit.
 pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::Read];
 
-/// Most unknowns of a fit: two, and one a light.
+/// Maximum number of unknowns of a fit: two, and one per light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 /// Sums of a fit in one channel: the upper triangle of the normal equations row by row, and their right-hand side.
 pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
@@ -19,9 +19,9 @@ pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
 pub(crate) const N_CHANNELS: usize = 3;
 /// Weight of the fit's priors against the energy of its first column.
 pub(crate) const PRIOR_WEIGHT: f32 = 1e-4;
-/// What the fit takes a toy to throw back until it knows better.
+/// Prior of the toy's bounce.
 pub(crate) const PRIOR_BOUNCE: f32 = 0.27;
-/// What the fit takes all lights' shares to sum to until it knows better.
+/// Prior of the sum of all lights' direct fractions.
 pub(crate) const PRIOR_DIRECT_FRACTION: f32 = 0.5;
 
 shared_struct! {
@@ -43,7 +43,7 @@ shared_struct! {
     }
 }
 
-/// What [`SCENE_SLOTS`] hold.
+/// Resources of [`SCENE_SLOTS`].
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) globals: &'a wgpu::Buffer,
@@ -56,7 +56,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// A solution to start from, which also stands where a frame gives no evidence at all.
+/// The solution to start from, which also stands where a frame has no valid pixel.
 pub(crate) fn start(n_lights: usize) -> Fit {
     #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
     let direct_fraction = PRIOR_DIRECT_FRACTION / n_lights.max(1) as f32;
@@ -76,7 +76,7 @@ pub(crate) fn start(n_lights: usize) -> Fit {
     fit
 }
 
-/// Bytes of the sums that are kept: for each receiver and the toy.
+/// Bytes of the accumulated sums: for each receiver and the toy.
 pub(crate) const fn accumulated_bytes() -> u64 {
     (size_of::<f32>() * N_FIT_SUMS * N_CHANNELS * (MAX_RECEIVERS + 1)) as u64
 }

@@ -1,4 +1,4 @@
-//! The tints of the toy's paint: how it differs from that of its model.
+//! The tints of the toy's paint: its ratio to that of the model.
 
 use wgpu::BufferUsages;
 
@@ -7,12 +7,12 @@ use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
 
-/// The grids.
+/// WGSL part of the grids.
 pub(crate) const TINT_GRID: Part = part!("common/tint_grid", structs: [TintGrid]);
-/// Their cells.
+/// WGSL part of their cells.
 pub(crate) const TINT_CELL: Part =
     part!("common/tint_cells", constants: [TINT_SIDE, TINT_CELLS, N_TINT_SUMS]);
-/// Trilinear values between cells.
+/// Trilinear interpolation between cells.
 pub(crate) const BETWEEN_TINTS: Part = part!("common/between_tints", constants: [TINT_PYRAMID]);
 
 /// Cells of a grid of tints along each side.
@@ -27,7 +27,7 @@ pub(crate) const N_TINT_SUMS: usize = 7;
 const MAX_GRIDS: usize = 8;
 
 shared_struct! {
-    /// Where the cells lie: in cubes around all of the physical toy.
+    /// Layout of the cells: cubes around all of the physical toy.
     pub struct TintGrid {
         pub corner_in_anchor: [f32; 3],
         pub cell_m: f32,
@@ -37,10 +37,10 @@ shared_struct! {
     }
 }
 
-/// How the real toy's paint differs from its model's.
+/// Tints of the real toy's paint, relative to its model's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TintMap {
-    /// Where the cells lie.
+    /// Layout of the cells.
     pub grid: TintGrid,
     /// For each material that has a grid, the tint of its cells, x fastest, then y; alpha is 1.
     pub materials: Vec<Vec<[f32; 4]>>,
@@ -53,14 +53,14 @@ pub(crate) struct Tints {
     pub(crate) cells: wgpu::Buffer,
     /// Sums of one frame.
     pub(crate) sums: wgpu::Buffer,
-    /// Sums of the finest cells over the frames so far.
+    /// Accumulated sums of the finest cells.
     pub(crate) accumulated: wgpu::Buffer,
-    /// What `grid` holds.
+    /// Contents of `grid`.
     pub(crate) layout: TintGrid,
 }
 
 impl Tints {
-    /// Nothing known of a toy within `around`.
+    /// Zeroed, of a toy within `around`.
     pub(crate) fn new(gpu: &Gpu, around: &Sphere, n_materials: usize) -> Self {
         let n_grids = n_materials.clamp(1, MAX_GRIDS);
         let layout = tint_grid(around, n_grids);
@@ -79,7 +79,7 @@ impl Tints {
         }
     }
 
-    /// Lays the grids around the toy in another place; what they hold is to be forgotten.
+    /// Moves the grids to another position of the toy; their contents are then to be reset.
     pub(crate) fn surround(&mut self, gpu: &Gpu, around: &Sphere) {
         self.layout = tint_grid(around, self.layout.n_materials as usize);
         gpu.write(&self.grid, &[self.layout]);

@@ -1,4 +1,4 @@
-//! From `capture.json` as written to a capture whose values are checked.
+//! From the records of `capture.json` to a capture of checked values.
 
 use std::sync::{Arc, Mutex};
 
@@ -19,7 +19,7 @@ const MAX_SIDE_PX: f64 = 16384.0;
 /// Pixels of one picture: four times those of a 4K camera.
 const MAX_PICTURE_PIXELS: u64 = 1 << 25;
 
-/// Checks every value, then reads what all frames share: the toy, the plates, the probe.
+/// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.
 pub(super) fn capture_from_record(
     files: Box<dyn Files>,
     record: CaptureRecord,
@@ -114,7 +114,7 @@ fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {
         .collect()
 }
 
-/// Finds the clip and brings the time into it, with a warning where it had to be moved.
+/// Finds the clip and clamps the time to it, with a warning where it had to be changed.
 fn pose(
     toy: &Toy,
     field: &str,
@@ -147,7 +147,7 @@ fn pose(
     })
 }
 
-/// What a frame has unless it brings its own.
+/// Values of a frame that does not bring its own.
 struct Defaults {
     intrinsics: Intrinsics,
     world_from_object: DMat4,

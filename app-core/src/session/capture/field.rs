@@ -1,11 +1,11 @@
-//! Where in `capture.json` something stands, for the errors.
+//! Paths of fields in `capture.json`, for the errors.
 
 use crate::scene::FieldError;
 use crate::session::error::{SessionError, SessionErrorKind};
 use crate::session::files::{FileError, Files, check_path};
 
 pub(super) const INDEX_FILE: &str = "capture.json";
-/// Stands in the place of a field when no single one is at fault.
+/// Path that is given when no single field is at fault.
 pub(super) const WHOLE_FILE: &str = "the whole file";
 
 /// Refuses a bad path at once, before the file is asked for.
@@ -27,7 +27,7 @@ pub(super) fn at<T>(field: &str, checked: Result<T, FieldError>) -> Result<T, Se
     checked.map_err(|error| in_index(field, error))
 }
 
-/// Converts a list, telling each entry its path.
+/// Converts a list, passing each entry its path.
 pub(super) fn each<R, T>(
     field: &str,
     records: &[R],

@@ -1,4 +1,4 @@
-//! The place itself, from `capture.json`: camera, receivers, lights, plates, probe.
+//! The scene, from `capture.json`: camera, receivers, lights, plates, probe.
 
 use std::collections::HashMap;
 use std::sync::Arc;

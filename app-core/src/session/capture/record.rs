@@ -1,8 +1,8 @@
-//! `capture.json` as it is written; what the values mean is checked afterwards.
+//! The records of `capture.json`; their values are checked afterwards.
 
 use serde::Deserialize;
 
-/// The part that tells whether the rest can be understood at all.
+/// Format and version, which decide whether the rest can be read at all.
 #[derive(Deserialize)]
 pub(super) struct Header {
     pub(super) format: String,
@@ -100,7 +100,7 @@ pub(super) struct FrameRecord {
     pub(super) image: String,
     /// Those of the session where there are none.
     pub(super) intrinsics: Option<IntrinsicsRecord>,
-    /// Where the toy stands, if it was moved since the session began.
+    /// Transform of the toy, if it was moved since the session began.
     pub(super) world_from_object: Option<[f64; 16]>,
     /// Exposure of the picture, relative to that of the other frames.
     pub(super) exposure: Option<f64>,
