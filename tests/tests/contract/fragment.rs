@@ -60,7 +60,10 @@ fn structs_in(
     output: Option<Handle<Type>>,
 ) -> Vec<String> {
     let output = output.map(|ty| &module.types[ty].inner);
-    let values = function.expressions.iter().map(|(handle, _)| info[handle].ty.inner_with(&module.types));
+    let values = function
+        .expressions
+        .iter()
+        .map(|(handle, _)| info[handle].ty.inner_with(&module.types));
     let is_struct = |inner: &&TypeInner| matches!(inner, TypeInner::Struct { .. }) && Some(*inner) != output;
     let mut problems = Vec::new();
     if values.filter(is_struct).count() > 0 {

@@ -231,15 +231,32 @@ fn structs_in_fragment_shaders_are_found() {
         )
     };
     assert_eq!(problems(&shader("return a;"), &[]), Vec::<String>::new());
-    let values = ["return pair(a).b;", "return Pair(a, a).b;", "let p = Pair(); return p.a;"];
+    let values = [
+        "return pair(a).b;",
+        "return Pair(a, a).b;",
+        "let p = Pair(); return p.a;",
+    ];
     for body in values {
         assert_found(&problems(&shader(body), &[]), &["a struct as a value"], body);
     }
-    for body in ["var p: Pair; return p.a;", "var p: array<Pair, 2>; return p[1].a;"] {
-        assert_found(&problems(&shader(body), &[]), &["sum: a struct as a variable"], body);
+    for body in [
+        "var p: Pair; return p.a;",
+        "var p: array<Pair, 2>; return p[1].a;",
+    ] {
+        assert_found(
+            &problems(&shader(body), &[]),
+            &["sum: a struct as a variable"],
+            body,
+        );
     }
-    let input = shader("return a;").replace("(@builtin(position) at: vec4f)", "(in: In)").replace("at.x", "in.at.x");
-    assert_found(&problems(&input, &[]), &["fs_sum: a struct as a variable"], "an input");
+    let input = shader("return a;")
+        .replace("(@builtin(position) at: vec4f)", "(in: In)")
+        .replace("at.x", "in.at.x");
+    assert_found(
+        &problems(&input, &[]),
+        &["fs_sum: a struct as a variable"],
+        "an input",
+    );
 }
 
 #[test]

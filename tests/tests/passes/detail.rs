@@ -89,12 +89,12 @@ fn a_fault_in_the_separation_is_found() {
         ("DETAIL: f32 = 0.08", "DETAIL: f32 = 0.09"),
         ("SHADOW: f32 = 0.85", "SHADOW: f32 = 0.8"),
         ("LIT: f32 = 0.98", "LIT: f32 = 0.95"),
-        (".receiver != ", ".receiver + 9u == "),
+        ("(point) != ", "(point) + 9u == "),
         ("0).r == 0.0", "0).b == 0.0"),
         (".a < 1.0", ".a < 0.0"),
         ("DARKEST_USABLE: f32 = 0.00303527", "DARKEST_USABLE: f32 = 0.0"),
         ("largest(abs(", "smallest(abs("),
-        (".model);", ".model.bbb);"),
+        ("largest(add_own(", "smallest(add_own("),
     ];
     check_faults("detail", &faults, ALLOWED, errors);
 }

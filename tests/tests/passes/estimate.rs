@@ -144,7 +144,7 @@ fn a_fault_in_the_completion_is_found() {
         ("0).b == 0.0", "0).r == 0.0"),
         (".a == 1.0 ||", ".a > 0.0 ||"),
         ("!IS_FINAL ||", ""),
-        (".cell_m - 0.5", ".cell_m"),
+        ("_cells - 0.5", "_cells"),
         ("+ vec2u(globals.region_origin_px)", ""),
     ];
     check_faults("estimate", &faults, ALLOWED, errors);

@@ -96,7 +96,7 @@ fn a_fault_in_the_pooling_is_found() {
         ("MAX_FRAMES: f32 = 8.0", "MAX_FRAMES: f32 = 7.0"),
         (".a, 1.0)", ".a, 2.0)"),
         ("+ 0.5) / globals", ") / globals"),
-        (".receiver != ", ".receiver + 9u == "),
+        (") != receiver_of(", ") + 9u == receiver_of("),
     ];
     check_faults("lit", &faults, ALLOWED, errors);
 }
