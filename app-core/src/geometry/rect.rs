@@ -23,6 +23,15 @@ impl PixelRect {
         }
     }
 
+    /// What this one and `other` have in common, if anything.
+    #[must_use]
+    pub fn common(&self, other: &Self) -> Option<Self> {
+        let origin_px = self.origin_px.max(other.origin_px);
+        let end_px = (self.origin_px + self.size_px).min(other.origin_px + other.size_px);
+        let size_px = end_px.saturating_sub(origin_px);
+        (size_px.min_element() > 0).then_some(Self { origin_px, size_px })
+    }
+
     /// Whether all of `other` lies within.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {

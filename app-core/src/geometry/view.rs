@@ -57,6 +57,26 @@ impl View {
         )
     }
 
+    /// The pixels of the image that can show any of `bounds`; all of them where a part of it is behind the camera, none where
+    /// it is out of the picture.
+    #[must_use]
+    pub fn image_rect(&self, world_from_space: &DMat4, bounds: &Bounds) -> Option<PixelRect> {
+        let (mut min_px, mut max_px) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for corner in bounds.corners() {
+            let at = self.image_px_from(world_from_space, corner.extend(1.0));
+            if at.z <= NEAR_M {
+                (min_px, max_px) = (DVec2::ZERO, self.image_px.as_dvec2());
+                break;
+            }
+            min_px = min_px.min(at.truncate() / at.z);
+            max_px = max_px.max(at.truncate() / at.z);
+        }
+        let within = |px: DVec2| px.clamp(DVec2::ZERO, self.image_px.as_dvec2()).as_uvec2();
+        let origin_px = within(min_px.floor());
+        let size_px = within(max_px.ceil()).saturating_sub(origin_px);
+        (size_px.min_element() > 0).then_some(PixelRect { origin_px, size_px })
+    }
+
     /// Homography from (x, z, 1) of a receiver to (u w, v w, w) in the image; w is the depth in metres.
     #[must_use]
     pub fn image_px_from_plane(&self, world_from_plane: &DMat4) -> DMat3 {

@@ -1,5 +1,7 @@
 //! Recording of one submission: each pass with its name, its bindings and, on request, its time stamps.
 
+use glam::UVec2;
+
 use super::bindings::Resource;
 use super::context::Gpu;
 use super::pass_run::{PassRun, Path};
@@ -113,6 +115,24 @@ impl<'g> Recorder<'g> {
         render.0.draw(0..3, 0..1);
     }
 
+    /// The same, onto the part of them at `origin_px` alone, of so many pixels; nowhere where there is none.
+    pub(crate) fn fullscreen_within(
+        &mut self,
+        draw: &Draw,
+        groups: &[Group],
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        part: Option<(UVec2, UVec2)>,
+    ) {
+        let mut render = self.render(draw.name, colors, None, wgpu::StoreOp::Discard);
+        if let Some((origin_px, size_px)) = part {
+            render.begin(draw, groups);
+            render
+                .0
+                .set_scissor_rect(origin_px.x, origin_px.y, size_px.x, size_px.y);
+            render.0.draw(0..3, 0..1);
+        }
+    }
+
     pub(crate) fn compute(&mut self, compute: &Compute, groups: &[Group], workgroups: [u32; 3]) {
         self.count(compute.name);
         let stamps = self
@@ -206,6 +226,20 @@ pub(crate) fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachme
             load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
             store: wgpu::StoreOp::Store,
         },
+    }
+}
+
+/// An attachment that starts at a value and is kept.
+pub(crate) fn cleared_to(
+    view: &wgpu::TextureView,
+    value: wgpu::Color,
+) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(value),
+            store: wgpu::StoreOp::Store,
+        },
+        ..cleared(view)
     }
 }
 

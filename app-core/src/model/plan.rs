@@ -38,6 +38,8 @@ pub struct LightPlan {
 pub struct Plan {
     /// The work region.
     pub region: PixelRect,
+    /// Pixels of the region that can show the physical toy, counted from its corner.
+    pub physical_toy: Option<PixelRect>,
     /// One entry a light, at most four.
     pub lights: Vec<LightPlan>,
     /// Directions of ambient light.
@@ -89,6 +91,7 @@ impl Plan {
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
+            physical_toy: in_region(facts.physical_toy, &facts.region),
             left_out: left_out(facts, &lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
@@ -108,6 +111,15 @@ impl Plan {
 }
 
 impl Plan {
+    /// Pixels of the region, counted from its corner, at most `reach_px` from those that show the physical toy.
+    #[must_use]
+    pub fn near_physical_toy(&self, reach_px: u32) -> Option<PixelRect> {
+        // What rounding adds in 32 bits is less than a pixel.
+        let margin_px = reach_px + 1;
+        self.physical_toy
+            .map(|toy| toy.grown(margin_px, self.region.size_px))
+    }
+
     /// The plan of another view of the same scene: lights keep their points, so that only the view changes.
     #[must_use]
     pub fn for_view(&self, facts: &SceneFacts, settings: &ModelSettings) -> Self {
@@ -117,6 +129,15 @@ impl Plan {
             ..Self::new(facts, settings)
         }
     }
+}
+
+/// The part of a rectangle of the image that lies in the region, counted from that one's corner.
+fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
+    let common = rect?.common(region)?;
+    Some(PixelRect {
+        origin_px: common.origin_px - region.origin_px,
+        ..common
+    })
 }
 
 /// An atlas for the toy's shadow on itself.

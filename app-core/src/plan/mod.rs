@@ -10,6 +10,8 @@ use crate::geometry::rect::PixelRect;
 pub struct SceneFacts {
     /// Rectangle that toy and shadows can reach.
     pub region: PixelRect,
+    /// Pixels of the image that can show the physical toy; none where it is out of the picture.
+    pub physical_toy: Option<PixelRect>,
     /// Width of each listed light's widest penumbra on the screen, in pixels.
     pub penumbra_px: Vec<f64>,
     /// Receivers that shadows are moved on, one to four.

@@ -188,6 +188,9 @@ impl Stage {
         let n_receivers = self.receivers.len() as u32;
         SceneFacts {
             region,
+            physical_toy: footprint
+                .view
+                .image_rect(&world_from_anchor, &self.physical_bounds),
             penumbra_px: self.lights.used.iter().map(widest_px).collect(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),

@@ -60,6 +60,7 @@ pub(crate) fn constant(module: &Module, name: &str) -> Option<f64> {
         .find(|(_, constant)| constant.name.as_deref() == Some(name))?;
     match module.global_expressions[constant.init] {
         Expression::Literal(Literal::U32(value)) => Some(f64::from(value)),
+        Expression::Literal(Literal::I32(value)) => Some(f64::from(value)),
         Expression::Literal(Literal::F32(value)) => Some(f64::from(value)),
         _ => None,
     }

@@ -117,7 +117,10 @@ fn a_fault_in_the_appearance_is_found() {
         ("0).g == 0.0", "0).a == 0.0"),
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
         ("/ (", "/ sqrt("),
-        ("> 0.0 {\n    return Appearance(", "> 9.0 {\n    return Appearance("),
+        (
+            "> 0.0 {\n    return Appearance(",
+            "> 9.0 {\n    return Appearance(",
+        ),
         (", vec3f(0.0));", ", vec3f(-1e9));"),
         ("* received[i]", "* received[0]"),
         ("fit.intensity[", "fit.toy["),

@@ -29,6 +29,7 @@ fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
     };
     let facts = SceneFacts {
         region,
+        physical_toy: Some(region),
         penumbra_px: penumbra_px.to_vec(),
         n_receivers: 2,
         is_plate_complete: false,

@@ -5,7 +5,7 @@ use wgpu::TextureFormat;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::capture::gbuffer::{self, BASE_FORMAT};
@@ -21,7 +21,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &TOY_RADIANCE,
     &DEPTH,
     &FULLSCREEN,
-    &part!("capture/appearance"),
+    &part!("capture/appearance", constants: [REACH_PX]),
 ]);
 const SLOTS: &[Slot] = &[
     Slot::Texture,
@@ -36,11 +36,15 @@ const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the light that they were seen under.
 const LIT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
+/// How far past the toy its colours are extrapolated.
+const REACH_PX: u32 = 3;
+
 pub(crate) struct Pass {
     draw: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
     pub(crate) scene: Scene<'a>,
     pub(crate) frame: &'a wgpu::TextureView,
     pub(crate) validity: &'a wgpu::TextureView,
@@ -90,7 +94,10 @@ impl Pass {
             recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
             recorder.bind(&self.draw, GROUP_PASS, &textures.map(Into::into)),
         ];
-        let targets = [&targets.color.view, &targets.lit.view, &targets.base.view];
-        recorder.fullscreen(&self.draw, &groups, &targets);
+        let colors = [&targets.color, &targets.lit, &targets.base];
+        let colors = colors.map(|texture| Some(cleared(&texture.view)));
+        let near = inputs.plan.near_physical_toy(REACH_PX);
+        let near = near.map(|rect| (rect.origin_px, rect.size_px));
+        recorder.fullscreen_within(&self.draw, &groups, &colors, near);
     }
 }

@@ -72,9 +72,11 @@ impl CapturePath<'_> {
             Step::Gbuffer => passes
                 .gbuffer
                 .encode(recorder, &self.gbuffer_inputs(), &of.gbuffer),
-            Step::Validity => passes
-                .validity
-                .encode(recorder, &of.gbuffer.depth.view, &of.validity),
+            Step::Validity => passes.validity.encode(
+                recorder,
+                (&of.gbuffer.depth.view, &self.region.plan),
+                &of.validity,
+            ),
             Step::Plate => self.plate(recorder),
             Step::Withhold => {
                 let marks = &of.validity.marks;
@@ -237,6 +239,7 @@ impl CapturePath<'_> {
 
     fn appearance_inputs(&self) -> appearance::Inputs<'_> {
         appearance::Inputs {
+            plan: &self.region.plan,
             scene: self.scene(),
             frame: self.pictures.frame,
             validity: self.validity(),

@@ -1,20 +1,34 @@
 //! `validity`: mask of the pixels that show the receiver alone, and of those that show one surface of the toy.
 
-use wgpu::TextureFormat;
+use wgpu::{Color, TextureFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::passes::parts::{DEPTH, FULLSCREEN};
 
-pub(crate) const SHADER: Shader = Shader::new(&[&DEPTH, &FULLSCREEN, &part!("capture/validity")]);
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &DEPTH,
+    &FULLSCREEN,
+    &part!("capture/validity", constants: [BLEED_PX]),
+]);
 const SLOTS: &[Slot] = &[Slot::Depth];
 /// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+/// Farthest that the toy is looked for around a pixel.
+const BLEED_PX: u32 = 8;
+/// Marks of pixels farther from it.
+const FAR: Color = Color {
+    r: 1.0,
+    g: 0.0,
+    b: 1.0,
+    a: 1.0,
+};
 
 pub(crate) struct Pass {
     draw: Draw,
@@ -44,10 +58,13 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        gbuffer_depth: &wgpu::TextureView,
+        (gbuffer_depth, plan): (&wgpu::TextureView, &Plan),
         targets: &Targets,
     ) {
         let own = recorder.bind(&self.draw, GROUP_PASS, &[gbuffer_depth.into()]);
-        recorder.fullscreen(&self.draw, &[own], &[&targets.marks.view]);
+        let marks = Some(cleared_to(&targets.marks.view, FAR));
+        let near = plan.near_physical_toy(BLEED_PX);
+        let near = near.map(|rect| (rect.origin_px, rect.size_px));
+        recorder.fullscreen_within(&self.draw, &[own], &[marks], near);
     }
 }
