@@ -3,6 +3,70 @@
 //! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
 //! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with an additive model in its place where
 //! that is more accurate: see the architecture below.
+//!
+//! A [`Core`] takes a scene, then frames, and makes a picture of each:
+//!
+//! ```
+//! use std::{error::Error, fs, path::Path, sync::Arc};
+//!
+//! use app_core::frame::FrameInput;
+//! use app_core::gpu::AdapterChoice;
+//! use app_core::preset::Preset;
+//! use app_core::scene::Pose;
+//! use app_core::session::{Capture, FileError, Files, Session, check_path};
+//! use app_core::toy::NodePose;
+//! use app_core::{Core, wgpu};
+//! use glam::DQuat;
+//!
+//! /// The folder of a recorded session: the core opens no file itself.
+//! struct Folder;
+//!
+//! impl Files for Folder {
+//!     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
+//!         check_path(path)?;
+//!         let file = Path::new("../tests/sessions/llama").join(path);
+//!         let bytes = fs::read(file).map_err(|error| FileError::Io(error.to_string()))?;
+//!         if bytes.len() as u64 > max_bytes {
+//!             return Err(FileError::TooLarge { max_bytes });
+//!         }
+//!         Ok(bytes)
+//!     }
+//! }
+//!
+//! fn main() -> Result<(), Box<dyn Error>> {
+//!     let session = Capture::open(Folder)?;
+//!     let instance = wgpu::Instance::default();
+//!     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+//!     core.set_scene(session.scene().clone(), Preset::Balanced)?;
+//!
+//!     // A frame brings the camera's picture, where camera, toy and lights are, and the pose to be shown: here a moment of a clip.
+//!     let mut input = FrameInput::from(&session.frame(0)?);
+//!     let report = core.frame(&input)?;
+//!     for warning in &report.warnings {
+//!         println!("{warning}");
+//!     }
+//!     let picture = core.read_picture()?;
+//!     assert_eq!([picture.width_px, picture.height_px], [640, 360]);
+//!     assert!(picture.rgba8 != input.image.rgba8);
+//!
+//!     // A pose of the app's own: the llama turns its head. The scene is known by now, so that this frame costs far less.
+//!     let toy = &session.scene().toy;
+//!     let head = toy.find_node("head")?;
+//!     let mut transform = toy.authored_transform(head)?.ok_or("authored as a matrix")?;
+//!     transform.rotation = transform.rotation * DQuat::from_rotation_y(0.4);
+//!     input.shown_pose = Pose::Nodes(Arc::new(NodePose {
+//!         parent_from_node: vec![(head, transform)],
+//!         ..NodePose::default()
+//!     }));
+//!     core.frame(&input)?;
+//!     // Without reading anything back, the picture is a texture to draw on with.
+//!     assert!(core.picture().is_some());
+//!     Ok(())
+//! }
+//! ```
+//!
+//! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
+//! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 #![doc = include_str!("../doc/architecture.md")]
 #![doc = include_str!("../doc/spaces.md")]
 #![doc = include_str!("../doc/passes.md")]
@@ -34,6 +98,7 @@ pub mod internals {
     pub use crate::baseline::plan::BaselinePlan;
     pub use crate::baseline::planned as planned_by_baseline;
     pub use crate::baseline::uniform::Baseline as BaselineUniform;
+    pub use crate::core::inspect::Inspect;
     pub use crate::geometry::anchored::AnchoredReceiver;
     pub use crate::geometry::bounds::{Bounds, Sphere};
     pub use crate::geometry::color::linear_from_srgb;

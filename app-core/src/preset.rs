@@ -125,7 +125,7 @@ pub struct ModelSettings {
     /// Whether the real shadow is denoised, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
     /// Whether the real shadow is withheld from all but the first fits, and the physical pose made like any other:
-    /// see [`Core::withhold_shadow`](crate::core::Core::withhold_shadow). No preset does so.
+    /// see [`Inspect::withhold_shadow`](crate::internals::Inspect::withhold_shadow). No preset does so.
     pub is_shadow_withheld: bool,
 }
 

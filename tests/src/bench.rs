@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use app_core::core::{Core, CoreError};
 use app_core::frame::{FrameInput, PassTime, Path};
-use app_core::internals::InjectedVisibility;
 use app_core::internals::Map;
+use app_core::internals::{InjectedVisibility, Inspect};
 use app_core::preset::Preset;
 use app_core::session::Capture;
 

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
-use app_core::internals::Map;
 use app_core::internals::PixelRect;
+use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError, Truth};

@@ -11,7 +11,7 @@ use std::thread;
 
 use app_core::Core;
 use app_core::frame::{self, FrameInput, FrameReport};
-use app_core::internals::{Change, phone_limits, planned_by_model};
+use app_core::internals::{Change, Inspect, phone_limits, planned_by_model};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Pose};
 use app_core::session::{Capture, Session};

@@ -1,39 +1,78 @@
-//! What was made and learned, read back from the device: for reports, warnings and tests, never for a frame.
+//! [`Inspect`]: what the core made and learned, for the project's own tests and harness.
 
 use bytemuck::Zeroable;
 
 use super::{Core, CoreError};
-use crate::frame::warning::Outlier;
-use crate::frame::warning::Warning;
 use crate::gpu::device::Kind;
-use crate::model::diagnostics::conditioning::light_conditioning;
-use crate::model::diagnostics::outliers::outliers;
-use crate::model::state::grids::{Grid, MAX_CELLS};
+use crate::model::plan::Plan;
+use crate::model::state::grids::Grid;
 use crate::model::state::solution::Fit;
 use crate::model::state::tints::TintMap;
+use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use crate::stage::Stage;
 
-/// Energy of the lights' columns over that of the plate, below which too little real shadow was seen to tell the shares:
-/// at 0.006 a share was off by 0.1, at 0.024 and above by less than 0.01.
-const FAINT_CONTRAST: f32 = 0.01;
-/// How far a light's strength must be told by what was seen. Two lights in one place have 0.5, ones
-/// whose shadows differ more than 0.99.
-const LEAST_CONDITIONING: f64 = 0.75;
-
-impl Core {
+/// Measuring and measuring aids, behind the public face of [`Core`]. What reads waits for the device.
+pub trait Inspect {
     /// How many objects of each kind the device was asked to make so far, whether they still live or not.
-    #[must_use]
-    pub fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()] {
+    fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()];
+
+    /// The model's plan of the latest retargeted frame, once there was one.
+    fn plan(&self) -> Option<&Plan>;
+
+    /// What the model's fits found, once there was a retargeted frame.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    fn read_fit(&self) -> Result<Option<Fit>, CoreError>;
+
+    /// A map of the latest retargeted frame, once there was one, where its method makes it.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError>;
+
+    /// Each receiver's coarse grid with the filled residuals on it, once there was a retargeted frame of the model.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError>;
+
+    /// The tints of the toy's paint, once there was a retargeted frame of the model.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    fn read_tints(&self) -> Result<Option<TintMap>, CoreError>;
+
+    /// Replaces visibilities of the lights from the next frame on, which learns anew, so that errors of visibility can be
+    /// told from all others. The maps stay until the view or the scene changes, or others are injected.
+    ///
+    /// # Errors
+    /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.
+    fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError>;
+
+    /// Keeps the real shadow from what is learned from here on, so that how well it is rebuilt can be measured on photographs
+    /// that have no truth. Of the first frame only the fits see it, and, where no plate shows the place, a smooth estimate of
+    /// that, in which shadow counts little. The physical pose is then made like any other: its photograph is its truth.
+    ///
+    /// Until another scene is set; for the presets of the model alone.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    fn withhold_shadow(&mut self) -> Result<(), CoreError>;
+}
+
+impl Inspect for Core {
+    fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()] {
         let counts = self.gpu.n_created();
         Kind::ALL.map(|kind| (kind, counts[kind as usize]))
     }
 
-    /// Waits for the device and returns what the model learned from the real shadow, once anything was.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
+    fn plan(&self) -> Option<&Plan> {
+        self.model().map(|model| &model.region.plan)
+    }
+
+    fn read_fit(&self) -> Result<Option<Fit>, CoreError> {
         let Some(model) = self.model() else {
             return Ok(None);
         };
@@ -43,75 +82,14 @@ impl Core {
         Ok(Some(fit))
     }
 
-    /// Waits for the device and returns what was learned that gives to worry about.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
-        let Some(fit) = self.read_fit()? else {
-            let Some((stage, method)) = self
-                .stage
-                .as_ref()
-                .and_then(|stage| Some((stage, stage.method()?)))
-            else {
-                return Ok(Vec::new());
-            };
-            return Ok(method.read_warnings(&self.gpu, stage.light_indices())?);
-        };
-        let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
-        let contrast = contrasts.copied().fold(0.0, f32::max);
-        let faint = (contrast < FAINT_CONTRAST).then_some(Warning::FaintShadow { contrast });
-        let lights = self.read_under_constrained_lights()?;
-        let is_any = faint.is_none() && !lights.is_empty();
-        let not_told = is_any.then_some(Warning::LightsUnderConstrained { lights });
-        let unknown = self.read_outliers()?.into_iter().map(Warning::Outlier);
-        Ok(faint.into_iter().chain(not_told).chain(unknown).collect())
-    }
-
-    /// Lights whose strength is assumed more than seen.
-    fn read_under_constrained_lights(&self) -> Result<Vec<usize>, CoreError> {
-        let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
-            return Ok(Vec::new());
-        };
-        let sums = self.gpu.read_buffer(&model.state.fit_sums)?;
-        let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
-        let told = light_conditioning(&sums, model.region.plan.lights.len());
-        let lights = stage.light_indices().iter().zip(told);
-        Ok(lights
-            .filter_map(|(light, told)| (told < LEAST_CONDITIONING).then_some(*light))
-            .collect())
-    }
-
-    fn read_outliers(&self) -> Result<Vec<Outlier>, CoreError> {
-        let Some(model) = self.model() else {
-            return Ok(Vec::new());
-        };
-        let accumulated = self.gpu.read_buffer(&model.state.residual.accumulated)?;
-        let accumulated: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&accumulated);
-        let receivers = accumulated.chunks(MAX_CELLS).map(outliers);
-        let mut found: Vec<Outlier> = receivers.flatten().collect();
-        found.sort_unstable_by_key(|unknown| *unknown as u8);
-        found.dedup();
-        Ok(found)
-    }
-
-    /// Waits for the device and returns a map of the latest retargeted frame, once there was one.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
+    fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
         let Some(method) = self.stage.as_ref().and_then(Stage::method) else {
             return Ok(None);
         };
         Ok(method.read_map(&self.gpu, map)?)
     }
 
-    /// Waits for the device and returns each receiver's coarse grid with the filled residuals on it, once there was a
-    /// retargeted frame of the model.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {
+    fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {
         let Some(model) = self.model() else {
             return Ok(Vec::new());
         };
@@ -122,14 +100,35 @@ impl Core {
         residuals.collect()
     }
 
-    /// Waits for the device and returns the tints of the toy's paint, once there was a retargeted frame of the model.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn read_tints(&self) -> Result<Option<TintMap>, CoreError> {
+    fn read_tints(&self) -> Result<Option<TintMap>, CoreError> {
         let Some(model) = self.model() else {
             return Ok(None);
         };
         Ok(Some(model.state.tints.read(&self.gpu)?))
+    }
+
+    fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        let region = stage.method().ok_or(CoreError::NoScene)?.region();
+        let expected_px = region.size_px.to_array();
+        for map in [&maps.physical, &maps.shown].into_iter().flatten() {
+            let actual_px = [map.width, map.height];
+            let n_texels = map.width as usize * map.height as usize;
+            if actual_px != expected_px || map.texels.len() != n_texels {
+                return Err(CoreError::SizeDiffers {
+                    what: "injected visibility",
+                    expected_px,
+                    actual_px,
+                    n_bytes: 16 * map.texels.len(),
+                });
+            }
+        }
+        stage.inject(&self.gpu, maps);
+        Ok(())
+    }
+
+    fn withhold_shadow(&mut self) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
+        Ok(())
     }
 }

@@ -1,7 +1,8 @@
 //! [`Core`]: the one type a shell or a harness holds.
 
 mod error;
-mod inspect;
+mod fit_warnings;
+pub(crate) mod inspect;
 mod warm_up;
 
 use std::sync::Arc;
@@ -14,9 +15,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::surface::Window;
 use crate::gpu::timer::Timer;
 use crate::model::Model;
-use crate::model::plan::Plan;
 use crate::preset::Preset;
-use crate::readback::inject::InjectedVisibility;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::stage::method::Method;
@@ -204,57 +203,6 @@ impl Core {
             .map(|timer| timer.read(&self.gpu))
             .transpose()?;
         Ok(times.unwrap_or_default())
-    }
-
-    /// Replaces visibilities of the lights in what follows, so that errors of visibility can be told from all others.
-    ///
-    /// What was learned is learned again with the next frame. The maps stay until the place, the camera or the scene
-    /// changes, or others are injected. A measuring aid: no product has exact visibility.
-    ///
-    /// # Errors
-    /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.
-    pub fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError> {
-        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
-        let expected_px = stage
-            .method()
-            .ok_or(CoreError::NoScene)?
-            .region()
-            .size_px
-            .to_array();
-        for map in [&maps.physical, &maps.shown].into_iter().flatten() {
-            let actual_px = [map.width, map.height];
-            let n_texels = map.width as usize * map.height as usize;
-            if actual_px != expected_px || map.texels.len() != n_texels {
-                return Err(CoreError::SizeDiffers {
-                    what: "injected visibility",
-                    expected_px,
-                    actual_px,
-                    n_bytes: 16 * map.texels.len(),
-                });
-            }
-        }
-        stage.inject(&self.gpu, maps);
-        Ok(())
-    }
-
-    /// Keeps the real shadow from what follows, so that how well it is rebuilt can be measured on photographs that have no
-    /// truth: of the first frame it tells the fits and, where no plate shows the place, a smooth estimate of that, in which
-    /// shadow counts little; of later ones nothing. The physical pose is then made
-    /// like any other, and its photograph is its truth.
-    ///
-    /// Until another scene is set. A measuring aid for the presets of the model; `paper` and `flat` stay as they are.
-    ///
-    /// # Errors
-    /// When there is no scene.
-    pub fn withhold_shadow(&mut self) -> Result<(), CoreError> {
-        self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
-        Ok(())
-    }
-
-    /// The model's plan of the latest retargeted frame, once there was one.
-    #[must_use]
-    pub fn plan(&self) -> Option<&Plan> {
-        self.model().map(|model| &model.region.plan)
     }
 
     fn model(&self) -> Option<&Model> {

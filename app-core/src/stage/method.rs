@@ -82,7 +82,7 @@ impl Method {
         }
     }
 
-    /// Replaces visibilities from the next frame on; see [`Core::inject_visibility`](crate::core::Core).
+    /// Replaces visibilities from the next frame on; see [`Inspect::inject_visibility`](crate::core::inspect::Inspect).
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
         match self {
             Self::Model(model) => model.inject(gpu, maps),

@@ -8,7 +8,7 @@ use app_core::internals::FloatMap;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::PixelRect;
 use app_core::internals::light_in_plane;
-use app_core::internals::{AnchoredReceiver, SceneLayout, View};
+use app_core::internals::{AnchoredReceiver, Inspect, SceneLayout, View};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Pose, Scene};
 use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use app_core::core::Core;
 use app_core::frame::FrameInput;
 use app_core::internals::PixelRect;
-use app_core::internals::{FloatMap, Map};
+use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::{Preset, Settings};
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};

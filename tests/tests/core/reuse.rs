@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use app_core::Core;
 use app_core::frame::FrameInput;
-use app_core::internals::{InjectedVisibility, Map};
+use app_core::internals::{InjectedVisibility, Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Light, Pose, Scene};
 use app_core::toy::NodePose;

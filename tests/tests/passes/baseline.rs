@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use app_core::core::{Core, CoreError};
 use app_core::gpu::AdapterChoice;
-use app_core::internals::Map;
 use app_core::internals::light_in_plane;
+use app_core::internals::{Inspect, Map};
 use app_core::preset::{BASELINE, Preset};
 use app_core::scene::{Light, Surface};
 use app_core::wgpu;

@@ -1,6 +1,7 @@
 //! `estimate` on scrambled inputs; and, without a plate, the place made up from the frame.
 
 use app_core::frame::Warning;
+use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_core::wgpu;

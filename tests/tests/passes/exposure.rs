@@ -2,8 +2,8 @@
 
 use app_core::core::Core;
 use app_core::frame::Path;
-use app_core::internals::Map;
 use app_core::internals::PixelRect;
+use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use glam::{DVec3, UVec2};

@@ -4,7 +4,7 @@ use app_core::core::{Core, CoreError};
 use app_core::frame::Path;
 use app_core::gpu::AdapterChoice;
 use app_core::internals::InjectedVisibility;
-use app_core::internals::{FloatMap, Map};
+use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::Preset;
 use app_core::wgpu;
 

@@ -1,7 +1,7 @@
 //! The light and the exposure of one picture against those of another: what changes is followed, and nothing else.
 
 use app_core::core::Core;
-use app_core::internals::linear_from_srgb;
+use app_core::internals::{Inspect, linear_from_srgb};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use glam::{DVec3, UVec2};

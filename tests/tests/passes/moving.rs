@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
+use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};

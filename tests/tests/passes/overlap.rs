@@ -5,7 +5,7 @@ use app_core::frame::{FrameInput, UnseenShadow, Warning};
 use app_core::gpu::AdapterChoice;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::PixelRect;
-use app_core::internals::{FloatMap, Map};
+use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::{BASELINE, Preset, Settings};
 use app_core::scene::{Light, Scene};
 use app_core::wgpu;

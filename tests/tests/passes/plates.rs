@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use app_core::core::Core;
 use app_core::frame::Warning;
-use app_core::internals::Map;
 use app_core::internals::PixelRect;
+use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Image, Plate, Scene};
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};

@@ -7,7 +7,7 @@ use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
 use app_core::internals::PixelRect;
 use app_core::internals::Plan;
-use app_core::internals::{Fit, ReceiverFit};
+use app_core::internals::{Fit, Inspect, ReceiverFit};
 use app_core::internals::{FloatMap, Map, TintMap};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene};

@@ -1,5 +1,6 @@
 //! `tint` and `tint_fill`: what the device made of a frame, and what becomes of parts that no camera saw.
 
+use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use glam::{DVec2, DVec3, UVec2};
 use harness::reference::fit::toy_radiance;

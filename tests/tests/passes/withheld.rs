@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use app_core::core::Core;
 use app_core::frame::FrameInput;
-use app_core::internals::Map;
+use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
