@@ -67,9 +67,14 @@
 //!
 //! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
 //! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
+//!
+//! [glossary]: #glossary
+//! [passes]: #passes
+//! [spaces]: #spaces-and-units
 #![doc = include_str!("../doc/architecture.md")]
 #![doc = include_str!("../doc/spaces.md")]
 #![doc = include_str!("../doc/passes.md")]
+#![doc = include_str!("../doc/glossary.md")]
 #![forbid(unsafe_code)]
 
 pub mod core;

@@ -4,7 +4,7 @@
 // Source: Casas et al. 2018, section 4.2.
 
 @vertex
-fn vs_gbuffer(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
+fn vs_project(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   return globals.clip_from_anchor * vec4f(in_anchor, 1.0);
 }
 

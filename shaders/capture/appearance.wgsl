@@ -5,7 +5,7 @@
 //
 // Each colour goes with the light it was seen under, so that it can be shown under another.
 //
-// Reads: frame, evidence, the physical toy, the light on it. Writes: linear colour, alpha 1 where a colour was found;
+// Reads: frame, validity, gbuffer. Writes: linear colour, alpha 1 where a colour was found;
 // radiance over base colour that the fit gives to the pixels it is from; their base colour.
 // CPU reference: reference/appearance.rs.
 

@@ -1,10 +1,10 @@
-// What each pixel knows of its own residual, with the noise of the shadow taken out.
+// Each pixel's own residual, denoised where it lies in the real shadow.
 //
 // A shadow is the noisiest part of a photograph, and the plate has the same texture without: the residual is smoothed over
 // a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not in
 // shadow keeps its pixels as they are.
 //
-// Reads: frame, plate, evidence, visibility, ambient. Writes: r, in plates. CPU reference: reference/detail.rs.
+// Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates. CPU reference: reference/detail.rs.
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 
@@ -34,7 +34,7 @@ fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: p
   let f = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb / fit.gain.rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
-  // What is nearly black in the plate tells nothing.
+  // Ratios to a nearly black plate are noise.
   let lit = select(vec3f(0.0), b.rgb, b.rgb >= vec3f(DARKEST_USABLE));
   *product += lit * (f - b.rgb * model);
   *energy += lit * lit;

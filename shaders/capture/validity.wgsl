@@ -1,14 +1,14 @@
-// Which pixels of the frame show what: r is 1 where it is clear of the toy, g where it shows one surface of the toy, b
+// Validity mask of the frame: r is 1 where it is clear of the toy, g where it shows one surface of the toy, b
 // where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
 //
-// Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are evidence of neither.
+// Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as neither.
 // Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: reference/validity.rs.
 
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
 
 // Distance kept from the toy's outline on the receiver.
 const EDGE_PX: i32 = 2;
-// The same where a pixel is to tell its own plate, looked at in steps.
+// The same for estimating a pixel's own plate, sampled in steps.
 const BLEED_PX: i32 = 8;
 const BLEED_STEP_PX: i32 = 2;
 

@@ -1,7 +1,7 @@
-// What every pass knows of the scene: the region of the camera image we work in, the receivers, the lights.
+// Uniforms shared by all passes: the work region of the camera image, the receivers, the lights.
 //
 // Spaces: `region_px`, pixels of the work region, origin top left, pixel centres at .5;
-// `stage`, metres, where the toy stands: the plane space of the first receiver;
+// `anchor`, metres, where the toy is posed: the plane space of the first receiver;
 // `plane`, metres in a receiver's own frame, whose normal is +Y; a point of the receiver is (x, z).
 
 const MAX_LIGHTS: u32 = 4u;
@@ -26,7 +26,7 @@ struct Globals {
   // Clip space of the region; depth is reversed: 1 at the near plane, 0 at infinity.
   clip_from_anchor: mat4x4f,
   receivers: array<ReceiverPlane, MAX_RECEIVERS>,
-  // As those of the receivers, in stage space.
+  // The lights in anchor space.
   lights: array<vec4f, MAX_LIGHTS>,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,

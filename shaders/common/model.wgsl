@@ -1,15 +1,16 @@
 // The model of a receiver: what a frame is, as a fraction of the plate times the gain.
 //
-//   M = A (1 - sum f) + bounce A (1 - A) + sum f level V
-//   f = share falloff / (1 - sum share + sum share falloff)
+//   M = A (1 - sum f) + bounce A (1 - A) + sum f intensity V
+//   f = fraction falloff / (1 - sum fraction + sum fraction falloff)
 //
-// V is the visibility of a light, A the ambient visibility, f a light's share of the plate's radiance there.
+// V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's radiance there, `fraction` that at the
+// reference point.
 // What hides 1 - A of the sky throws back light that came in through what is open, A: in a crevice it is dark itself.
-// Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one share per
+// Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one fraction per
 // light, so that no sample with the same overlap is needed (compare Chuang et al. 2003, shadow matting).
 
 // Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
-// Positive, since the shares sum to less than 1.
+// Positive, since the direct fractions sum to less than 1.
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
   var total = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
@@ -30,7 +31,7 @@ fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   return ambient * ambient_fraction / total + fit.receivers[receiver_of(point)].bounce.rgb * bounced(ambient);
 }
 
-// Light `i`'s share of the plate's radiance at a point, where the plate's falloff is `total`.
+// Light `i`'s fraction of the plate's radiance at a point, where the plate's falloff is `total`.
 fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
   return fit.receivers[receiver_of(point)].direct_fraction[i].rgb * falloff(i, point) / total;
 }

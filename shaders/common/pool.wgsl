@@ -10,7 +10,7 @@
 
 // Points of a cell along each side.
 const N_POINTS: u32 = 8u;
-// Share of a cell's points that must be evidence for the cell to count in full.
+// Fraction of a cell's points that must be valid for the cell to count in full.
 const FULL_SHARE: f32 = 0.25;
 
 // Nothing reaches a receiver whose cells have no extent.
@@ -26,7 +26,7 @@ fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
   return point_on(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
 }
 
-// Adds a cell's value, of which `n_points` points are evidence, to what was known.
+// Adds a cell's value, of which `n_points` points are valid, to the accumulated sums.
 fn accumulate(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
   let grid = grids.grids[receiver];
   let certainty = min(1.0, n_points / (FULL_SHARE * f32(N_POINTS * N_POINTS)));

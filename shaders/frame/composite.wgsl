@@ -102,7 +102,7 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let b = textureLoad(plate, texel, 0);
   let lit = fit.gain.rgb * b.rgb;
   let evident = textureLoad(validity, texel, 0);
-  // Nothing is known of what is behind.
+  // No plate and no estimate: the frame stays.
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
   // Beyond the receivers nothing changes but that the real toy goes.
@@ -127,7 +127,7 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let made = lit * max(after + residual, vec3f(0.0));
   var own = f + lit * (after - before);
   if drawing.has_detail == 1u && b.a == 1.0 {
-    // What is nearly black in the plate tells nothing.
+    // Ratios to a nearly black plate are noise.
     own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_USABLE));
   }
   let kept = mix(own, f, is_object);

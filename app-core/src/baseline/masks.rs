@@ -38,7 +38,7 @@ impl Pass {
         let groups = [GLOBALS_GROUP, &[], &[], &[]];
         Self {
             draw: gpu.draw(&DrawSpec {
-                vertex: "vs_gbuffer",
+                vertex: "vs_project",
                 streams: STREAMS,
                 ..DrawSpec::fullscreen(&SHADER, "fs_set", groups, &[FORMAT])
             }),

@@ -45,7 +45,7 @@ pub trait Inspect {
     fn read_tints(&self) -> Result<Option<TintMap>, CoreError>;
 
     /// Replaces visibilities of the lights from the next frame on, which learns anew, so that errors of visibility can be
-    /// told from all others. The maps stay until the view or the scene changes, or others are injected.
+    /// separated from all others. The maps stay until the view or the scene changes, or others are injected.
     ///
     /// # Errors
     /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.

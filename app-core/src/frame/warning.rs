@@ -10,9 +10,9 @@ pub enum Warning {
     NoLight,
     /// There is no plate, and the preset cannot do without: the camera frame passes through.
     NoPlate,
-    /// There is no plate: the place without the toy is estimated from the frame.
+    /// There is no plate: the scene without the toy is estimated from the frame.
     PlateEstimated,
-    /// The plates show only a part of what is worked on; the rest is estimated from the frame, or
+    /// The plates show only a part of the work region; the rest is estimated from the frame, or
     /// stays as it is with a preset that needs a plate.
     PlatePartial {
         /// Share that they show, from 0 to 1.
@@ -30,18 +30,18 @@ pub enum Warning {
     },
     /// A light does not stand above the receiver, so it casts no shadow there.
     LightBelowReceiver {
-        /// Its place in the scene's list.
+        /// Its index in the list of lights: the frame's own, or the scene's.
         light: usize,
     },
-    /// Too little real shadow is seen to tell how strong the lights are.
+    /// Too little real shadow is seen for the intensities of the lights.
     FaintShadow {
         /// Energy of the lights' columns over that of the plate.
         contrast: f32,
     },
-    /// The real shadow does not tell how strong some lights are, since theirs falls together with that of others, or where the
-    /// camera does not see it.
+    /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
+    /// where the camera does not see it.
     LightsUnderConstrained {
-        /// Their places in the scene's list.
+        /// Their indices in the list of lights: the frame's own, or the scene's.
         lights: Vec<usize>,
     },
     /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
@@ -127,9 +127,9 @@ impl fmt::Display for Warning {
 /// A place on a receiver that just some lights do not reach.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnseenShadow {
-    /// The receiver's place in the scene's list.
+    /// Index of the receiver in the scene's list.
     pub receiver: usize,
-    /// Indices of the lights in the scene's list.
+    /// Indices in the list of lights: the frame's own, or the scene's.
     pub lights: Vec<usize>,
 }
 

@@ -1,6 +1,6 @@
 //! The thin layer over wgpu: device and caches, textures and buffers, recording of what ran, read-back.
 //!
-//! Everything that is created on the device is created here, and counted.
+//! Everything that is created on the device is created here, and counted, but for what wgpu's blitter makes in `surface`.
 
 pub(crate) mod bindings;
 pub(crate) mod buffer;

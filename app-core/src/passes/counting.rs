@@ -16,7 +16,7 @@ use crate::gpu::texture::Texture;
 
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// Format of the depths that tell instances apart.
+/// Format of the depths that order the instances.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 
 /// What is counted, and in which order.

@@ -42,7 +42,7 @@ shared_struct! {
 /// The texture of a material that has none.
 const WHITE: [u8; 4] = [255; 4];
 
-/// Positions and normals of a pose, in plane space.
+/// Positions and normals of a pose, in anchor space.
 pub(crate) struct PoseBuffers {
     pub(crate) positions: wgpu::Buffer,
     pub(crate) normals: wgpu::Buffer,

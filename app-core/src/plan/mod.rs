@@ -16,7 +16,7 @@ pub struct SceneFacts {
     pub penumbra_px: Vec<f64>,
     /// Receivers that shadows are moved on, one to four.
     pub n_receivers: u32,
-    /// One plate shows all of the region.
+    /// One plate shows all of the region, or several together.
     pub is_plate_complete: bool,
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct PlateChoice {
     pub(crate) is_same_view: bool,
 }
 
-/// Chooses from the scene's plates for a camera that looks at `toy_in_world`; what is worked on has `corners_in_world`.
+/// Chooses from the scene's plates for a camera that looks at `toy_in_world`; the footprint has `corners_in_world`.
 pub(crate) fn choose(
     scene: &Scene,
     view: &View,
@@ -89,7 +89,7 @@ fn grid_over(rect: &PixelRect) -> impl Iterator<Item = DVec2> {
     positions.map(move |at| origin_px + at.as_dvec2() * size_px / n_steps.as_dvec2())
 }
 
-/// What the shader knows of the chosen plates; `gains` are those of all of the scene's.
+/// The uniforms of the chosen plates; `gains` are those of all of the scene's.
 pub(crate) fn plate_views(
     scene: &Scene,
     layout: &SceneLayout<'_>,

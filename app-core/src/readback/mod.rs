@@ -7,7 +7,7 @@ use wgpu::TextureFormat;
 use crate::geometry::color::linear_from_srgb;
 use crate::gpu::context::{Gpu, GpuError};
 
-/// An intermediate map of the pipeline, of the work region.
+/// An intermediate map of the pipeline over the work region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {

@@ -38,7 +38,7 @@ pub struct Scene {
     pub physical_pose: Pose,
     /// Planes that catch the shadow; at least one.
     pub receivers: Vec<Receiver>,
-    /// Known lights, unless a frame brings its own. Empty when they are to be estimated.
+    /// Known lights, unless a frame brings its own. Without any, frames pass through.
     pub lights: Vec<Light>,
     /// Pictures of the scene without the toy. May be empty.
     pub plates: Vec<Plate>,

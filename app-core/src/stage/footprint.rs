@@ -1,4 +1,4 @@
-//! Where a frame is worked on, or why it passes through.
+//! The footprint of a frame: its view, work region and plates; or why the frame passes through.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::toy::ToyError;
 /// The fade at the region's border, and what the toy may reach beyond its region between two moments of a clip.
 const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
 
-/// Where a frame is worked on: the same for all frames of one clip and camera, unless a pose reaches farther.
+/// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {
     camera: Camera,
     pub(super) view: View,
@@ -94,7 +94,7 @@ impl Stage {
         Ok(footprint.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
     }
 
-    /// Where what is reached is worked on in a view; none when it is out of the picture.
+    /// The footprint of what is reached, in a view; none when it is out of the picture.
     fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
         let (layout, reach) = (self.layout(), self.reach.as_ref()?);
         let on_view = reach.on_view(&view, &layout);

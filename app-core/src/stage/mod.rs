@@ -235,7 +235,7 @@ impl Stage {
         report.warnings.extend(self.plate_warning(footprint));
     }
 
-    /// Lays the region over the camera frame, or passes the frame through where nothing was worked on.
+    /// Lays the region over the camera frame, or passes the frame through where no method ran.
     fn encode_present(&self, recorder: &mut Recorder<'_>, method: Option<&Method>) {
         let placement = method
             .map(Method::region)

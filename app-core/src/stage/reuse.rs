@@ -49,7 +49,7 @@ enum Reuse {
 }
 
 impl Stage {
-    /// Makes the method's state fit the frame; tells how much of it is to be learned anew.
+    /// Makes the method's state fit the frame; returns how much of it is to be learned anew.
     pub(super) fn update_method(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) -> Change {
         self.plates.load(gpu, &self.scene, &footprint.choice.indices);
         self.reached_rects = united(&self.reached_rects, &footprint.plane_rects);

@@ -247,7 +247,7 @@ pub struct ToySample {
     pub frame: DVec3,
     /// Base colour of the model, linear.
     pub base: DVec3,
-    /// Unit normal, in stage space.
+    /// Unit normal, in anchor space.
     pub normal: DVec3,
     /// Cosine to each light times its visibility.
     pub received: DVec4,

@@ -22,14 +22,14 @@ pub struct Region {
     pub size_px: UVec2,
     /// Width of the fade at the left, top, right and bottom edge, in pixels; 0 where there is none.
     pub border_px: [f64; 4],
-    /// Homogeneous, in stage space: (position, 1) or (unit direction to the light, 0).
+    /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
 }
 
 /// One receiver as the camera sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceiverPlane {
-    /// From stage space.
+    /// From anchor space.
     pub plane_from_anchor: DMat4,
     /// From (u, v, 1) in pixels of the region to (x, z, w) on the receiver; w > 0 in front of the camera.
     pub plane_from_region_px: DMat3,

@@ -8,7 +8,7 @@ use harness::reference::occlusion::{Caster, Occluder};
 use crate::stand::Stand;
 
 impl Stand {
-    /// Points of a light, in stage space.
+    /// Points of a light, in anchor space.
     pub(crate) fn light_points(&self, index: usize, n_points: usize) -> Vec<DVec4> {
         let light = &self.setup.lights[index];
         let points = light_points(light, &self.anchor_from_world, self.physical_centre(), n_points);
@@ -48,7 +48,7 @@ impl Stand {
             .collect()
     }
 
-    /// A posed toy in stage space.
+    /// A posed toy in anchor space.
     pub(crate) fn occluder(&self, posed: &PosedMesh) -> Occluder {
         self.occluder_in(posed, &DMat4::IDENTITY)
     }

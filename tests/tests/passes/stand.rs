@@ -1,4 +1,4 @@
-//! Where the toy stands: camera, receivers, and the poses in stage space.
+//! Where the toy stands: camera, receivers, and the poses in anchor space.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -148,7 +148,7 @@ impl Stand {
         globals(&self.view(), rect, &self.layout())
     }
 
-    /// The camera's centre and the direction of the ray through `image_px`, in stage space.
+    /// The camera's centre and the direction of the ray through `image_px`, in anchor space.
     pub(crate) fn camera_ray(&self, image_px: DVec2) -> (DVec3, DVec3) {
         let k = &self.camera.intrinsics;
         let in_camera = DVec3::new(

@@ -25,7 +25,7 @@ passes!(Plan:
     gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
 );
 
-/// Targets of the capture path, all of the region's size.
+/// Targets of the capture path for one region.
 pub(crate) struct CaptureTargets {
     /// Visibility of the lights in the physical pose.
     pub(crate) light: LightMaps,

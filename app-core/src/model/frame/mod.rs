@@ -47,7 +47,7 @@ pub(crate) fn order(plan: &Plan) -> Vec<Step> {
         .collect()
 }
 
-/// Targets of the frame path, all of the region's size.
+/// Targets of the frame path for one region.
 pub(crate) struct FrameTargets {
     /// Visibility of the lights in the shown pose.
     pub(crate) light: LightMaps,
