@@ -53,7 +53,7 @@ const ALLOWED: f64 = 1e-5;
 
 /// How far colours, light and base colours are off that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::open(), Scrambled::new());
+    let (device, scene) = (Device::shared(), Scrambled::new());
     let size = scene.rect.size_px;
     let toy = toy(size);
     let seen = Raster::from_fn(size, |at| Seen {

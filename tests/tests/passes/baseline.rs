@@ -3,13 +3,11 @@
 
 use std::sync::LazyLock;
 
-use app_core::core::{Core, CoreError};
-use app_core::gpu::AdapterChoice;
+use app_core::core::CoreError;
 use app_core::internals::light_in_plane;
 use app_core::internals::{Inspect, Map};
 use app_core::preset::{BASELINE, Preset};
 use app_core::scene::{Light, Surface};
-use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::box_filter::{box_sums, mean};
 use harness::reference::census::seen_sets;
@@ -19,6 +17,7 @@ use harness::reference::raster::Raster;
 use harness::reference::search::{Found, Rings, Start, search, term};
 use harness::reference::sets::LightSet;
 
+use crate::cores::core_on;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
@@ -44,7 +43,7 @@ struct BaselineRun {
 }
 
 static RUNS: LazyLock<Result<Vec<BaselineRun>, String>> = LazyLock::new(|| {
-    let decoded = Device::open().decoded();
+    let decoded = Device::shared().decoded();
     let run = |(index, setup): (usize, Setup)| {
         // What is eligible keeps some pixels away from every edge, so that the shadow must be larger than those.
         let larger = Setup {
@@ -69,8 +68,6 @@ fn runs() -> &'static [BaselineRun] {
 
 impl BaselineRun {
     fn new(stand: Stand, is_textured: bool, decoded: &[f64]) -> Result<Self, CoreError> {
-        let instance = wgpu::Instance::default();
-        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
         let [plate, frame] = photograph(&stand);
         let mut scene = scene(&stand, &plate);
         scene.receivers[0].surface = if is_textured {
@@ -78,7 +75,7 @@ impl BaselineRun {
         } else {
             Surface::Uniform
         };
-        core.set_scene(scene, Preset::Paper)?;
+        let mut core = core_on(scene, Preset::Paper)?;
         let report = core.frame(&input(&stand, &frame))?;
         let rect = report.region.expect("the toy moves");
         let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the method makes it")));

@@ -7,8 +7,9 @@ use glam::{DVec2, DVec3, UVec2};
 use harness::reference::model::{Region, centre_px};
 
 use crate::composite::shows_toy;
+use crate::cores::core_on;
 use crate::photo::Photo;
-use crate::run::{core_on, input, plate_of, scene, texel_of};
+use crate::run::{input, plate_of, scene, texel_of};
 use crate::setups::{Setup, WALL};
 use crate::stand::Stand;
 

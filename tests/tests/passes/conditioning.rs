@@ -6,8 +6,9 @@ use app_core::preset::Preset;
 use app_core::scene::Light;
 use glam::DVec3;
 
+use crate::cores::core_on;
 use crate::photo::Photo;
-use crate::run::{core_on, input, scene};
+use crate::run::{input, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 

@@ -43,7 +43,7 @@ fn scene() -> Scrambled {
 
 /// How far residuals are off that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::open(), scene());
+    let (device, scene) = (Device::shared(), scene());
     let size = scene.rect.size_px;
     let maps = [
         device.map(&scene.image),

@@ -1,5 +1,7 @@
 //! A device of our own, for what the core does not show: how the driver decodes sRGB, and `fill` on any cells.
 
+use std::sync::LazyLock;
+
 use app_core::gpu::GpuError;
 use app_core::internals::shaders;
 use app_core::internals::{Grid, Grids};
@@ -22,7 +24,13 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    pub(crate) fn open() -> Self {
+    /// The one device of all tests.
+    pub(crate) fn shared() -> &'static Self {
+        static DEVICE: LazyLock<Device> = LazyLock::new(Device::open);
+        &DEVICE
+    }
+
+    fn open() -> Self {
         let instance = wgpu::Instance::default();
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,

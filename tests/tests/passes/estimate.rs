@@ -10,12 +10,13 @@ use harness::reference::estimate::{ESTIMATED, Known, complete};
 use harness::reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
+use crate::cores::core_on;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::intensities::{codes_beside, pairs_beside};
 use crate::numbers::number;
 use crate::photo::Photo;
-use crate::run::{core_on, input, scene, solution};
+use crate::run::{input, scene, solution};
 use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
@@ -72,7 +73,7 @@ const ALLOWED: f64 = 1e-4;
 
 /// How far colours and alpha are off that `source` makes, smooth and in full.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::open(), Scrambled::new());
+    let (device, scene) = (Device::shared(), Scrambled::new());
     let lit = scene.plane_grids().map(|grid| {
         let colors = Raster::from_fn(grid.size, |at| {
             DVec3::from([80, 81, 82].map(|seed| number(at, seed)))

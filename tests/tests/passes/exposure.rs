@@ -9,8 +9,9 @@ use app_core::scene::Scene;
 use glam::{DVec3, UVec2};
 use harness::reference::model::centre_px;
 
+use crate::cores::core_on;
 use crate::photo::Photo;
-use crate::run::{core_on, input, plate_of, raster, scene};
+use crate::run::{input, plate_of, raster, scene};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 

@@ -20,7 +20,7 @@ fn patchwork(at: UVec2) -> Cell {
 
 #[test]
 fn pull_push() {
-    let device = Device::open();
+    let device = Device::shared();
     for size in [
         UVec2::new(1, 1),
         UVec2::new(1, 64),

@@ -1,13 +1,12 @@
 //! Visibility from outside: the device's own changes nothing, another is what is drawn.
 
-use app_core::core::{Core, CoreError};
+use app_core::core::CoreError;
 use app_core::frame::Path;
-use app_core::gpu::AdapterChoice;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::Preset;
-use app_core::wgpu;
 
+use crate::cores::core_on;
 use crate::photo::photograph;
 use crate::run::{input, scene};
 use crate::setups::{SETUPS, Setup};
@@ -23,9 +22,7 @@ fn injected_visibility_takes_the_place_of_the_devices_own() {
         });
         let [plate, image] = photograph(&stand);
         let input = input(&stand, &image);
-        let instance = wgpu::Instance::default();
-        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
-        core.set_scene(scene(&stand, &plate), preset).unwrap();
+        let mut core = core_on(scene(&stand, &plate), preset).unwrap();
         let shown = |shown| InjectedVisibility {
             physical: None,
             shown,

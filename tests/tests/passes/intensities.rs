@@ -8,9 +8,10 @@ use glam::{DVec3, UVec2};
 use harness::reference::model::centre_px;
 
 use crate::composite::shows_toy;
+use crate::cores::core_on;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{core_on, input, scene, solution, texel_of};
+use crate::run::{input, scene, solution, texel_of};
 use crate::setups::{SETUPS, Setup, WALL};
 use crate::stand::Stand;
 

@@ -33,7 +33,7 @@ fn kept_before() -> Vec<[f32; 4]> {
 
 /// How far cells and sums are off that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::open(), Scrambled::new());
+    let (device, scene) = (Device::shared(), Scrambled::new());
     let kept_before = kept_before();
     let pools = [
         device.uniform(&scene.grids()),

@@ -10,6 +10,7 @@ mod behind;
 mod casters;
 mod composite;
 mod conditioning;
+mod cores;
 mod coverage;
 mod detail;
 mod device;

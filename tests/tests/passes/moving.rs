@@ -9,8 +9,9 @@ use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
 use harness::reference::grid::PlaneGrid;
 
+use crate::cores::{SharedCore, core_on};
 use crate::photo::Photo;
-use crate::run::{core_on, input, plate_of, raster, scene};
+use crate::run::{input, plate_of, raster, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
@@ -62,7 +63,7 @@ fn shots() -> Shots {
 
 impl Shots {
     /// A core that has seen some of the views.
-    fn core(&self, views: &[usize]) -> Core {
+    fn core(&self, views: &[usize]) -> SharedCore {
         let mut core = core_on(self.scene.clone(), Preset::Balanced).unwrap();
         for view in views {
             let report = core

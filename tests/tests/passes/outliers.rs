@@ -8,8 +8,9 @@ use harness::reference::model::{ReceiverPoint, centre_px};
 use harness::reference::visibility::visibility_map;
 
 use crate::composite::shows_toy;
+use crate::cores::core_on;
 use crate::photo::Photo;
-use crate::run::{core_on, input, scene, texel_of};
+use crate::run::{input, scene, texel_of};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 

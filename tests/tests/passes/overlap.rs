@@ -1,19 +1,17 @@
 //! Shadows of two lights that the real ones tell about, fully or not: the published method on injected visibilities.
 
-use app_core::core::Core;
 use app_core::frame::{FrameInput, UnseenShadow, Warning};
-use app_core::gpu::AdapterChoice;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::PixelRect;
 use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::{BASELINE, Preset, Settings};
 use app_core::scene::{Light, Scene};
-use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2};
 use harness::reference::eligible::masks;
 use harness::reference::raster::Raster;
 use harness::reference::sets::LightSet;
 
+use crate::cores::{SharedCore, core_on};
 use crate::device::Device;
 use crate::photo::photograph;
 use crate::run::{crop, input, raster, scene};
@@ -22,7 +20,7 @@ use crate::stand::Stand;
 
 /// A core that has made one frame, what it was made from, and its work region.
 struct Shot {
-    core: Core,
+    core: SharedCore,
     input: FrameInput,
     region: PixelRect,
 }
@@ -41,11 +39,9 @@ impl Shot {
         });
         let [plate, image] = photograph(&stand);
         let input = input(&stand, &image);
-        let instance = wgpu::Instance::default();
-        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
         let mut scene = scene(&stand, &plate);
         change(&mut scene);
-        core.set_scene(scene, preset).unwrap();
+        let mut core = core_on(scene, preset).unwrap();
         let region = core.frame(&input).unwrap().region.unwrap();
         Self { core, input, region }
     }
@@ -149,7 +145,7 @@ fn constant_shadows_multiply() {
     };
     let of_all = f64::from(settings.constant_ratio.unwrap());
     let of_one = of_all.sqrt();
-    let decoded = Device::open().decoded();
+    let decoded = Device::shared().decoded();
     let mut shot = Shot::new(Preset::Flat);
     // Rounding to codes goes both ways, and a block of pixels evens it out.
     let block = Raster::from_fn(UVec2::splat(12), |at| at);

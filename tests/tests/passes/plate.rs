@@ -89,7 +89,7 @@ fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
 
 /// How far colours and alpha are off that `source` makes: of all plates, or of one from the other side of the wall.
 fn errors(source: &str) -> Errors {
-    let (device, plates) = (Device::open(), plates());
+    let (device, plates) = (Device::shared(), plates());
     let views = [
         (BEFORE, &plates[..]),
         (BEHIND, &plates[..]),

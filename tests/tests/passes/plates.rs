@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use app_core::core::Core;
 use app_core::frame::Warning;
 use app_core::internals::PixelRect;
 use app_core::internals::{Inspect, Map};
@@ -12,10 +11,11 @@ use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::model::{ReceiverPoint, Region, centre_px};
 use harness::reference::raster::Raster;
 
+use crate::cores::{SharedCore, core_on};
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{Photo, photograph};
-use crate::run::{core_on, crop, input, plate_of, raster, runs, scene};
+use crate::run::{crop, input, plate_of, raster, runs, scene};
 use crate::setups::{Setup, WALL};
 use crate::stand::Stand;
 
@@ -36,7 +36,7 @@ fn photo(stand: &Stand) -> Photo {
 }
 
 /// The plate of a frame from `HERE`, its region, and the core that made it.
-fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec4>, PixelRect, Core) {
+fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec4>, PixelRect, SharedCore) {
     let frame = photo(stand).frame(stand, &stand.physical);
     let with_plates = Scene {
         plates,
@@ -75,7 +75,7 @@ fn is_one_receiver(region: &Region, px: DVec2, receiver: usize) -> bool {
 
 #[test]
 fn same_camera_gives_its_codes_bit_for_bit() {
-    let decoded = Device::open().decoded();
+    let decoded = Device::shared().decoded();
     let code_of = |linear: f64| {
         let nearest = (0..=255u8).min_by(|a, b| {
             let off = |code: &u8| (decoded[usize::from(*code)] - linear).abs();
@@ -177,7 +177,7 @@ fn flat(code: u8) -> Arc<Image> {
 fn of_two_plates_the_one_that_saw_it_better_wins() {
     let here = Stand::seen_from(setup(), HERE);
     let (beside, away) = (Stand::seen_from(setup(), BESIDE), Stand::seen_from(setup(), AWAY));
-    let grey = Device::open().decoded()[128];
+    let grey = Device::shared().decoded()[128];
     for order in [[0, 1], [1, 0]] {
         let both = [plate_of(&away, &flat(255)), plate_of(&beside, &flat(128))];
         let plates = order.map(|k: usize| both[k].clone()).to_vec();

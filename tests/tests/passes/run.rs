@@ -2,21 +2,20 @@
 
 use std::sync::{Arc, LazyLock};
 
-use app_core::core::{Core, CoreError};
+use app_core::core::CoreError;
 use app_core::frame::FrameInput;
-use app_core::gpu::AdapterChoice;
 use app_core::internals::PixelRect;
 use app_core::internals::Plan;
 use app_core::internals::{Fit, Inspect, ReceiverFit};
 use app_core::internals::{FloatMap, Map, TintMap};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene};
-use app_core::wgpu;
 use glam::{DVec3, DVec4, UVec2, Vec4};
 use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
 use harness::reference::raster::Raster;
 
+use crate::cores::core_on;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{code, photograph, unrounded_code};
@@ -52,7 +51,7 @@ pub(crate) struct Run {
 }
 
 static RUNS: LazyLock<Result<Vec<Run>, String>> = LazyLock::new(|| {
-    let decoded = Device::open().decoded();
+    let decoded = Device::shared().decoded();
     let run = |setup| Run::new(Stand::new(setup), &decoded).map_err(|error| error.to_string());
     SETUPS.into_iter().map(run).collect()
 });
@@ -112,14 +111,6 @@ impl Run {
             plan,
         })
     }
-}
-
-/// A core that has a scene.
-pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<Core, CoreError> {
-    let instance = wgpu::Instance::default();
-    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
-    core.set_scene(scene, preset)?;
-    Ok(core)
 }
 
 /// A frame of a stand, from its camera.
@@ -195,7 +186,7 @@ pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
 #[test]
 fn driver_decodes_srgb_within_half_a_code() {
     let pairs = (0..=255u8)
-        .zip(Device::open().decoded())
+        .zip(Device::shared().decoded())
         .map(|(code, linear)| (unrounded_code(linear), f64::from(code)));
     // A software driver's polynomial measures as 0.34 of a code at worst.
     Errors::between(pairs).check_all("codes of decoded codes", 0.5);

@@ -61,7 +61,7 @@ fn settings() -> BaselineUniform {
 
 /// Terms with labels, and taps, as they are and as they should be.
 fn pairs(source: &str) -> [Vec<(f64, f64)>; 2] {
-    let (device, stand) = (Device::open(), Stand::new(SETUPS[1]));
+    let (device, stand) = (Device::shared(), Stand::new(SETUPS[1]));
     let rect = PixelRect {
         origin_px: UVec2::new(13, 7),
         size_px: UVec2::new(71, 53),

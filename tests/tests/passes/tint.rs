@@ -9,9 +9,10 @@ use harness::reference::occlusion::Occluder;
 use harness::reference::raster::Raster;
 use harness::reference::tint::{SeenPaint, tints};
 
+use crate::cores::core_on;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{Run, core_on, input, runs, scene, texel_of};
+use crate::run::{Run, input, runs, scene, texel_of};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 

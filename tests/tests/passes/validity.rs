@@ -27,7 +27,7 @@ fn depth(at: UVec2) -> f64 {
 
 /// Marks as they are and as they should be.
 fn errors(source: &str) -> Errors {
-    let device = Device::open();
+    let device = Device::shared();
     let depth = Raster::from_fn(SIZE, depth);
     let map = device.depth(&depth);
     let own: Bindings<'_> = vec![(0, wgpu::BindingResource::TextureView(&map))];

@@ -12,10 +12,11 @@ use glam::UVec2;
 use harness::reference::withhold::withhold;
 
 use crate::alone::{Draw, check_faults, source};
+use crate::cores::core_on;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{core_on, input, raster, scene, texel_of};
+use crate::run::{input, raster, scene, texel_of};
 use crate::scrambled::{Scrambled, buffers, views};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
@@ -71,7 +72,7 @@ fn a_withheld_shadow_is_rebuilt_and_tells_nothing() {
 
 /// How far marks are off that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::open(), Scrambled::new());
+    let (device, scene) = (Device::shared(), Scrambled::new());
     let maps = [
         device.map(&scene.validity),
         device.map(&scene.visibility),

@@ -1,0 +1,51 @@
+//! Cores that tests take turns with: devices and pipelines are made once, and a scene replaces all else.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::{Mutex, PoisonError};
+
+use app_core::core::{Core, CoreError};
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::scene::Scene;
+use app_core::wgpu;
+
+static IDLE: Mutex<Vec<Core>> = Mutex::new(Vec::new());
+
+/// A core that goes back when it is dropped.
+pub(crate) struct SharedCore(Option<Core>);
+
+impl Deref for SharedCore {
+    type Target = Core;
+
+    fn deref(&self) -> &Core {
+        self.0.as_ref().unwrap()
+    }
+}
+
+impl DerefMut for SharedCore {
+    fn deref_mut(&mut self) -> &mut Core {
+        self.0.as_mut().unwrap()
+    }
+}
+
+impl Drop for SharedCore {
+    fn drop(&mut self) {
+        let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
+        idle.extend(self.0.take());
+    }
+}
+
+/// A core that has a scene.
+pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<SharedCore, CoreError> {
+    let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    let mut core = match idle {
+        Some(core) => core,
+        None => pollster::block_on(Core::headless(
+            &wgpu::Instance::default(),
+            &AdapterChoice::Fastest,
+        ))?,
+    };
+    let staged = core.set_scene(scene, preset);
+    let core = SharedCore(Some(core));
+    staged.map(|()| core)
+}
