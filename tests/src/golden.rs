@@ -9,12 +9,13 @@ use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Image;
-use app_core::session::{Capture, Session, SessionError};
+use app_core::session::{Capture, GroundTruth, Session, SessionError};
 use image::ImageReader;
 use thiserror::Error;
 
 use crate::compare::{Check, CompareError, Difference, Pair};
 use crate::files::{Folder, FolderError};
+use crate::metrics::{Regions, Scores, SizeError, measure};
 use crate::output::{WriteError, make_folder, write_png};
 
 /// What makes or remakes a golden.
@@ -97,6 +98,12 @@ pub enum RenderError {
     /// The bundled session cannot be read.
     #[error(transparent)]
     Session(#[from] SessionError),
+    /// The bundled session has lost its truth.
+    #[error("the frame has no truth")]
+    NoTruth,
+    /// The truth is of another size.
+    #[error(transparent)]
+    Size(#[from] SizeError),
     /// The core cannot make the picture.
     #[error(transparent)]
     Core(#[from] CoreError),
@@ -181,16 +188,30 @@ pub fn name_of(preset: Preset) -> String {
     format!("llama_{preset}")
 }
 
+/// What a preset makes of a frame of the bundled session.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The part of the picture that the preset's golden shows.
+    pub golden: Image,
+    /// Errors of the whole picture against the photograph of the moved toy.
+    pub scores: Scores,
+}
+
 /// Makes the picture that a preset's golden shows.
 ///
 /// # Errors
 /// When the bundled session cannot be read, or the core fails.
-pub fn render(core: &mut Core, preset: Preset) -> Result<Image, RenderError> {
+pub fn render(core: &mut Core, preset: Preset) -> Result<Rendered, RenderError> {
     let folder = Folder::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("sessions/llama"))?;
     let session = Capture::open(folder)?;
     core.set_scene(session.scene().clone(), preset)?;
     core.frame(&FrameInput::from(&session.frame(FRAME)?))?;
-    Ok(CROP.of(&core.read_picture()?))
+    let picture = core.read_picture()?;
+    let truth = session.truth(FRAME)?.ok_or(RenderError::NoTruth)?;
+    Ok(Rendered {
+        golden: CROP.of(&picture),
+        scores: measure(&picture, &truth.image, &Regions::from_mask(&truth.mask))?,
+    })
 }
 
 /// A rectangle of a picture.

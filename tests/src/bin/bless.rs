@@ -40,8 +40,8 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .collect();
     ensure!(!named.is_empty(), "no golden's name contains \"{}\"", args.filter);
     for (preset, name) in named {
-        let picture = render(&mut core, preset).with_context(|| name.clone())?;
-        goldens.write(&name, &picture)?;
+        let rendered = render(&mut core, preset).with_context(|| name.clone())?;
+        goldens.write(&name, &rendered.golden)?;
         eprintln!("{}", goldens.path(&name).display());
     }
     Ok(())

@@ -19,6 +19,7 @@ mod estimate;
 mod exposure;
 mod fill;
 mod fit;
+mod goldens;
 mod inject;
 mod intensities;
 mod lit;

@@ -1,0 +1,91 @@
+//! Whole pictures that the bundled session has no case of: several lights, a wall, a moving camera.
+
+use app_core::preset::Preset;
+use app_core::scene::{Image, Scene};
+use glam::DVec3;
+use harness::golden::{Goldens, ON_HARDWARE, ON_SOFTWARE};
+
+use crate::cores::core_on;
+use crate::photo::Photo;
+use crate::run::{input, plate_of, scene};
+use crate::setups::{SETUPS, Setup, WALL};
+use crate::stand::Stand;
+
+/// Cameras of the moving one, as offsets from what they look at; the picture is that of the last.
+const VIEWS: [DVec3; 3] = [
+    DVec3::new(-0.3, 0.42, 0.2),
+    DVec3::new(0.0, 0.36, 0.42),
+    DVec3::new(0.2, 0.3, 0.38),
+];
+
+/// The pictures by their names.
+fn pictures() -> [(&'static str, Image); 3] {
+    let large = |setup: Setup| Setup {
+        image_px: 2 * setup.image_px,
+        ..setup
+    };
+    [
+        ("boxes_two_lights", seen_at_once(large(SETUPS[1]))),
+        ("boxes_wall", seen_at_once(large(WALL))),
+        ("boxes_moving_camera", seen_in_passing(large(SETUPS[0]))),
+    ]
+}
+
+fn seen_at_once(setup: Setup) -> Image {
+    seen_by(&[Stand::new(setup)])
+}
+
+fn seen_in_passing(setup: Setup) -> Image {
+    seen_by(&VIEWS.map(|offset| Stand::seen_from(setup, offset)))
+}
+
+/// What is made of the last of several views, with a plate of the first alone.
+fn seen_by(stands: &[Stand]) -> Image {
+    let photo = Photo::plain(stands[0].setup.lights.len());
+    let frames: Vec<_> = stands
+        .iter()
+        .map(|stand| photo.frame(stand, &stand.physical))
+        .collect();
+    let staged = Scene {
+        plates: vec![plate_of(&stands[0], &photo.plate(&stands[0]))],
+        ..scene(&stands[0], &frames[0])
+    };
+    let mut core = core_on(staged, Preset::Balanced).unwrap();
+    for (stand, frame) in stands.iter().zip(&frames) {
+        core.frame(&input(stand, frame)).unwrap();
+    }
+    core.read_picture().unwrap()
+}
+
+#[test]
+fn pictures_are_their_goldens() {
+    let is_software = core_on(scene_of_any(), Preset::Balanced)
+        .unwrap()
+        .gpu()
+        .is_software();
+    let checks = if is_software { ON_SOFTWARE } else { ON_HARDWARE };
+    let failures =
+        pictures().map(|(name, picture)| Goldens::of_project().check(name, &picture, checks).err());
+    let failures: Vec<String> = failures
+        .into_iter()
+        .flatten()
+        .map(|error| error.to_string())
+        .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+fn scene_of_any() -> Scene {
+    let stand = Stand::new(SETUPS[0]);
+    let plate = Photo::plain(1).plate(&stand);
+    scene(&stand, &plate)
+}
+
+/// A part of `cargo xtask bless`: makes them anew, and fails, so that someone looks.
+#[test]
+#[ignore = "writes the goldens"]
+fn bless() {
+    for (name, picture) in pictures() {
+        Goldens::of_project().write(name, &picture).unwrap();
+    }
+    panic!("blessed, look at the pictures, then run the tests again");
+}
