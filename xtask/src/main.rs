@@ -99,10 +99,18 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
 }
 
 /// Rewrites the goldens of the bundled session and, unless some of those are named, of the scenes that only tests know.
-fn bless(toolchain: &Toolchain, args: &[OsString]) -> Result<ExitCode> {
+fn bless(toolchain: &Toolchain, args: &[OsString]) -> anyhow::Result<ExitCode> {
     if args.is_empty() {
         let mut test = toolchain.cargo("test");
-        test.args(["--package", "tests", "--test", "passes", "bless", "--", "--ignored"]);
+        test.args([
+            "--package",
+            "tests",
+            "--test",
+            "passes",
+            "bless",
+            "--",
+            "--ignored",
+        ]);
         // It never ends in success, so that no script goes on without anyone having looked.
         let _ = command::run(&mut test);
     }
