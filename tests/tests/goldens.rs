@@ -40,7 +40,7 @@ fn too_far_from_truth(preset: Preset, scores: &Scores) -> Vec<String> {
         .zip(ceilings(preset))
         .filter_map(|((region, score), ceiling)| {
             let rmse = score.rmse;
-            let is_beyond = !(rmse <= ceiling);
+            let is_beyond = rmse.is_nan() || rmse > ceiling;
             is_beyond.then(|| format!("{preset}, {region}: RMSE {rmse:.2}, at most {ceiling}"))
         });
     beyond.collect()
