@@ -76,7 +76,7 @@ fn errors(source: &str) -> Errors {
         "{n_none} find none, {n_thin} their own"
     );
 
-    let shared = scene.shared(&device);
+    let shared = scene.shared(device);
     let before = [device.map(&scene.image), device.map(&toy.validity)];
     let depth = device.depth(&toy.depth);
     let after = [&toy.normal, &toy.received, &toy.base].map(|map| device.map(map));

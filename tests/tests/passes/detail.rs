@@ -62,7 +62,7 @@ fn errors(source: &str) -> Errors {
         output: 0,
         size,
     };
-    let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+    let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
 
     let photographed = scene.plate.map(|texel| texel.w);
     let told = told(&scene.region, &scene.pictures(0), &photographed, &scene.solution);

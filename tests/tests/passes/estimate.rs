@@ -116,7 +116,7 @@ fn errors(source: &str) -> Errors {
             output: 0,
             size: scene.rect.size_px,
         };
-        let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+        let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
         let texels = Raster::from_fn(scene.rect.size_px, |texel| texel);
         let expected = texels.map(|texel| complete(&scene.region, &known, is_final, texel));
         let both = actual.texels().iter().zip(expected.texels());

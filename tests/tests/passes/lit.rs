@@ -50,7 +50,7 @@ fn errors(source: &str) -> Errors {
     let mut own = buffers(0, &pools);
     own.extend(views(3, &maps));
     own.push((7, wgpu::BindingResource::Sampler(&linear)));
-    let shared = scene.shared(&device);
+    let shared = scene.shared(device);
     device.compute(source, "cs_pool", [&buffers(0, &shared), &own], WORKGROUPS);
     let [cells, accumulated] = [1, 2].map(|k: usize| device.read(&pools[k]));
 

@@ -96,7 +96,7 @@ fn errors(source: &str) -> Errors {
         (BEFORE, &plates[3..]),
         (BEHIND, &plates[..1]),
     ];
-    let of_views = views.map(|(offset, plates)| pairs(&device, source, offset, plates));
+    let of_views = views.map(|(offset, plates)| pairs(device, source, offset, plates));
     Errors::between(of_views.concat())
 }
 

@@ -60,7 +60,7 @@ fn terms(size: UVec2, set: u32) -> Raster<DVec4> {
 /// Colours as they are and as they should be, with every way to shade.
 fn errors(source: &str) -> Errors {
     let device = Device::shared();
-    let pairs = SHADES.map(|shade| pairs(&device, source, shade));
+    let pairs = SHADES.map(|shade| pairs(device, source, shade));
     Errors::between(pairs.concat())
 }
 

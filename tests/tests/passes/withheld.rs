@@ -88,7 +88,7 @@ fn errors(source: &str) -> Errors {
         output: 0,
         size: scene.rect.size_px,
     };
-    let actual = device.draw(draw, [&buffers(0, &scene.shared(&device)), &own]);
+    let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
     let expected = withhold(
         &scene.region,
         &scene.pictures(0),
