@@ -1,6 +1,7 @@
 // The toy's own colours from the camera frame, carried a little past its outline.
 //
-// Where a pixel mixes two surfaces its colour is taken from the nearest pixels that show one, preferring those at its own
+// Where a pixel mixes two surfaces its colour is taken from the nearest pixels that show one, preferring those at its
+// own
 // depth, so that a moved limb carries no rim of what was behind it.
 //
 // Each colour goes with the light it was seen under, so that it can be shown under another.

@@ -1,7 +1,9 @@
 // Each pixel's own residual, denoised where it lies in the real shadow.
 //
-// A shadow is the noisiest part of a photograph, and the plate has the same texture without: the residual is smoothed over
-// a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not in
+// A shadow is the noisiest part of a photograph, and the plate has the same texture without: the residual is smoothed
+// over
+// a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not
+// in
 // shadow keeps its pixels as they are.
 //
 // Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates. CPU reference: reference/detail.rs.
@@ -23,7 +25,8 @@ const DETAIL: f32 = 0.08;
 const SHADOW: f32 = 0.85;
 const LIT: f32 = 0.98;
 
-// Adds a pixel's plate times residual, and its plate squared, where the frame shows the receiver; returns the model there, 1
+// Adds a pixel's plate times residual, and its plate squared, where the frame shows the receiver; returns the model
+// there, 1
 // where it does not.
 fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: ptr<function, vec3f>) -> vec3f {
   let at = vec2f(texel) + 0.5;

@@ -44,7 +44,8 @@ struct Globals {
 @group(0) @binding(0) var<uniform> globals: Globals;
 
 // A point of a receiver: (x, z) in its plane, and its index, MAX_RECEIVERS where the pixel sees none.
-// A vector, since drivers of older Adreno keep structs in fragment shaders at 16 bits. Source: KhronosGroup/WebGL issue 3351.
+// A vector, since drivers of older Adreno keep structs in fragment shaders at 16 bits. Source: KhronosGroup/WebGL issue
+// 3351.
 alias ReceiverPoint = vec3f;
 
 const NO_RECEIVER = vec3f(0.0, 0.0, f32(MAX_RECEIVERS));

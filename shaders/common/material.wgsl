@@ -11,7 +11,8 @@ struct Material {
 @group(2) @binding(1) var base_texture: texture_2d<f32>;
 @group(2) @binding(2) var base_sampler: sampler;
 
-// Half a pixel's footprint, since camera pixels are told from one another by base colour: RMSE of the bundled toy 3.18 codes,
+// Half a pixel's footprint, since camera pixels are told from one another by base colour: RMSE of the bundled toy 3.18
+// codes,
 // 3.53 at a bias of 0, 3.21 without mips.
 const MIP_BIAS: f32 = -1.0;
 

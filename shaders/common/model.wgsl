@@ -3,7 +3,8 @@
 //   M = A (1 - sum f) + bounce A (1 - A) + sum f intensity V
 //   f = fraction falloff / (1 - sum fraction + sum fraction falloff)
 //
-// V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's radiance there, `fraction` that at the
+// V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's radiance there,
+// `fraction` that at the
 // reference point.
 // What hides 1 - A of the sky throws back light that came in through what is open, A: in a crevice it is dark itself.
 // Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one fraction per
@@ -27,7 +28,9 @@ fn bounced(ambient: f32) -> f32 {
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   var ambient_fraction = vec3f(1.0);
-  for (var i = 0u; i < globals.n_lights; i++) { ambient_fraction -= fit.receivers[receiver_of(point)].direct_fraction[i].rgb; }
+  for (var i = 0u; i < globals.n_lights; i++) {
+    ambient_fraction -= fit.receivers[receiver_of(point)].direct_fraction[i].rgb;
+  }
   return ambient * ambient_fraction / total + fit.receivers[receiver_of(point)].bounce.rgb * bounced(ambient);
 }
 

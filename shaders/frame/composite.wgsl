@@ -4,7 +4,8 @@
 //   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
 //                                     passes; also where the frame shows what the model cannot explain
 //
-// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes: linear
+// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes:
+// linear
 // colour, opaque. CPU reference: reference/composite.rs.
 
 struct Drawing {
@@ -46,12 +47,14 @@ const RESIDUAL_HALF: f32 = 0.5;
 // listed, and from which nothing else counts: what the camera saw stays.
 const OUTLIER_NONE: f32 = 0.15;
 const OUTLIER_ALL: f32 = 0.3;
-// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own colour.
+// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own
+// colour.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
 // Distance over which the toy's colours bleed into a pixel beside it.
 const BLEED_PX: f32 = 6.0;
-// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from which it is
+// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from
+// which it is
 // what bled into it.
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
@@ -91,7 +94,8 @@ fn shadow_likeness(residual: vec3f) -> f32 {
   return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
-// The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the weight of
+// The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
+// weight of
 // the camera pixel where toy and receiver mix: 1 where the change is little.
 fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);

@@ -70,7 +70,8 @@ fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
   return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
 }
 
-// The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the base
+// The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the
+// base
 // colour `base`; alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's

@@ -32,7 +32,8 @@ struct PlateViews {
 
 // Distance from a plate's border over which another takes over.
 const FEATHER_PX: f32 = 32.0;
-// Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is blurred.
+// Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is
+// blurred.
 const ANGLE_POWER: f32 = 4.0;
 const CHOICE_POWER: f32 = 6.0;
 // Cosine of the angle from which a plate is no worse for being seen from farther round: it may be the only one.
@@ -40,7 +41,8 @@ const LEAST_COSINE: f32 = 0.1;
 // Weight against that of the best below which a plate is not looked at.
 const LEAST_WEIGHT: f32 = 0.02;
 
-// What a plate has of a point: xy is where it shows it, in pixels; z how well it saw it, positive wherever it did; w is 1 well
+// What a plate has of a point: xy is where it shows it, in pixels; z how well it saw it, positive wherever it did; w is
+// 1 well
 // inside the plate and 0 at its border.
 alias Candidate = vec4f;
 
