@@ -13,7 +13,7 @@ var<workgroup> seen_here: array<atomic<u32>, MAX_RECEIVERS>;
 fn cs_count(@builtin(global_invocation_id) texel: vec3u, @builtin(local_invocation_index) local: u32) {
   if all(texel.xy < textureDimensions(eligible)) {
     let label = textureLoad(eligible, texel.xy, 0).r;
-    if label != 0u { atomicOr(&seen_here[label / N_SETS], 1u << (label % N_SETS)); }
+    if label != 0u && label < MAX_RECEIVERS * N_SETS { atomicOr(&seen_here[label / N_SETS], 1u << (label % N_SETS)); }
   }
   workgroupBarrier();
   if local < MAX_RECEIVERS { atomicOr(&seen_sets[local], atomicLoad(&seen_here[local])); }

@@ -118,6 +118,7 @@ fn fs_search(@builtin(position) at: vec4f) -> Term {
     var remaining = seen_sets[source];
     while remaining != 0u {
       let sets = closest_sets(lights, remaining);
+      if sets == 0u { break; }
       let found = search(texel, lights, source, sets);
       taps += u32(found.w);
       if found.z == 1 {

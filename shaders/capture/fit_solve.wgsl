@@ -178,6 +178,18 @@ fn solve_toy(channel: u32) {
   store_toy(channel);
 }
 
+// Without any valid pixel the starting values stay.
+fn solve_channel(channel: u32, energy: f32) {
+  if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
+  if step.subject == SUBJECT_TOY {
+    if energy > 0.0 { solve_toy(channel); }
+  } else if sums[channel * N_SUMS] > 0.0 {
+    if step.subject == SUBJECT_INTENSITIES { solve_intensities(channel); } else { solve_receiver(channel); }
+  } else if step.subject == SUBJECT_RECEIVER && step.receiver > 0u {
+    assume_receiver(channel);
+  }
+}
+
 fn total_sum(lane: u32) -> f32 {
   var total = 0.0;
   for (var row = 0u; row < step.n_rows; row++) { total += rows[row * 81u + lane]; }
@@ -202,14 +214,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   if lane < 81u && is_accumulated && step.is_last == 1u && fresh_energy > 0.0 {
     accumulated[slot] = sums[lane] * min(1.0, MAX_FRAMES * fresh_energy / energy);
   }
-  if lane >= 3u { return; }
-  if step.subject == SUBJECT_INTENSITIES { solution.gain[lane] *= step.exposure_ratio; }
-  // Without any valid pixel the starting values stay.
-  if step.subject == SUBJECT_TOY {
-    if energy > 0.0 { solve_toy(lane); }
-  } else if sums[lane * N_SUMS] > 0.0 {
-    if step.subject == SUBJECT_INTENSITIES { solve_intensities(lane); } else { solve_receiver(lane); }
-  } else if step.subject == SUBJECT_RECEIVER && step.receiver > 0u {
-    assume_receiver(lane);
-  }
+  // One invocation for all channels: a store to a component of a vector in memory may touch the others.
+  if lane > 0u { return; }
+  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy); }
 }

@@ -59,10 +59,11 @@ impl Baseline {
         }
     }
 
-    /// Follows the camera to another view; textures are kept where the region keeps its size.
+    /// Follows the camera to another view, or other lights; textures are kept where region and lights stay as many.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: BaselinePlan, globals: &Globals, uniform: &Uniform) {
         self.injected = Injected::default();
-        if plan.region.size_px != self.plan.region.size_px {
+        let sizes = |plan: &BaselinePlan| (plan.region.size_px, plan.n_lights);
+        if sizes(&plan) != sizes(&self.plan) {
             gpu.release_groups();
             self.plate = plate_target(gpu, &plan);
             self.targets = Targets::new(gpu, &plan);

@@ -119,6 +119,7 @@ impl Core {
         for plate in &scene.plates {
             check_size("plate", &scene, &plate.image)?;
         }
+        scene.toy.bounds_of_pose(&scene.physical_pose)?;
         self.stage = None;
         self.gpu.release_groups();
         for compiled in self.warm_up(preset) {
@@ -151,7 +152,7 @@ impl Core {
         match made {
             Ok(report) => report,
             Err(refused) => {
-                stage.forget();
+                stage.forget(&self.gpu);
                 Err(refused.into())
             }
         }

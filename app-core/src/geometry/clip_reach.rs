@@ -32,7 +32,7 @@ impl ClipReach {
     ) -> Result<Self, ToyError> {
         toy.pose(physical, anchor_from_object, posed)?;
         let mut outline = Outline::new(Bounds::around(points(posed)).centre());
-        for moment in moments(toy, clip).iter().chain([physical]) {
+        for moment in moments(toy, clip)?.iter().chain([physical]) {
             toy.pose(moment, anchor_from_object, posed)?;
             points(posed).for_each(|p| outline.include(p));
         }
@@ -71,14 +71,14 @@ fn points(posed: &PosedMesh) -> impl Iterator<Item = DVec3> + '_ {
 }
 
 /// Moments of a clip, evenly spaced, or the pose as authored.
-fn moments(toy: &Toy, clip: Option<ClipId>) -> Vec<Pose> {
+fn moments(toy: &Toy, clip: Option<ClipId>) -> Result<Vec<Pose>, ToyError> {
     let Some(clip) = clip else {
-        return vec![Pose::Authored];
+        return Ok(vec![Pose::Authored]);
     };
-    let duration_secs = toy.clips()[clip.index()].duration_secs;
+    let (duration_secs, _) = toy.clamp_time(clip, f64::MAX)?;
     let moment = |k: u32| Pose::Clip {
         clip,
         time_secs: duration_secs * f64::from(k) / f64::from(N_MOMENTS - 1),
     };
-    (0..N_MOMENTS).map(moment).collect()
+    Ok((0..N_MOMENTS).map(moment).collect())
 }

@@ -15,6 +15,7 @@ use crate::geometry::view::{NEAR_M, View};
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
 /// Scene state of a receiver is kept out to this many toy sizes from the toy: a low light's shadow is unbounded.
 const KEPT_REACH_SIZES: f64 = 6.0;
+
 /// Extent of a toy and its shadows in the picture and on the receivers, grown point by point.
 #[derive(Clone, Debug)]
 pub struct Reach<'a> {
@@ -168,7 +169,7 @@ impl<'a> Reach<'a> {
 }
 
 /// Where the line from a homogeneous light through `p` meets y = 0, as (x, z, w); w is not positive where it does not.
-fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
+pub(crate) fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
     let at = light.y * p - p.y * light.truncate();
     DVec3::new(at.x, at.z, light.y - light.w * p.y)
 }

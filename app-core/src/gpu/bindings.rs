@@ -238,6 +238,12 @@ impl BindingCache {
         group.clone()
     }
 
+    /// Drops everything, to be made anew.
+    pub(crate) fn clear(&self) {
+        locked(&self.layouts).clear();
+        self.release_groups();
+    }
+
     /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
     pub(crate) fn release_groups(&self) {
         locked(&self.groups).clear();

@@ -152,7 +152,13 @@ impl Gpu {
 
     /// Runs `work` on the device, and fails where the device refused any of it.
     pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        guarded(&self.device.raw, work)
+        let done = guarded(&self.device.raw, work);
+        if done.is_err() {
+            // What was refused must not be taken from a cache as if it were sound.
+            self.pipelines.clear();
+            self.bindings.clear();
+        }
+        done
     }
 
     /// Number of objects created on the device so far, by kind.

@@ -97,6 +97,19 @@ impl PipelineCache {
         cached(&self.computes, spec, || self.compile_compute(on, spec))
     }
 
+    /// Drops everything, to be compiled anew.
+    pub(crate) fn clear(&self) {
+        self.modules
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clear();
+        self.draws.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.computes
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clear();
+    }
+
     fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
         let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
         let module = self.module(device, spec.shader);

@@ -9,28 +9,31 @@ use crate::geometry::color::{linear_from_srgb, srgb_from_linear};
 /// Texels are averages over the area that they cover of the level before, in linear light; a size that cannot be halved is
 /// rounded down. Source: Guthe and Heckbert 2005 (non-power-of-two mipmap creation).
 pub(crate) fn mips(size_px: UVec2, rgba8_srgb: &[u8]) -> Vec<Vec<u8>> {
-    let (mut level, mut size_px) = (linear(rgba8_srgb), size_px);
+    let of_code: [f32; 256] = std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0));
+    let (texels, _) = rgba8_srgb.as_chunks::<4>();
+    // The picture itself is decoded texel by texel: as floats it would take four times its size.
+    let mut half_px = half(size_px);
+    let mut level = shrunk(|index| decoded(texels[index], &of_code), size_px, half_px);
     let mut levels = Vec::new();
-    while size_px.max_element() > 1 {
-        let half_px = (size_px / 2).max(UVec2::ONE);
-        level = shrunk(&level, size_px, half_px);
-        size_px = half_px;
+    for _ in 0..size_px.max_element().ilog2() {
         levels.push(encoded(&level));
+        let next_px = half(half_px);
+        level = shrunk(|index| level[index], half_px, next_px);
+        half_px = next_px;
     }
     levels
+}
+
+fn half(size_px: UVec2) -> UVec2 {
+    (size_px / 2).max(UVec2::ONE)
 }
 
 /// One texel of linear RGBA.
 type Texel = [f32; 4];
 
-fn linear(rgba8_srgb: &[u8]) -> Vec<Texel> {
-    let of_code: [f32; 256] = std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0));
-    let (texels, _) = rgba8_srgb.as_chunks::<4>();
-    let decoded = texels.iter().map(|[r, g, b, a]| {
-        let [r, g, b] = [r, g, b].map(|code| of_code[usize::from(*code)]);
-        [r, g, b, f32::from(*a) / 255.0]
-    });
-    decoded.collect()
+fn decoded([r, g, b, a]: [u8; 4], linear_of_code: &[f32; 256]) -> Texel {
+    let [r, g, b] = [r, g, b].map(|code| linear_of_code[usize::from(code)]);
+    [r, g, b, f32::from(a) / 255.0]
 }
 
 fn encoded(level: &[Texel]) -> Vec<u8> {
@@ -47,7 +50,7 @@ fn encoded(level: &[Texel]) -> Vec<u8> {
     codes.collect()
 }
 
-fn shrunk(level: &[Texel], from_px: UVec2, to_px: UVec2) -> Vec<Texel> {
+fn shrunk(texel_at: impl Fn(usize) -> Texel, from_px: UVec2, to_px: UVec2) -> Vec<Texel> {
     let [columns, rows] = [0, 1].map(|axis| footprints(from_px[axis], to_px[axis]));
     let mut texels = Vec::with_capacity(to_px.element_product() as usize);
     for row in &rows {
@@ -55,7 +58,7 @@ fn shrunk(level: &[Texel], from_px: UVec2, to_px: UVec2) -> Vec<Texel> {
             let mut sum = [0.0; 4];
             for (y, weight_y) in row {
                 for (x, weight_x) in column {
-                    let texel = level[y * from_px.x as usize + x];
+                    let texel = texel_at(y * from_px.x as usize + x);
                     for (sum, value) in sum.iter_mut().zip(texel) {
                         *sum += weight_x * weight_y * value;
                     }

@@ -39,6 +39,11 @@ impl PlateStore {
         }
     }
 
+    /// Has all plates uploaded again.
+    pub(crate) fn forget(&mut self) {
+        self.loaded.fill(None);
+    }
+
     /// Uploads the plates at `indices`, in their order, unless they are there already.
     pub(crate) fn load(&mut self, gpu: &Gpu, scene: &Scene, indices: &[usize]) {
         for ((layer, slot), index) in (0..).zip(&mut self.loaded).zip(indices) {

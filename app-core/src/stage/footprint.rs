@@ -21,8 +21,8 @@ use crate::preset::Settings;
 use crate::scene::Camera;
 use crate::toy::ToyError;
 
-/// The fade at the region's border, and what the toy may reach beyond its region between two moments of a clip.
-const REGION_MARGIN_PX: u32 = BORDER_PX + 8;
+/// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
+const SPARE_PX: u32 = 8;
 
 /// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {
@@ -30,6 +30,9 @@ pub(super) struct Footprint {
     pub(super) view: View,
     /// Corners of what toy and shadows reach.
     pub(super) corners_in_world: Vec<DVec3>,
+    /// What is reached, and the fade at its border.
+    pub(super) least_region: PixelRect,
+    /// The region of a method that starts with this frame.
     pub(super) region: PixelRect,
     pub(super) bounds: Bounds,
     pub(super) plane_rects: Vec<PlaneRect>,
@@ -98,7 +101,8 @@ impl Stage {
     fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
         let (layout, reach) = (self.layout(), self.reach.as_ref()?);
         let on_view = reach.on_view(&view, &layout);
-        let region = on_view.region()?.grown(REGION_MARGIN_PX, view.image_px);
+        let least_region = on_view.region()?.grown(BORDER_PX, view.image_px);
+        let region = least_region.grown(SPARE_PX, view.image_px);
         let plane_rects = on_view.plane_rects();
         let corners_in_world = corners_in_world(&layout, &reach.bounds, &plane_rects);
         let toy_in_world = layout.world_from_anchor().transform_point3(reach.bounds.centre());
@@ -109,6 +113,7 @@ impl Stage {
             plate_views: plate_views(&self.scene, &layout, &view, &choice, &self.plates.gains),
             plate_fraction: covered_fraction(&self.scene, &layout, &view, &region, &choice),
             corners_in_world,
+            least_region,
             region,
             plane_rects,
             choice,

@@ -46,6 +46,8 @@ pub(crate) struct Stage {
     lights: Lights,
     /// Where the object stands that was learned from.
     world_from_object: DMat4,
+    /// Whether the physical pose on the device is that one.
+    is_object_placed: bool,
     /// Of the physical pose, in object space.
     bounds_in_object: Bounds,
     /// Of the physical pose, in anchor space.
@@ -75,6 +77,8 @@ struct MethodState {
     /// Relative, of `image`.
     exposure: f64,
     image: Option<Arc<Image>>,
+    /// Of the lights that were learned under, in the list that they were given in.
+    light_indices: Vec<usize>,
     /// Visibilities were injected after it was learned.
     is_visibility_outdated: bool,
     /// The object or the lights moved after it was learned.
@@ -117,6 +121,7 @@ impl Stage {
             output: Texture::target(gpu, "output", size_px, OUTPUT_FORMAT),
             preset,
             world_from_object: scene.world_from_object,
+            is_object_placed: true,
             scene,
             is_shadow_withheld: false,
             reach: None,
@@ -142,14 +147,23 @@ impl Stage {
         self.state.as_ref().map(|state| &state.method)
     }
 
-    /// Indices, in the list that they were given in, of the lights in use.
+    /// Indices, in the list that they were given in, of the lights that were learned under.
     pub(crate) fn light_indices(&self) -> &[usize] {
-        &self.lights.indices
+        self.state.as_ref().map_or(&[], |state| &state.light_indices)
     }
 
-    /// Drops what was learned, so that the next frame learns anew.
-    pub(crate) fn forget(&mut self) {
+    /// Drops what was learned and what was uploaded of frames, which a refused frame may have left half done.
+    pub(crate) fn forget(&mut self, gpu: &Gpu) {
+        self.drop_method(gpu);
+        self.frame_image = None;
+        self.plates.forget();
+        self.is_object_placed = false;
+    }
+
+    /// Drops the method with its targets, of which bind groups are kept, too.
+    fn drop_method(&mut self, gpu: &Gpu) {
         self.state = None;
+        gpu.release_groups();
     }
 
     /// Replaces visibilities in what follows, where anything was learned.
@@ -205,8 +219,10 @@ impl Stage {
         };
         #[allow(clippy::cast_possible_truncation, reason = "both within 1e9 of 1")]
         let exposure_ratio = (input.exposure / state.exposure) as f32;
-        state.exposure = input.exposure;
-        state.image = Some(Arc::clone(&input.image));
+        if change >= Change::Picture {
+            state.exposure = input.exposure;
+            state.image = Some(Arc::clone(&input.image));
+        }
         let Some(MethodState { method, .. }) = &self.state else {
             return;
         };

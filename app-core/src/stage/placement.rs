@@ -19,7 +19,7 @@ impl Stage {
     /// Takes over the frame's pose of the object and its lights, where they differ from those that were learned under.
     pub(super) fn follow_placement(&mut self, gpu: &Gpu, input: &FrameInput) -> Result<(), ToyError> {
         let mut is_moved = false;
-        if self.is_object_moved(input) {
+        if !self.is_object_placed || self.is_object_moved(input) {
             self.place_object(gpu, &input.world_from_object)?;
             is_moved = true;
         }
@@ -42,17 +42,17 @@ impl Stage {
     fn is_object_moved(&self, input: &FrameInput) -> bool {
         let poses = [&self.world_from_object, &input.world_from_object];
         let corners_in_object = self.bounds_in_object.corners();
-        poses[0] != poses[1]
-            && between_poses(&self.view(&input.camera), poses, corners_in_object) > SAME_POSE_PX
+        let view = self.view(&input.camera);
+        poses[0] != poses[1] && between_poses(&view, &self.layout(), poses, corners_in_object) > SAME_POSE_PX
     }
 
     fn place_object(&mut self, gpu: &Gpu, world_from_object: &DMat4) -> Result<(), ToyError> {
+        let anchor_from_object = self.layout().world_from_anchor().inverse() * *world_from_object;
+        self.scene
+            .toy
+            .pose(&self.scene.physical_pose, &anchor_from_object, &mut self.posed)?;
         self.world_from_object = *world_from_object;
-        self.scene.toy.pose(
-            &self.scene.physical_pose,
-            &self.anchor_from_object(),
-            &mut self.posed,
-        )?;
+        self.is_object_placed = true;
         self.physical_bounds = Bounds::around(self.posed.positions.iter().map(|p| p.as_dvec3()));
         self.toy.physical.write(gpu, &self.posed);
         Ok(())

@@ -32,13 +32,13 @@ use crate::scene::{Light, Plate};
 /// Sizes of the region under a moving camera, so that it keeps one for a while.
 const REGION_STEP_PX: u32 = 64;
 
-/// How much of the method's state a frame can reuse; each takes in those before it.
+/// How much of the method's state a frame can reuse.
 enum Reuse {
     /// Not even its targets.
     Nothing,
     /// Targets and pipelines: object or lights moved.
     Targets,
-    /// The same, with the work region: visibilities were injected.
+    /// Targets and the work region: visibilities were injected.
     Region,
     /// What was learned of the scene, in another view.
     SceneState,
@@ -81,7 +81,7 @@ impl Stage {
             Method::Baseline(_) => true,
         };
         let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
-            && state.method.region().contains(&footprint.region);
+            && state.method.region().contains(&footprint.least_region);
         // What was injected belongs to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         if !has_grids {
@@ -101,6 +101,7 @@ impl Stage {
 
     /// Starts from nothing.
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        self.drop_method(gpu);
         let method = match self.preset.settings() {
             Settings::Model(settings) => {
                 let plan = Plan::new(&self.facts(footprint, footprint.region), &self.settings(settings));
@@ -116,6 +117,7 @@ impl Stage {
             view: footprint.view.clone(),
             exposure: input.exposure,
             image: None,
+            light_indices: self.lights.indices.clone(),
             is_visibility_outdated: false,
             is_placement_outdated: false,
         });
@@ -161,6 +163,7 @@ impl Stage {
                 let light_points = self.light_points(&model.region.plan);
                 model.relocate(gpu, light_points, &self.toy.physical.around);
             }
+            state.light_indices.clone_from(&self.lights.indices);
             self.state = Some(state);
         }
     }

@@ -64,7 +64,11 @@ fn structs_in(
         .expressions
         .iter()
         .map(|(handle, _)| info[handle].ty.inner_with(&module.types));
-    let is_struct = |inner: &&TypeInner| matches!(inner, TypeInner::Struct { .. }) && Some(*inner) != output;
+    let is_struct = |inner: &&TypeInner| match inner {
+        TypeInner::Struct { .. } => Some(*inner) != output,
+        TypeInner::Array { base, .. } => holds_struct(module, *base),
+        _ => false,
+    };
     let mut problems = Vec::new();
     if values.filter(is_struct).count() > 0 {
         problems.push(format!("{name}: a struct as a value in a fragment shader"));

@@ -40,19 +40,27 @@ pub(crate) fn first_input() -> FrameInput {
     SMALL.1.clone()
 }
 
-static SMALL: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
+/// Both in full size.
+pub(crate) fn whole() -> (Scene, FrameInput) {
     let session = Capture::open(Folder::open(BUNDLED).unwrap()).unwrap();
-    let scene = session.scene();
+    (
+        session.scene().clone(),
+        FrameInput::from(&session.frame(0).unwrap()),
+    )
+}
+
+static SMALL: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
+    let (scene, input) = whole();
     let plates = scene.plates.iter().map(|plate| Plate {
         camera: small_camera(&plate.camera),
         image: small(&plate.image),
     });
-    let input = FrameInput::from(&session.frame(0).unwrap());
+    let plates = plates.collect();
     let small_scene = Scene {
         width_px: scene.width_px / SHRINK,
         height_px: scene.height_px / SHRINK,
-        plates: plates.collect(),
-        ..scene.clone()
+        plates,
+        ..scene
     };
     let small_input = FrameInput {
         camera: small_camera(&input.camera),

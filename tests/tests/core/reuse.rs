@@ -11,7 +11,7 @@ use app_core::toy::NodePose;
 use glam::{DMat4, DVec3};
 use harness::compare::Pair;
 
-use crate::bundled::{core, first_input, picture_of, scene};
+use crate::bundled::{core, first_input, picture_of, scene, whole};
 
 #[test]
 fn the_pose_as_authored_is_a_pose_like_any_other() {
@@ -149,6 +149,46 @@ fn an_object_that_was_moved_is_learned_anew_where_it_stands() {
     );
 }
 
+/// Larger and farther by as much, the toy looks the same, but not its shadow.
+#[test]
+fn motion_that_only_the_shadow_shows_is_learned_from() {
+    let mut core = core();
+    let first = first_frame(&mut core);
+    let camera = first.camera.world_from_camera.w_axis.truncate();
+    let farther = DMat4::from_translation(camera)
+        * DMat4::from_scale(DVec3::splat(1.02))
+        * DMat4::from_translation(-camera);
+    let moved = FrameInput {
+        world_from_object: farther * first.world_from_object,
+        ..first
+    };
+    assert_eq!(learned(&mut core, &moved), Learned::Scene);
+}
+
+#[test]
+fn the_baseline_follows_a_number_of_lights() {
+    let mut core = core();
+    let (scene, first) = (scene(), first_input());
+    let aside = Light::Sphere {
+        position_in_world: DVec3::new(0.5, 0.6, 0.4),
+        radius_m: 0.01,
+    };
+    let lights = vec![scene.lights[0], aside];
+    let lit = FrameInput {
+        lights: Some(lights.as_slice().into()),
+        ..first.clone()
+    };
+    core.set_scene(scene.clone(), Preset::Paper).unwrap();
+    core.frame(&first).unwrap();
+    core.frame(&lit).unwrap();
+    let followed = core.read_picture().unwrap();
+    core.set_scene(Scene { lights, ..scene }, Preset::Paper).unwrap();
+    core.frame(&first).unwrap();
+    let fresh = core.read_picture().unwrap();
+    let followed = rms([&fresh, &followed]);
+    assert!(followed < MAX_RMS, "{followed}");
+}
+
 #[test]
 fn lights_that_a_frame_brings_are_learned_under() {
     let mut core = core();
@@ -219,20 +259,34 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
     assert_eq!(learned(&mut core, &overexposed), Learned::Picture);
     let doubled = gain(&core) / before;
     assert!((doubled - 2.0).abs() < 1e-5, "{doubled}");
-    let still = FrameInput {
-        image: Arc::new(white),
-        ..overexposed
+    let again = |exposure: f64| FrameInput {
+        image: Arc::new(white.clone()),
+        exposure,
+        ..overexposed.clone()
     };
+    let still = again(2.0);
     assert_eq!(learned(&mut core, &still), Learned::Picture);
     assert!(
         (gain(&core) / before - doubled).abs() < 1e-5,
         "the exposure stayed"
     );
+    // Told late, of a picture that was learned from: it counts from the next picture on.
+    let late = FrameInput {
+        exposure: 4.0,
+        ..still
+    };
+    assert_eq!(learned(&mut core, &late), Learned::Nothing);
+    assert_eq!(learned(&mut core, &again(4.0)), Learned::Picture);
+    assert!(
+        (gain(&core) / before - 4.0).abs() < 1e-4,
+        "{}",
+        gain(&core) / before
+    );
 }
 
 /// A scene and a frame whose toy fills a small part of the picture; what that shows is the plate alone.
 fn from_afar() -> (Scene, FrameInput) {
-    let (mut scene, mut input) = (scene(), first_input());
+    let (mut scene, mut input) = whole();
     let cameras = scene.plates.iter_mut().map(|plate| &mut plate.camera);
     for camera in cameras.chain([&mut input.camera]) {
         camera.intrinsics.fx_px *= 0.3;
@@ -263,7 +317,7 @@ fn the_region_grows_with_a_pose_that_reaches_beyond_it() {
     core.set_scene(scene.clone(), Preset::Balanced).unwrap();
     let mut before = core.frame(&lifted(0.0)).unwrap().region.unwrap();
     // Far beyond the grids over the receivers, what is known on these does not serve any longer.
-    for (height_m, expected) in [(0.01, Learned::View), (0.08, Learned::Scene)] {
+    for (height_m, expected) in [(0.012, Learned::View), (0.08, Learned::Scene)] {
         let high = lifted(height_m);
         assert_eq!(learned(&mut core, &high), expected);
         let after = core.frame(&high).unwrap().region.unwrap();

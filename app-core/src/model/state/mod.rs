@@ -63,6 +63,7 @@ impl SceneState {
             .write(&self.solution, &[solution::start(self.n_lights)]);
         recorder.clear(&self.residual.accumulated);
         recorder.clear(&self.tints.accumulated);
+        recorder.clear(&self.lit.cells);
         self.forget_sums(recorder);
     }
 
