@@ -119,7 +119,7 @@ impl Frustum {
             let rows = [
                 DVec4::X / slope,
                 DVec4::Y / slope,
-                DVec4::W * (distance_m - r),
+                DVec4::new(0.0, 0.0, 1.0, r) * (distance_m - r) / (2.0 * r),
                 DVec4::new(0.0, 0.0, -1.0, distance_m),
             ];
             (rows, 2.0 * slope)

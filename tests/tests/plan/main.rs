@@ -10,4 +10,5 @@ mod penumbra;
 mod preset;
 mod region;
 mod rig;
+mod shadow_atlas;
 mod transforms;
