@@ -1,8 +1,5 @@
 // Projection of a point from a light onto a receiver, and the clip position of its shadow. Source: Blinn 1988.
 
-// Near plane of flattened points, in metres of depth.
-const NEAR_M: f32 = 0.01;
-
 // Homogeneous (x, z, w): the line from the light through the point meets y = 0 at (x, z) / w. w is the height of the
 // light above the point; nothing is divided here, since the rasteriser clips points above the light.
 fn flatten(light: vec4f, in_plane: vec3f) -> vec3f {
@@ -12,5 +9,5 @@ fn flatten(light: vec4f, in_plane: vec3f) -> vec3f {
 // Clip position of a flattened point: 0 <= z keeps points in front of the camera, z <= w points below the light.
 fn clip_from_flattened(receiver: u32, shadow: vec3f) -> vec4f {
   let at = globals.receivers[receiver].clip_from_plane * shadow;
-  return vec4f(at.xy, at.z - NEAR_M * shadow.z, at.z);
+  return vec4f(at.xy, at.z - globals.near_m * shadow.z, at.z);
 }

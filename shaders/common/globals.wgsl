@@ -38,7 +38,9 @@ struct Globals {
   n_receivers: u32,
   // Bit k is 1 where receiver k is seen from behind.
   seen_from_behind: u32,
-  _pad_1: vec2u,
+  // Depth in metres nearer than which a shadow is cut off: a small part of the distance to the toy.
+  near_m: f32,
+  _pad_1: u32,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;

@@ -7,8 +7,8 @@ use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::PixelRect;
 use crate::scene::{Camera, Intrinsics, Light};
 
-/// Nearest depth that the camera can show, in metres.
-pub(crate) const NEAR_M: f64 = 0.01;
+/// Nearest depth that a camera shows, in metres: of any scene a small part, since reversed depth loses no precision by it.
+pub(crate) const NEAR_M: f64 = 1e-6;
 
 /// A camera in the world.
 #[derive(Clone, Debug, PartialEq)]

@@ -47,10 +47,13 @@ shared_struct! {
         pub region_origin_px: [f32; 2],
         pub n_receivers: u32,
         pub seen_from_behind: u32,
-        pub _pad_1: [u32; 2],
+        pub near_m: f32,
+        pub _pad_1: u32,
     }
 }
 
+/// Depth nearer than which a shadow is cut off, over the camera's distance from the toy.
+const NEAR_OVER_DISTANCE: f64 = 0.02;
 /// Width of the fade into untouched pixels at an inner border of the region.
 pub(crate) const BORDER_PX: u32 = 24;
 
@@ -58,6 +61,7 @@ pub(crate) const BORDER_PX: u32 = 24;
 #[must_use]
 pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globals {
     let world_from_anchor = layout.world_from_anchor();
+    let camera_in_anchor = view.camera_in(&world_from_anchor);
     let mut receivers = [bytemuck::Zeroable::zeroed(); MAX_RECEIVERS];
     for (slot, receiver) in receivers.iter_mut().zip(layout.receivers) {
         *slot = receiver_plane(view, rect, layout, receiver);
@@ -80,13 +84,14 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
             fade(end_px.x < view.image_px.x),
             fade(end_px.y < view.image_px.y),
         ],
-        camera_in_anchor: view.camera_in(&world_from_anchor).as_vec3().to_array(),
+        camera_in_anchor: camera_in_anchor.as_vec3().to_array(),
         n_lights: count(layout.lights.len(), MAX_LIGHTS),
         region_size_px: rect.size_px.as_vec2().to_array(),
         region_origin_px: rect.origin_px.as_vec2().to_array(),
         n_receivers: count(layout.receivers.len(), MAX_RECEIVERS),
         seen_from_behind: seen_from_behind(view, layout.receivers),
-        _pad_1: [0; 2],
+        near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
+        _pad_1: 0,
     }
 }
 
