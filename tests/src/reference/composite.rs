@@ -55,7 +55,7 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
         let ambient = coarse_at(ambient, region, at);
         shown
             .solution
-            .receiver_model(region, point, ambient, visibility.at(texel))
+            .receiver_model::<f64>(region, point, ambient, visibility.at(texel))
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let after = model(&shown.ambient, &shown.visibility);

@@ -43,7 +43,7 @@ pub fn told(
         let is_told = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
         let point = region.receiver_point(at).filter(|_| is_told)?;
         let ambient = coarse_at(&pictures.ambient, region, at);
-        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
         let plate = pictures.plate.at(texel);
         let is_dark = plate.cmplt(DVec3::splat(DARKEST_USABLE));
         Some(Told {

@@ -41,7 +41,7 @@ pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2
     let ambient = coarse_at(&pictures.ambient, region, at);
     let model = known
         .solution
-        .receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        .receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
     let told = smoothstep(TELLS_NONE, TELLS_ALL, model.min_element());
     if !is_final || pictures.seen.at(texel) == 0.0 || told == 0.0 {
         return smooth.extend(ESTIMATED);

@@ -29,7 +29,7 @@ pub fn pool(
                 continue;
             };
             let ambient = coarse_at(&pictures.ambient, region, at);
-            let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+            let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
             let left = model.min_element();
             if left > 0.0 {
                 let weight = left.min(1.0).powf(LIT_POWER);

@@ -1,4 +1,5 @@
 //! The passes once more: plain functions on the processor, in 64 bits, without anything of the graphics device.
+//! Some compute in 32 bits, too, to tell what rounding costs: their functions ask for a [`Real`](real::Real).
 //!
 //! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
@@ -22,6 +23,7 @@ pub mod occlusion;
 pub mod pcss;
 pub mod plate;
 pub mod raster;
+pub mod real;
 pub mod residual;
 pub mod retarget;
 pub mod search;

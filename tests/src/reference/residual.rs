@@ -49,7 +49,7 @@ impl Sums {
             return;
         }
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
-        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
         let unexplained = frame / solution.gain - plate * model;
         let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {

@@ -20,7 +20,7 @@ pub fn withhold(
         let (marks, at) = (validity.at(texel), centre_px(texel));
         let in_shadow = region.receiver_point(at).is_some_and(|point| {
             let ambient = coarse_at(&pictures.ambient, region, at);
-            let left = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+            let left = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
             marks.x > 0.0 && left.min_element() < LIT
         });
         if in_shadow {

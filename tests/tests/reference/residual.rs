@@ -41,7 +41,7 @@ fn constant_residual_is_pooled_as_it_is() {
     };
     pictures.frame = Raster::from_fn(SIZE, |at| {
         let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
-        let model = solution.receiver_model(&region, point, 0.9, visibility);
+        let model = solution.receiver_model::<f64>(&region, point, 0.9, visibility);
         if is_hidden(at) {
             DVec3::ONE
         } else {
