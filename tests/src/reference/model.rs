@@ -7,7 +7,7 @@ use app_core::internals::{SceneLayout, View, globals};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
-use super::real::{Real, Vector};
+use super::real::{Real, Vector, transform};
 
 /// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
 pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
@@ -54,9 +54,10 @@ pub struct ReceiverPoint {
 impl ReceiverPlane {
     /// The point of the endless plane, (x, z) in metres, that is seen at `region_px`.
     #[must_use]
-    pub fn plane_point(&self, region_px: DVec2) -> Option<DVec2> {
-        let at = self.plane_from_region_px * region_px.extend(1.0);
-        (at.z > 0.0).then(|| at.truncate() / at.z)
+    pub fn plane_point<R: Real>(&self, region_px: DVec2) -> Option<DVec2> {
+        let at = transform::<R>(&self.plane_from_region_px, region_px.extend(1.0).into());
+        let [x, z, w] = at.0;
+        (w > R::ZERO).then(|| (Vector([x, z]) / w).into())
     }
 
     /// Where a point of the plane is seen.
@@ -134,7 +135,7 @@ impl Region {
     #[must_use]
     pub fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
-            let in_plane = plane.plane_point(region_px)?;
+            let in_plane = plane.plane_point::<f64>(region_px)?;
             let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
             plane
                 .rect

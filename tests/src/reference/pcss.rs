@@ -75,7 +75,7 @@ pub fn soft_visibility(
     }
     let in_plane = point.in_plane;
     let half_pixel_m = plane
-        .plane_point(at + DVec2::X)
+        .plane_point::<f64>(at + DVec2::X)
         .map_or(0.0, |next| 0.5 * next.distance(in_plane));
     let blockers = |offsets: &mut dyn Iterator<Item = DVec2>| -> Vec<f64> {
         offsets

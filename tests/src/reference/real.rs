@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use glam::DVec3;
+use glam::{DMat3, DVec2, DVec3};
 
 /// A floating-point number.
 pub trait Real:
@@ -126,11 +126,74 @@ impl<R: Real, const N: usize> Vector<R, N> {
         (self * other).0.into_iter().sum()
     }
 
+    /// Length.
+    #[must_use]
+    pub fn length(self) -> R {
+        self.dot(self).sqrt()
+    }
+
     /// In the same direction, of length 1.
     #[must_use]
     pub fn normalize(self) -> Self {
-        self * (R::ONE / self.dot(self).sqrt())
+        self * (R::ONE / self.length())
     }
+
+    /// The smaller of each two components; that of `other` where they have no order.
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    /// The larger of each two components; that of `other` where they have no order.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    /// The smallest component; those after one that has no order decide.
+    #[must_use]
+    pub fn min_element(self) -> R {
+        let backwards = self.0.into_iter().rev();
+        backwards.fold(self[N - 1], |least, one| if one < least { one } else { least })
+    }
+
+    /// The largest component; those after one that has no order decide.
+    #[must_use]
+    pub fn max_element(self) -> R {
+        let backwards = self.0.into_iter().rev();
+        backwards.fold(self[N - 1], |most, one| if one > most { one } else { most })
+    }
+}
+
+impl<R: Real> Vector<R, 3> {
+    /// At right angles to both, as long as the area between them.
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        let ([x, y, z], [u, v, w]) = (self.0, other.0);
+        Self([y * w - v * z, z * u - w * x, x * v - u * y])
+    }
+
+    /// Two unit vectors at right angles to each other and to this one, which is of length 1.
+    ///
+    /// Source: Duff et al. 2017.
+    #[must_use]
+    pub fn orthonormal_pair(self) -> (Self, Self) {
+        let [x, y, z] = self.0;
+        let sign = R::from_f64(z.to_f64().signum());
+        let a = -R::ONE / (sign + z);
+        let b = x * y * a;
+        (
+            Self([R::ONE + sign * x * x * a, sign * b, -sign * x]),
+            Self([b, sign + y * y * a, -y]),
+        )
+    }
+}
+
+/// `matrix` times `at`.
+#[must_use]
+pub fn transform<R: Real>(matrix: &DMat3, at: Vector<R, 3>) -> Vector<R, 3> {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vector::from);
+    x * at[0] + y * at[1] + z * at[2]
 }
 
 impl<R, const N: usize> Index<usize> for Vector<R, N> {
@@ -154,6 +217,14 @@ impl<R: Real, const N: usize> Sub for Vector<R, N> {
 
     fn sub(self, other: Self) -> Self {
         self.zip(other, |a, b| a - b)
+    }
+}
+
+impl<R: Real, const N: usize> Neg for Vector<R, N> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(self.0.map(Neg::neg))
     }
 }
 
@@ -183,9 +254,29 @@ impl<R: Real, const N: usize> Mul<R> for Vector<R, N> {
     }
 }
 
+impl<R: Real, const N: usize> Div<R> for Vector<R, N> {
+    type Output = Self;
+
+    fn div(self, divisor: R) -> Self {
+        Self(self.0.map(|value| value / divisor))
+    }
+}
+
 impl<R: Real, const N: usize> Sum for Vector<R, N> {
     fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
         all.fold(Self::splat(R::ZERO), Add::add)
+    }
+}
+
+impl<R: Real> From<DVec2> for Vector<R, 2> {
+    fn from(value: DVec2) -> Self {
+        Self(value.to_array().map(R::from_f64))
+    }
+}
+
+impl<R: Real> From<Vector<R, 2>> for DVec2 {
+    fn from(value: Vector<R, 2>) -> Self {
+        value.0.map(R::to_f64).into()
     }
 }
 

@@ -50,7 +50,7 @@ fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
     let at = centre_px(texel);
     let beyond = || ReceiverPoint {
         receiver: 0,
-        in_plane: region.receivers[0].plane_point(at).unwrap_or_default(),
+        in_plane: region.receivers[0].plane_point::<f64>(at).unwrap_or_default(),
     };
     region.receiver_point(at).unwrap_or_else(beyond)
 }

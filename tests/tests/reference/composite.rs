@@ -7,7 +7,7 @@ use harness::reference::raster::Raster;
 
 use crate::flat::{grid, region, scatter, truth, two_bulbs};
 
-const SIZE: UVec2 = UVec2::new(61, 37);
+pub(crate) const SIZE: UVec2 = UVec2::new(61, 37);
 
 fn noise(seed: u32) -> Raster<f64> {
     Raster::from_fn(SIZE, |at| scatter(at.x + SIZE.x * at.y, seed))
@@ -18,7 +18,7 @@ fn colors(seed: u32) -> Raster<DVec3> {
 }
 
 /// A frame that no model explains, with nothing moved yet.
-fn scene() -> (Region, Pictures, Shown) {
+pub(crate) fn scene() -> (Region, Pictures, Shown) {
     let visibility = noise(2).map(|value| DVec4::new(value, 1.0 - value, 0.0, 0.0));
     let ambient = Raster::from_fn(UVec2::new(9, 6), |at| scatter(at.x + at.y, 3));
     let pictures = Pictures {
