@@ -70,7 +70,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     let sample = |texel: &UVec2| {
         let at = centre_px(*texel);
         let point = region
-            .receiver_point(at)
+            .receiver_point::<f64>(at)
             .filter(|_| pictures.seen.at(*texel) > 0.0)?;
         Some(ReceiverSample {
             frame: pictures.frame.at(*texel),

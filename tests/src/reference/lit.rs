@@ -23,7 +23,7 @@ pub fn pool(
         for texel in grid.texels_of(region, receiver, cell) {
             let at = centre_px(texel);
             let Some(point) = region
-                .receiver_point(at)
+                .receiver_point::<f64>(at)
                 .filter(|_| pictures.seen.at(texel) > 0.0)
             else {
                 continue;

@@ -34,9 +34,12 @@ pub mod validity;
 pub mod visibility;
 pub mod withhold;
 
+use real::Real;
+
 /// Hermite step from 0 at `low` to 1 at `high`.
 #[must_use]
-pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
+pub fn smoothstep<R: Real>(low: f64, high: f64, x: R) -> R {
+    let (low, high) = (R::from_f64(low), R::from_f64(high));
+    let t = ((x - low) / (high - low)).clamp(R::ZERO, R::ONE);
+    t * t * (R::from_f64(3.0) - R::from_f64(2.0) * t)
 }

@@ -126,17 +126,18 @@ impl Region {
 
     /// The nearest receiver seen at `region_px`, and the point of it; none where that is the receiver's back.
     #[must_use]
-    pub fn receiver_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
-        self.surface_point(region_px)
+    pub fn receiver_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        self.surface_point::<R>(region_px)
             .filter(|point| self.plane_of(*point).shows_front())
     }
 
     /// The nearest receiver seen at `region_px`, from whichever side, and the point of it.
     #[must_use]
-    pub fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+    pub fn surface_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
-            let in_plane = plane.plane_point::<f64>(region_px)?;
-            let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
+            let in_plane = plane.plane_point::<R>(region_px)?;
+            let [_, _, inverse_depth] =
+                transform::<R>(&plane.plane_from_region_px, region_px.extend(1.0).into()).0;
             plane
                 .rect
                 .holds(in_plane)
@@ -245,8 +246,10 @@ pub fn centre_px(texel: UVec2) -> DVec2 {
 
 /// The value of a coarse map of the whole region at `region_px`.
 #[must_use]
-pub fn coarse_at(map: &Raster<f64>, region: &Region, region_px: DVec2) -> f64 {
-    map.bilinear(region_px * map.size().as_dvec2() / region.size_px.as_dvec2())
+pub fn coarse_at<R: Real>(map: &Raster<f64>, region: &Region, region_px: DVec2) -> R {
+    let sizes_px = [map.size(), region.size_px].map(|size_px| Vector::from(size_px.as_dvec2()));
+    let at: Vector<R, 2> = Vector::from(region_px) * sizes_px[0] / sizes_px[1];
+    map.bilinear(at, R::from_f64)
 }
 
 /// 1 where both linear values carry evidence, else 0.

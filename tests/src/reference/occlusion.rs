@@ -112,7 +112,7 @@ pub fn hidden_share<R: Real>(
         0
     } else {
         let centre = (texel.as_dvec2() + 0.5) * region_px_per_texel;
-        region.receiver_point(centre)?.receiver
+        region.receiver_point::<R>(centre)?.receiver
     };
     let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
     let mut n_hidden = 0.0;

@@ -66,7 +66,7 @@ pub fn soft_visibility(
     texel: UVec2,
 ) -> f64 {
     let at = centre_px(texel);
-    let Some(point) = region.receiver_point(at) else {
+    let Some(point) = region.receiver_point::<f64>(at) else {
         return 1.0;
     };
     let (plane, softness) = (region.plane_of(point), &of_receivers[point.receiver]);

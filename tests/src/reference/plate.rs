@@ -57,7 +57,7 @@ impl Viewpoint {
                 in_plane,
             })
         };
-        self.region.surface_point(region_px).or_else(beyond)
+        self.region.surface_point::<f64>(region_px).or_else(beyond)
     }
 
     /// Where the camera sees a point; none where it does not face it, or another receiver is nearer there.
@@ -67,7 +67,7 @@ impl Viewpoint {
         };
         let px = self.region.plane_of(point).region_px(point.in_plane)?;
         let own = inverse_depth(point.receiver, px);
-        let is_free = self.region.surface_point(px).is_none_or(|nearest| {
+        let is_free = self.region.surface_point::<f64>(px).is_none_or(|nearest| {
             nearest.receiver == point.receiver
                 || inverse_depth(nearest.receiver, px) <= own * (1.0 + SAME_DEPTH)
         });

@@ -43,6 +43,9 @@ pub trait Real:
     /// Without its sign.
     #[must_use]
     fn abs(self) -> Self;
+    /// The nearest whole number that is not larger.
+    #[must_use]
+    fn floor(self) -> Self;
     /// The larger one.
     #[must_use]
     fn max(self, other: Self) -> Self;
@@ -80,6 +83,10 @@ macro_rules! impl_real {
 
             fn abs(self) -> Self {
                 self.abs()
+            }
+
+            fn floor(self) -> Self {
+                self.floor()
             }
 
             fn max(self, other: Self) -> Self {
@@ -136,6 +143,24 @@ impl<R: Real, const N: usize> Vector<R, N> {
     #[must_use]
     pub fn normalize(self) -> Self {
         self * (R::ONE / self.length())
+    }
+
+    /// Each component without its sign.
+    #[must_use]
+    pub fn abs(self) -> Self {
+        Self(self.0.map(R::abs))
+    }
+
+    /// Each component's nearest whole number that is not larger.
+    #[must_use]
+    pub fn floor(self) -> Self {
+        Self(self.0.map(R::floor))
+    }
+
+    /// From this at 0 to `other` at 1.
+    #[must_use]
+    pub fn lerp(self, other: Self, at: R) -> Self {
+        self * (R::ONE - at) + other * at
     }
 
     /// The smaller of each two components; that of `other` where they have no order.

@@ -40,7 +40,7 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, region: &Region, pictures: &Pictures, solution: &Solution, texel: UVec2) {
-        let Some(point) = region.receiver_point(centre_px(texel)) else {
+        let Some(point) = region.receiver_point::<f64>(centre_px(texel)) else {
             return;
         };
         let (frame, plate) = (pictures.frame.at(texel), pictures.plate.at(texel));

@@ -139,7 +139,7 @@ fn share_of_the_lights_over_the_receiver() {
         let size = run.direct_fraction.size();
         let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
         let expected = Raster::from_fn(size, |texel| {
-            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
+            let Some(point) = run.region.receiver_point::<f64>(centre_px(texel) * scale) else {
                 return DVec3::ZERO;
             };
             let lights = 0..run.region.lights.len();

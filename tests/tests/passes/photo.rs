@@ -52,7 +52,7 @@ fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
         receiver: 0,
         in_plane: region.receivers[0].plane_point::<f64>(at).unwrap_or_default(),
     };
-    region.receiver_point(at).unwrap_or_else(beyond)
+    region.receiver_point::<f64>(at).unwrap_or_else(beyond)
 }
 
 /// Plate and frame of wood under the true light, with a little that no model explains.

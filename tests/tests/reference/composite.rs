@@ -40,7 +40,9 @@ pub(crate) fn scene() -> (Region, Pictures, Shown) {
 }
 
 fn picture(region: &Region, pictures: &Pictures, shown: &Shown) -> Raster<DVec3> {
-    Raster::from_fn(SIZE, |texel| receiver_color(region, pictures, shown, texel)[0])
+    Raster::from_fn(SIZE, |texel| {
+        receiver_color::<f64>(region, pictures, shown, texel)[0]
+    })
 }
 
 #[test]
@@ -108,7 +110,7 @@ fn border_fades_into_the_frame_at_inner_edges_alone() {
             assert!((faded.at(at) - expected).abs().max_element() < 1e-12, "{at}");
         }
     }
-    assert!((inside_border(&region, UVec2::ZERO) - 1.0).abs() < 1e-12);
+    assert!((inside_border::<f64>(&region, UVec2::ZERO) - 1.0).abs() < 1e-12);
 
     // What hides the receiver goes even there.
     pictures.seen = Raster::from_fn(SIZE, |_| 0.0);

@@ -4,6 +4,7 @@
 
 use app_core::internals::light_points;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
+use harness::reference::composite::receiver_color;
 use harness::reference::fit::{FitConstants, fit_receiver, fit_toy};
 
 use harness::reference::occlusion::Caster;
@@ -11,6 +12,7 @@ use harness::reference::raster::Raster;
 use harness::reference::real::Real;
 use harness::reference::visibility::{exact_visibility, visibility_map};
 
+use crate::composite::{SIZE, scene};
 use crate::fit::{layout, lit_toy, samples};
 use crate::flat::{region, start, truth};
 use crate::visibility::{bulb, square};
@@ -102,4 +104,18 @@ fn penumbra_of_a_square() {
     let cost = cost(&narrow, &wide);
     // Measured: 6.1e-7. One ray more or less would be 1e-3.
     assert!(cost < 2e-6, "{cost:e}");
+}
+
+#[test]
+fn picture_after_a_move() {
+    fn colors<R: Real>() -> Vec<DVec3> {
+        let (region, pictures, mut shown) = scene();
+        // More light than before, by all amounts: each part of the picture is at work.
+        shown.visibility = shown.visibility.map(|visibility| 0.5 * (visibility + 1.0));
+        let of = |texel| receiver_color::<R>(&region, &pictures, &shown, texel);
+        Raster::from_fn(SIZE, of).texels().as_flattened().to_vec()
+    }
+    let cost = cost(&colors::<f32>(), &colors::<f64>());
+    // Measured: 2.1e-6.
+    assert!(cost < 1e-5, "{cost:e}");
 }
