@@ -10,11 +10,12 @@ use harness::reference::fit::{FitConstants, fit_receiver, fit_toy};
 use harness::reference::occlusion::Caster;
 use harness::reference::raster::Raster;
 use harness::reference::real::Real;
+use harness::reference::self_shadow::received;
 use harness::reference::visibility::{exact_visibility, visibility_map};
 
 use crate::composite::{SIZE, scene};
 use crate::fit::{layout, lit_toy, samples};
-use crate::flat::{region, start, truth};
+use crate::flat::{region, start, truth, two_bulbs};
 use crate::visibility::{bulb, square};
 
 /// The largest difference of two lists of colours, which must not be the same to the last bit: else one precision was used
@@ -118,4 +119,22 @@ fn picture_after_a_move() {
     let cost = cost(&colors::<f32>(), &colors::<f64>());
     // Measured: 2.1e-6.
     assert!(cost < 1e-5, "{cost:e}");
+}
+
+#[test]
+fn light_under_a_square() {
+    fn colors<R: Real>() -> Vec<DVec3> {
+        let lights = two_bulbs();
+        let region = region(UVec2::splat(80), lights.clone());
+        // A row of points for each bulb.
+        let points = |bulb: DVec4| (0..16).map(|i| bulb + 0.01 * f64::from(i) * DVec4::Z).collect();
+        let points: Vec<Vec<DVec4>> = lights.into_iter().map(points).collect();
+        let normal = DVec3::new(0.1, 1.0, -0.2).normalize();
+        let at = |step: u32| DVec3::new(0.003 * f64::from(step), 0.002, 0.1);
+        let of = |step| received(&region, &square::<R>(), &points, at(step), normal).truncate();
+        (0..200).map(of).collect()
+    }
+    let cost = cost(&colors::<f32>(), &colors::<f64>());
+    // Measured: 1.2e-7. One point more or less in sight would be 1e-2.
+    assert!(cost < 5e-7, "{cost:e}");
 }
