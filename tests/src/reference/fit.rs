@@ -6,6 +6,7 @@ use glam::{DVec3, DVec4, UVec2};
 use super::least_squares::NormalEquations;
 use super::model::{Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, usable};
 use super::raster::Raster;
+use super::real::{Real, Vector};
 
 /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
 const CAUCHY_SCALE: f64 = 0.03;
@@ -69,7 +70,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     let sample = |texel: &UVec2| {
         let at = centre_px(*texel);
         let point = region
-            .receiver_point(at)
+            .receiver_point::<f64>(at)
             .filter(|_| pictures.seen.at(*texel) > 0.0)?;
         Some(ReceiverSample {
             frame: pictures.frame.at(*texel),
@@ -86,7 +87,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
 ///
 /// Receivers are fitted in turn: the first tells the gain and what is expected of the others.
 #[must_use]
-pub fn fit_receiver(
+pub fn fit_receiver<R: Real>(
     region: &Region,
     (receiver, samples): (usize, &[ReceiverSample]),
     start: &Solution,
@@ -101,7 +102,8 @@ pub fn fit_receiver(
                 .iter()
                 .filter(|sample| sample.point.receiver == receiver)
                 .collect();
-            let equations = receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel));
+            let equations =
+                receiver_equations::<R>(region, &of_receiver, &before, constants, (step > 0, channel));
             let priors = receiver_priors(region, receiver, &before, channel);
             take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
         }
@@ -109,31 +111,31 @@ pub fn fit_receiver(
     solution
 }
 
-fn receiver_equations(
+fn receiver_equations<R: Real>(
     region: &Region,
     samples: &[&ReceiverSample],
     before: &Solution,
     constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
-) -> NormalEquations {
+) -> NormalEquations<R> {
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
-        let (frame, plate) = (sample.frame[channel], sample.plate[channel]);
-        let value = frame / before.gain[channel];
-        let total = before.plate_falloff(region, sample.point)[channel];
+        let [frame, plate] = [sample.frame, sample.plate].map(|color| R::from_f64(color[channel]));
+        let value = frame / R::from_f64(before.gain[channel]);
+        let total = R::from_f64(before.plate_falloff::<R>(region, sample.point)[channel]);
         let plane = region.plane_of(sample.point);
-        let mut columns = vec![
-            plate * sample.ambient,
-            plate * sample.ambient * (1.0 - sample.ambient),
-        ];
+        let ambient = R::from_f64(sample.ambient);
+        let mut columns = vec![plate * ambient, plate * ambient * (R::ONE - ambient)];
         columns.extend((0..region.lights.len()).map(|i| {
-            let visible = before.intensities[i][channel] * sample.visibility[i] - sample.ambient;
+            let intensity = R::from_f64(before.intensities[i][channel]);
+            let visible = intensity * R::from_f64(sample.visibility[i]) - ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
         let mut weight = usable(frame, plate);
         if is_reweighted {
-            let model = before.receiver_model(region, sample.point, sample.ambient, sample.visibility);
-            weight *= cauchy_weight(value - plate * model[channel], constants.cauchy_scale * plate);
+            let model = before.receiver_model::<R>(region, sample.point, sample.ambient, sample.visibility);
+            let residual = value - plate * R::from_f64(model[channel]);
+            weight *= cauchy_weight(residual, R::from_f64(constants.cauchy_scale) * plate);
         }
         equations.observe(&columns, value, weight);
     }
@@ -141,72 +143,72 @@ fn receiver_equations(
 }
 
 /// What is expected of bounce and shares before a receiver is seen in shadow.
-fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
+fn receiver_priors<R: Real>(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<R> {
     let n_lights = region.lights.len();
     let irradiance = |plane: &ReceiverPlane, i: usize| {
         let light = plane.lights[i];
         let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
-        let to_light = light.truncate() - at * light.w;
+        let to_light = Vector::from(light.truncate()) - Vector::from(at * light.w);
         let falloff = if light.w == 0.0 {
-            1.0
+            R::ONE
         } else {
-            to_light.length_squared()
+            to_light.dot(to_light)
         };
-        (to_light.normalize().y / falloff).max(0.0)
+        (to_light.normalize()[1] / falloff).max(R::ZERO)
     };
     if receiver == 0 {
         // As if each gave as much as the others at one metre.
-        let each: Vec<f64> = (0..n_lights)
+        let each: Vec<R> = (0..n_lights)
             .map(|i| irradiance(&region.receivers[0], i))
             .collect();
-        let total: f64 = each.iter().sum();
-        let direct_fractions = each.into_iter().map(|one| PRIOR_DIRECT_FRACTION * one / total);
-        return std::iter::once(PRIOR_BOUNCE).chain(direct_fractions).collect();
+        let total: R = each.iter().copied().sum();
+        let all = R::from_f64(PRIOR_DIRECT_FRACTION);
+        let direct_fractions = each.into_iter().map(|one| all * one / total);
+        return std::iter::once(R::from_f64(PRIOR_BOUNCE))
+            .chain(direct_fractions)
+            .collect();
     }
     // The same lights amid as much ambient light.
     let first = &before.receivers[0];
     let of_first = |i| {
         let there = irradiance(&region.receivers[0], i);
-        if there > 0.0 {
+        if there > R::ZERO {
             irradiance(&region.receivers[receiver], i) / there
         } else {
-            0.0
+            R::ZERO
         }
     };
-    let direct_fractions: Vec<f64> = (0..n_lights)
-        .map(|i| first.direct_fractions[i][channel] * of_first(i))
+    let of_channel = |color: &DVec3| R::from_f64(color[channel]);
+    let direct_fractions: Vec<R> = (0..n_lights)
+        .map(|i| of_channel(&first.direct_fractions[i]) * of_first(i))
         .collect();
-    let direct: f64 = first
-        .direct_fractions
-        .iter()
-        .map(|direct_fraction| direct_fraction[channel])
-        .sum();
-    let total = 1.0 - direct + direct_fractions.iter().sum::<f64>();
+    let direct: R = first.direct_fractions.iter().map(of_channel).sum();
+    let total = R::ONE - direct + direct_fractions.iter().copied().sum();
     let direct_fractions = direct_fractions
         .into_iter()
         .map(|direct_fraction| direct_fraction / total);
-    std::iter::once(first.bounce[channel])
+    std::iter::once(of_channel(&first.bounce))
         .chain(direct_fractions)
         .collect()
 }
 
-fn take_receiver(
-    observed: &NormalEquations,
-    (receiver, priors): (usize, &[f64]),
+fn take_receiver<R: Real>(
+    observed: &NormalEquations<R>,
+    (receiver, priors): (usize, &[R]),
     constants: &FitConstants,
     channel: usize,
     solution: &mut Solution,
 ) {
     let energy = observed.energy(0);
-    if energy <= 0.0 {
+    if energy <= R::ZERO {
         return;
     }
     let n_lights = solution.intensities.len();
     let mut equations = observed.clone();
-    let weight = constants.prior_weight * energy;
-    equations.expect(0, 1.0, weight);
+    let weight = R::from_f64(constants.prior_weight) * energy;
+    equations.expect(0, R::ONE, weight);
     if receiver > 0 {
-        equations.expect(0, 1.0, SAME_GAIN_WEIGHT * energy);
+        equations.expect(0, R::ONE, R::from_f64(SAME_GAIN_WEIGHT) * energy);
     }
     priors
         .iter()
@@ -214,30 +216,30 @@ fn take_receiver(
         .for_each(|(i, prior)| equations.expect(1 + i, *prior, weight));
     let unknowns = equations.solve();
     let correction = unknowns[0];
-    if correction <= 0.0 {
+    if correction <= R::ZERO {
         return;
     }
     if receiver == 0 {
-        solution.gain[channel] *= correction;
+        let gain = R::from_f64(solution.gain[channel]) * correction;
+        solution.gain[channel] = gain.to_f64();
     }
-    let direct_fractions: Vec<f64> = unknowns[2..]
+    let direct_fractions: Vec<R> = unknowns[2..]
         .iter()
-        .map(|unknown| (unknown / correction).max(0.0))
+        .map(|unknown| (*unknown / correction).max(R::ZERO))
         .collect();
-    let total: f64 = direct_fractions.iter().sum();
-    let scale = if total > MAX_DIRECT_FRACTION {
-        MAX_DIRECT_FRACTION / total
-    } else {
-        1.0
-    };
+    let total: R = direct_fractions.iter().copied().sum();
+    let most = R::from_f64(MAX_DIRECT_FRACTION);
+    let scale = if total > most { most / total } else { R::ONE };
     let found = &mut solution.receivers[receiver];
-    found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, MAX_BOUNCE);
+    let bounce = (unknowns[1] / correction).clamp(R::ZERO, R::from_f64(MAX_BOUNCE));
+    found.bounce[channel] = bounce.to_f64();
     found
         .direct_fractions
         .iter_mut()
         .zip(&direct_fractions)
-        .for_each(|(slot, direct_fraction)| slot[channel] = scale * direct_fraction);
-    found.contrast[channel] = (0..n_lights).map(|i| observed.energy(2 + i)).sum::<f64>() / energy;
+        .for_each(|(slot, direct_fraction)| slot[channel] = (scale * *direct_fraction).to_f64());
+    let of_lights: R = (0..n_lights).map(|i| observed.energy(2 + i)).sum();
+    found.contrast[channel] = (of_lights / energy).to_f64();
 }
 
 /// A pixel of one surface of the toy.
@@ -257,7 +259,7 @@ pub struct ToySample {
 ///
 /// All channels together decide what one of them does not show.
 #[must_use]
-pub fn fit_toy(
+pub fn fit_toy<R: Real>(
     region: &Region,
     samples: &[ToySample],
     start: &Solution,
@@ -267,52 +269,54 @@ pub fn fit_toy(
     let n_columns = 2 + region.lights.len();
     let mut solution = start.clone();
     for step in 0..n_steps {
-        let each = [0, 1, 2].map(|k| toy_equations(region, samples, &solution, (step > 0, k)));
+        let each = [0, 1, 2].map(|k| toy_equations::<R>(region, samples, &solution, (step > 0, k)));
         let mut all = NormalEquations::new(n_columns);
         each.iter().for_each(|equations| all.join(equations));
         let energy = all.energy(0);
-        (0..n_columns).for_each(|i| all.expect(i, 0.0, constants.prior_weight * energy));
+        let weight = R::from_f64(constants.prior_weight) * energy;
+        (0..n_columns).for_each(|i| all.expect(i, R::ZERO, weight));
         let white = all.solve();
+        let white_weight = R::from_f64(constants.white_weight) * energy;
         for (channel, mut equations) in each.into_iter().enumerate() {
-            if equations.energy(0) <= 0.0 {
+            if equations.energy(0) <= R::ZERO {
                 continue;
             }
             white
                 .iter()
                 .enumerate()
-                .for_each(|(i, w)| equations.expect(i, *w, constants.white_weight * energy));
+                .for_each(|(i, w)| equations.expect(i, *w, white_weight));
             solution
                 .toy
                 .iter_mut()
                 .zip(equations.solve())
-                .for_each(|(slot, value)| slot[channel] = value);
+                .for_each(|(slot, value)| slot[channel] = value.to_f64());
         }
     }
     solution
 }
 
-fn toy_equations(
+fn toy_equations<R: Real>(
     region: &Region,
     samples: &[ToySample],
     before: &Solution,
     (is_reweighted, channel): (bool, usize),
-) -> NormalEquations {
+) -> NormalEquations<R> {
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
-        let (frame, base) = (sample.frame[channel], sample.base[channel]);
-        let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
+        let [frame, base] = [sample.frame, sample.base].map(|color| R::from_f64(color[channel]));
+        let value = frame / R::from_f64(before.gain[channel]);
+        let columns: Vec<R> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
         let mut weight = usable(frame, frame);
         if is_reweighted {
-            let model: f64 = columns
+            let model: R = columns
                 .iter()
                 .zip(&before.toy)
-                .map(|(column, toy)| column * toy[channel])
+                .map(|(column, toy)| *column * R::from_f64(toy[channel]))
                 .sum();
-            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
+            weight *= cauchy_weight(value - model, R::from_f64(TOY_CAUCHY_SCALE) * base);
         }
         equations.observe(&columns, value, weight);
     }
@@ -321,29 +325,28 @@ fn toy_equations(
 
 /// What the light on the toy is made of: constant, vertical gradient, and what is received of each light at its level.
 #[must_use]
-pub fn toy_columns(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<DVec3> {
+pub fn toy_columns<R: Real>(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<Vector<R, 3>> {
     let lights = intensities.iter().zip(received.to_array());
-    [DVec3::ONE, DVec3::splat(normal.y)]
+    [R::ONE, R::from_f64(normal.y)]
         .into_iter()
-        .chain(lights.map(|(intensity, received)| *intensity * received))
+        .map(Vector::splat)
+        .chain(lights.map(|(intensity, received)| Vector::from(*intensity) * R::from_f64(received)))
         .collect()
 }
 
 /// CPU reference of `common/toy_radiance.wgsl`: radiance of a surface of the toy over its base colour and the gain.
 #[must_use]
-pub fn toy_radiance(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
-    let columns = toy_columns(normal, received, &solution.intensities);
-    let terms = columns.iter().zip(&solution.toy);
-    terms
-        .map(|(column, light)| *column * *light)
-        .sum::<DVec3>()
-        .max(DVec3::ZERO)
+pub fn toy_radiance<R: Real>(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
+    let columns = toy_columns::<R>(normal, received, &solution.intensities);
+    let terms = columns.into_iter().zip(&solution.toy);
+    let sum: Vector<R, 3> = terms.map(|(column, light)| column * Vector::from(*light)).sum();
+    DVec3::from(sum).max(DVec3::ZERO)
 }
 
 /// 1 for no residual, a half for one of `scale`.
-fn cauchy_weight(residual: f64, scale: f64) -> f64 {
-    if scale == 0.0 {
-        0.0
+fn cauchy_weight<R: Real>(residual: R, scale: R) -> R {
+    if scale == R::ZERO {
+        R::ZERO
     } else {
         scale * scale / (scale * scale + residual * residual)
     }

@@ -1,41 +1,43 @@
 //! Weighted linear least squares.
 
+use super::real::Real;
+
 /// Weighted normal equations of any number of unknowns.
 #[derive(Clone, Debug)]
-pub struct NormalEquations {
-    matrix: Vec<Vec<f64>>,
-    right: Vec<f64>,
+pub struct NormalEquations<R> {
+    matrix: Vec<Vec<R>>,
+    right: Vec<R>,
 }
 
-impl NormalEquations {
+impl<R: Real> NormalEquations<R> {
     /// Of `n_columns` unknowns, without any observation.
     #[must_use]
     pub fn new(n_columns: usize) -> Self {
         Self {
-            matrix: vec![vec![0.0; n_columns]; n_columns],
-            right: vec![0.0; n_columns],
+            matrix: vec![vec![R::ZERO; n_columns]; n_columns],
+            right: vec![R::ZERO; n_columns],
         }
     }
 
     /// Adds the observation that `columns` times the unknowns is `value`.
-    pub fn observe(&mut self, columns: &[f64], value: f64, weight: f64) {
+    pub fn observe(&mut self, columns: &[R], value: R, weight: R) {
         for (i, column) in columns.iter().enumerate() {
             for (j, other) in columns.iter().enumerate() {
-                self.matrix[i][j] += weight * column * other;
+                self.matrix[i][j] += weight * *column * *other;
             }
-            self.right[i] += weight * column * value;
+            self.right[i] += weight * *column * value;
         }
     }
 
     /// Adds the observation that unknown `column` is `value`.
-    pub fn expect(&mut self, column: usize, value: f64, weight: f64) {
+    pub fn expect(&mut self, column: usize, value: R, weight: R) {
         self.matrix[column][column] += weight;
         self.right[column] += weight * value;
     }
 
     /// Adds all observations of `other`.
     pub fn join(&mut self, other: &Self) {
-        let pairs = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        let pairs = |a: &mut [R], b: &[R]| a.iter_mut().zip(b).for_each(|(a, b)| *a += *b);
         self.matrix
             .iter_mut()
             .zip(&other.matrix)
@@ -45,15 +47,15 @@ impl NormalEquations {
 
     /// Sum of the weighted squares of a column.
     #[must_use]
-    pub fn energy(&self, column: usize) -> f64 {
+    pub fn energy(&self, column: usize) -> R {
         self.matrix[column][column]
     }
 
     /// The unknowns, by elimination with partial pivoting; not finite where they are not determined.
     #[must_use]
-    pub fn solve(&self) -> Vec<f64> {
+    pub fn solve(&self) -> Vec<R> {
         let n = self.right.len();
-        let mut rows: Vec<Vec<f64>> = self.matrix.clone();
+        let mut rows: Vec<Vec<R>> = self.matrix.clone();
         rows.iter_mut()
             .zip(&self.right)
             .for_each(|(row, value)| row.push(*value));
@@ -64,13 +66,13 @@ impl NormalEquations {
             for row in below {
                 let factor = row[p] / above[p][p];
                 for (value, pivot) in row.iter_mut().zip(&above[p]).skip(p) {
-                    *value -= factor * pivot;
+                    *value -= factor * *pivot;
                 }
             }
         }
-        let mut unknowns = vec![0.0; n];
+        let mut unknowns = vec![R::ZERO; n];
         for p in (0..n).rev() {
-            let known: f64 = (p + 1..n).map(|j| rows[p][j] * unknowns[j]).sum();
+            let known: R = (p + 1..n).map(|j| rows[p][j] * unknowns[j]).sum();
             unknowns[p] = (rows[p][n] - known) / rows[p][p];
         }
         unknowns

@@ -5,6 +5,7 @@
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use super::model::Region;
+use super::real::{Real, Vector};
 
 /// Where light points are seen from within a pixel: a rotated grid, that of Vulkan's standard sample locations.
 pub const SAMPLE_POSITIONS: [DVec2; 4] = [
@@ -14,11 +15,13 @@ pub const SAMPLE_POSITIONS: [DVec2; 4] = [
     DVec2::new(0.625, 0.875),
 ];
 
-/// A posed mesh in plane space.
+type Triangle<R> = [Vector<R, 3>; 3];
+
+/// A posed mesh in plane space, and the precision in which rays meet it.
 #[derive(Clone, Debug)]
-pub struct Occluder {
-    triangles: Vec<[DVec3; 3]>,
-    tree: Tree,
+pub struct Occluder<R = f64> {
+    triangles: Vec<Triangle<R>>,
+    tree: Tree<R>,
 }
 
 /// Where a ray meets a mesh.
@@ -30,14 +33,14 @@ pub struct Hit {
     pub triangle: usize,
 }
 
-impl Occluder {
+impl<R: Real> Occluder<R> {
     /// A mesh of triangles; each three indices are the corners of one.
     #[must_use]
     pub fn new(positions: &[DVec3], indices: &[u32]) -> Self {
         let triangles = indices
             .chunks_exact(3)
-            .map(|corners| [0, 1, 2].map(|k| positions[corners[k] as usize]));
-        let triangles: Vec<[DVec3; 3]> = triangles.collect();
+            .map(|corners| [0, 1, 2].map(|k| positions[corners[k] as usize].into()));
+        let triangles: Vec<Triangle<R>> = triangles.collect();
         Self {
             tree: Tree::new(triangles.clone()),
             triangles,
@@ -53,10 +56,11 @@ impl Occluder {
     /// Whether the mesh stands between a point and a homogeneous light point.
     #[must_use]
     pub fn stands_between(&self, origin: DVec3, light_point: DVec4) -> bool {
+        let (origin, light) = (Vector::from(origin), Vector::from(light_point.truncate()));
         let (direction, end) = if light_point.w == 0.0 {
-            (light_point.truncate(), f64::INFINITY)
+            (light, R::from_f64(f64::INFINITY))
         } else {
-            (light_point.truncate() - origin, 1.0)
+            (light - origin, R::ONE)
         };
         self.tree.stops(origin, direction, end)
     }
@@ -64,7 +68,11 @@ impl Occluder {
     /// The nearest triangle that a ray meets.
     #[must_use]
     pub fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        if !self.tree.reaches_box(origin, direction, f64::INFINITY) {
+        let (origin, direction) = (Vector::from(origin), Vector::from(direction));
+        if !self
+            .tree
+            .reaches_box(origin, direction, R::from_f64(f64::INFINITY))
+        {
             return None;
         }
         let hits = self
@@ -72,7 +80,8 @@ impl Occluder {
             .iter()
             .enumerate()
             .filter_map(|(triangle, corners)| {
-                meets(origin, direction, corners).map(|distance| Hit { distance, triangle })
+                let distance = meets(origin, direction, corners)?.to_f64();
+                Some(Hit { distance, triangle })
             });
         hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
@@ -80,9 +89,9 @@ impl Occluder {
 
 /// A mesh and what it hides, in a receiver's plane space: the points of a light, or directions of the ambient light.
 #[derive(Clone, Debug)]
-pub struct Caster {
+pub struct Caster<R = f64> {
     /// The posed mesh.
-    pub occluder: Occluder,
+    pub occluder: Occluder<R>,
     /// Homogeneous: (position, 1) or (direction, 0).
     pub light_points: Vec<DVec4>,
 }
@@ -93,19 +102,23 @@ pub struct Caster {
 /// Light point i is seen from position i % 4. Of several receivers a texel shows the one at its centre;
 /// a single one is taken to go on for ever.
 #[must_use]
-pub fn hidden_share(casters: &[Caster], region: &Region, (map_px, texel): (UVec2, UVec2)) -> Option<f64> {
+pub fn hidden_share<R: Real>(
+    casters: &[Caster<R>],
+    region: &Region,
+    (map_px, texel): (UVec2, UVec2),
+) -> Option<f64> {
     let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
     let receiver = if casters.len() == 1 {
         0
     } else {
         let centre = (texel.as_dvec2() + 0.5) * region_px_per_texel;
-        region.receiver_point(centre)?.receiver
+        region.receiver_point::<R>(centre)?.receiver
     };
     let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
     let mut n_hidden = 0.0;
     for (i, light_point) in caster.light_points.iter().enumerate() {
         let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
-        let in_plane = plane.plane_point(position * region_px_per_texel)?;
+        let in_plane = plane.plane_point::<R>(position * region_px_per_texel)?;
         // A point behind the receiver lights nothing of it.
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
         n_hidden += f64::from(u8::from(is_hidden));
@@ -117,30 +130,31 @@ pub fn hidden_share(casters: &[Caster], region: &Region, (map_px, texel): (UVec2
 
 /// Triangles within a box, halved until few are left.
 #[derive(Clone, Debug)]
-struct Tree {
-    min: DVec3,
-    max: DVec3,
-    branch: Branch,
+struct Tree<R> {
+    min: Vector<R, 3>,
+    max: Vector<R, 3>,
+    branch: Branch<R>,
 }
 
 #[derive(Clone, Debug)]
-enum Branch {
-    Leaf(Vec<[DVec3; 3]>),
-    Fork(Box<[Tree; 2]>),
+enum Branch<R> {
+    Leaf(Vec<Triangle<R>>),
+    Fork(Box<[Tree<R>; 2]>),
 }
 
-impl Tree {
+impl<R: Real> Tree<R> {
     const MAX_LEAF: usize = 4;
 
-    fn new(mut triangles: Vec<[DVec3; 3]>) -> Self {
+    fn new(mut triangles: Vec<Triangle<R>>) -> Self {
         let corners = triangles.as_flattened();
-        let min = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let max = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let far = Vector::splat(R::from_f64(f64::INFINITY));
+        let min = corners.iter().copied().fold(far, Vector::min);
+        let max = corners.iter().copied().fold(-far, Vector::max);
         let branch = if triangles.len() <= Self::MAX_LEAF {
             Branch::Leaf(triangles)
         } else {
-            let axis = (max - min).max_position();
-            let middle = |corners: &[DVec3; 3]| corners.iter().map(|corner| corner[axis]).sum::<f64>();
+            let axis = DVec3::from(max - min).max_position();
+            let middle = |corners: &Triangle<R>| -> R { corners.iter().map(|corner| corner[axis]).sum() };
             triangles.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
             let upper = triangles.split_off(triangles.len() / 2);
             Branch::Fork(Box::new([Self::new(triangles), Self::new(upper)]))
@@ -149,7 +163,7 @@ impl Tree {
     }
 
     /// Whether a ray meets a triangle before `end`.
-    fn stops(&self, origin: DVec3, direction: DVec3, end: f64) -> bool {
+    fn stops(&self, origin: Vector<R, 3>, direction: Vector<R, 3>, end: R) -> bool {
         self.reaches_box(origin, direction, end)
             && match &self.branch {
                 Branch::Leaf(triangles) => triangles
@@ -160,13 +174,13 @@ impl Tree {
     }
 
     /// Slab test against the bounding box: most rays pass by.
-    fn reaches_box(&self, origin: DVec3, direction: DVec3, end: f64) -> bool {
+    fn reaches_box(&self, origin: Vector<R, 3>, direction: Vector<R, 3>, end: R) -> bool {
         let to_min = (self.min - origin) / direction;
         let to_max = (self.max - origin) / direction;
         let enter = to_min.min(to_max).max_element();
         let leave = to_min.max(to_max).min_element();
         // A ray within a face gives 0 / 0, for which no comparison holds: it must pass on to the triangles.
-        let is_past = enter.max(0.0) > leave.min(end);
+        let is_past = enter.max(R::ZERO) > leave.min(end);
         !is_past
     }
 }
@@ -174,16 +188,17 @@ impl Tree {
 /// Multiples of `direction` after which a ray meets a triangle, from either side.
 ///
 /// Source: Moller and Trumbore 1997.
-fn meets(origin: DVec3, direction: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+fn meets<R: Real>(origin: Vector<R, 3>, direction: Vector<R, 3>, corners: &Triangle<R>) -> Option<R> {
+    let [a, b, c] = *corners;
     let (ab, ac, from_a) = (b - a, c - a, origin - a);
     let p = direction.cross(ac);
     let determinant = ab.dot(p);
-    if determinant == 0.0 {
+    if determinant == R::ZERO {
         return None;
     }
     let u = from_a.dot(p) / determinant;
     let q = from_a.cross(ab);
     let v = direction.dot(q) / determinant;
     let t = ac.dot(q) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
+    (u >= R::ZERO && v >= R::ZERO && u + v <= R::ONE && t >= R::ZERO).then_some(t)
 }

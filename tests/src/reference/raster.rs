@@ -4,6 +4,8 @@ use std::ops::{Add, Mul};
 
 use glam::{DVec2, UVec2};
 
+use super::real::{Real, Vector};
+
 /// Values over a rectangle, rows from the top; the centre of the first lies at (0.5, 0.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster<T> {
@@ -52,18 +54,21 @@ impl<T: Copy> Raster<T> {
         self.texels[(texel.y * self.size.x + texel.x) as usize]
     }
 
-    /// The value between the four nearest centres, of which those outside are moved to the border.
+    /// What lies between the values at the four nearest centres, of which those outside are moved to the border.
     #[must_use]
-    pub fn bilinear(&self, at: DVec2) -> T
+    pub fn bilinear<R: Real, V>(&self, at: Vector<R, 2>, value: impl Fn(T) -> V) -> V
     where
-        T: Add<Output = T> + Mul<f64, Output = T>,
+        V: Add<Output = V> + Mul<R, Output = V>,
     {
         let last = self.size.as_dvec2() - 1.0;
-        let low = (at - 0.5).floor();
-        let t = at - 0.5 - low;
-        let texel =
-            |dx: f64, dy: f64| self.at((low + DVec2::new(dx, dy)).clamp(DVec2::ZERO, last).as_uvec2());
-        let row = |dy: f64| texel(0.0, dy) * (1.0 - t.x) + texel(1.0, dy) * t.x;
-        row(0.0) * (1.0 - t.y) + row(1.0) * t.y
+        let from_centre = at - Vector::splat(R::from_f64(0.5));
+        let low = from_centre.floor();
+        let [x, y] = (from_centre - low).0;
+        let texel = |dx: f64, dy: f64| {
+            let texel = (DVec2::from(low) + DVec2::new(dx, dy)).clamp(DVec2::ZERO, last);
+            value(self.at(texel.as_uvec2()))
+        };
+        let row = |dy: f64| texel(0.0, dy) * (R::ONE - x) + texel(1.0, dy) * x;
+        row(0.0) * (R::ONE - y) + row(1.0) * y
     }
 }

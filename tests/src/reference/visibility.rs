@@ -7,12 +7,13 @@ use app_core::scene::Light;
 use super::model::Region;
 use super::occlusion::{Caster, Occluder, hidden_share};
 use super::raster::Raster;
+use super::real::{Real, Vector};
 
 /// Visibility over a map of `map_px` texels of the region, from what a caster for each receiver leaves of a light.
 ///
 /// A texel that looks past the receivers is wholly visible.
 #[must_use]
-pub fn visibility_map(casters: &[Caster], region: &Region, map_px: UVec2) -> Raster<f64> {
+pub fn visibility_map<R: Real>(casters: &[Caster<R>], region: &Region, map_px: UVec2) -> Raster<f64> {
     let hidden = |texel| hidden_share(casters, region, (map_px, texel));
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
@@ -23,49 +24,65 @@ pub fn visibility_map(casters: &[Caster], region: &Region, map_px: UVec2) -> Ras
 /// cosine. A light around the point, or one under the receiver, is wholly visible.
 /// Source: Shirley, Wang and Zimmerman 1996, section 3.2 (sampling the cone that a sphere fills).
 #[must_use]
-pub fn exact_visibility(occluder: &Occluder, in_plane: DVec2, light: &Light, n_rays: usize) -> f64 {
-    let origin = DVec3::new(in_plane.x, 0.0, in_plane.y);
+pub fn exact_visibility<R: Real>(
+    occluder: &Occluder<R>,
+    in_plane: DVec2,
+    light: &Light,
+    n_rays: usize,
+) -> f64 {
+    let origin = Vector::from(DVec3::new(in_plane.x, 0.0, in_plane.y));
     let (axis, distance_m, sine) = match *light {
         Light::Sphere {
             position_in_world,
             radius_m,
         } => {
-            let to_centre = position_in_world - origin;
+            let to_centre = Vector::from(position_in_world) - origin;
             let distance_m = to_centre.length();
-            (to_centre / distance_m, distance_m, radius_m / distance_m)
+            (
+                to_centre / distance_m,
+                distance_m,
+                R::from_f64(radius_m) / distance_m,
+            )
         }
         Light::Directional {
             direction_to_light_in_world,
             angular_radius_rad,
         } => (
-            direction_to_light_in_world,
-            f64::INFINITY,
-            angular_radius_rad.sin(),
+            Vector::from(direction_to_light_in_world),
+            R::from_f64(f64::INFINITY),
+            R::from_f64(angular_radius_rad.sin()),
         ),
     };
-    if sine >= 1.0 {
+    if sine >= R::ONE {
         return 1.0;
     }
-    let (across, along) = axis.any_orthonormal_pair();
-    let (mut reached, mut total) = (0.0, 0.0);
+    let (across, along) = axis.orthonormal_pair();
+    let (mut reached, mut total) = (R::ZERO, R::ZERO);
     for at in unit_disc(n_rays) {
         // Equal areas of the disc are equal solid angles of the cone.
-        let cosine = 1.0 - at.length_squared() * sine * sine / (1.0 + (1.0 - sine * sine).sqrt());
-        let side = (1.0 - cosine * cosine).max(0.0).sqrt() * at.normalize_or_zero();
-        let direction = cosine * axis + side.x * across + side.y * along;
-        let weight = direction.y.max(0.0);
-        let light_point = if distance_m.is_finite() {
-            let to_surface_m = distance_m * (cosine - (sine * sine - side.length_squared()).max(0.0).sqrt());
-            (origin + to_surface_m * direction).extend(1.0)
+        let area = R::from_f64(at.length_squared());
+        let cosine = R::ONE - area * sine * sine / (R::ONE + (R::ONE - sine * sine).sqrt());
+        let sideways = (R::ONE - cosine * cosine).max(R::ZERO).sqrt();
+        let side = Vector::from(at.normalize_or_zero()) * sideways;
+        let direction = axis * cosine + across * side[0] + along * side[1];
+        let weight = direction[1].max(R::ZERO);
+        let light_point = if distance_m.to_f64().is_finite() {
+            let inwards = (sine * sine - side.dot(side)).max(R::ZERO).sqrt();
+            let to_surface_m = distance_m * (cosine - inwards);
+            DVec3::from(origin + direction * to_surface_m).extend(1.0)
         } else {
-            direction.extend(0.0)
+            DVec3::from(direction).extend(0.0)
         };
         total += weight;
-        if weight > 0.0 && !occluder.hides(in_plane, light_point) {
+        if weight > R::ZERO && !occluder.hides(in_plane, light_point) {
             reached += weight;
         }
     }
-    if total > 0.0 { reached / total } else { 1.0 }
+    if total > R::ZERO {
+        (reached / total).to_f64()
+    } else {
+        1.0
+    }
 }
 
 /// `n_points` points over the unit disc, each standing for an equal area. Source: Vogel 1979.

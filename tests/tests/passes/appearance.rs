@@ -59,7 +59,7 @@ fn errors(source: &str) -> Errors {
     let seen = Raster::from_fn(size, |at| Seen {
         pixel: ToyPixel {
             color: scene.image.at(scene.rect.origin_px + at).truncate(),
-            lit: toy_radiance(&scene.solution, toy.normal.at(at).truncate(), toy.received.at(at)),
+            lit: toy_radiance::<f64>(&scene.solution, toy.normal.at(at).truncate(), toy.received.at(at)),
             base: toy.base.at(at).truncate(),
         },
         depth: toy.depth.at(at),

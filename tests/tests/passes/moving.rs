@@ -6,7 +6,7 @@ use app_core::core::Core;
 use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 use harness::reference::grid::PlaneGrid;
 
 use crate::cores::{SharedCore, core_on};
@@ -83,9 +83,7 @@ impl Shots {
 fn residual_at(core: &Core, in_plane: DVec2) -> DVec3 {
     let (grid, cells) = &core.read_residuals().unwrap()[0];
     let grid = PlaneGrid::from(grid);
-    raster(cells)
-        .bilinear((in_plane - grid.origin_in_plane) / grid.cell_m)
-        .truncate()
+    grid.value_at::<f64>(&raster(cells).map(DVec4::truncate), in_plane)
 }
 
 #[test]

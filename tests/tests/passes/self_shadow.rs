@@ -48,7 +48,13 @@ fn received_light() {
         let of_ray = |at: DVec2| {
             let (side, in_plane, normal) = surface(run, at)?;
             let light = received(&run.region, &occluder, &points, in_plane, normal);
-            let unhidden = received(&run.region, &Occluder::new(&[], &[]), &points, in_plane, normal);
+            let unhidden = received(
+                &run.region,
+                &Occluder::<f64>::new(&[], &[]),
+                &points,
+                in_plane,
+                normal,
+            );
             Some((side, light, unhidden))
         };
         let (mut everywhere, mut away) = (Vec::new(), Vec::new());

@@ -11,6 +11,7 @@ mod fit;
 mod flat;
 mod pcss;
 mod plate;
+mod precision;
 mod residual;
 mod search;
 mod tint;

@@ -9,7 +9,7 @@ use harness::reference::raster::Raster;
 const SIZE: UVec2 = UVec2::new(81, 61);
 
 /// A camera straight over a point of the plane: a pixel is as many metres as it is high times 0.01.
-fn above(middle: DVec2, height_m: f64) -> Viewpoint {
+pub(crate) fn above(middle: DVec2, height_m: f64) -> Viewpoint {
     let pixel_m = 0.01 * height_m;
     let corner = middle - 0.5 * pixel_m * SIZE.as_dvec2();
     let plane = ReceiverPlane {
@@ -36,13 +36,15 @@ fn above(middle: DVec2, height_m: f64) -> Viewpoint {
 }
 
 /// Its colour is a slope over the plane.
-fn slope(in_plane: DVec2) -> DVec3 {
+pub(crate) fn slope(in_plane: DVec2) -> DVec3 {
     DVec3::new(0.5 + in_plane.x, 0.5 + in_plane.y, 0.3)
 }
 
-fn photo(camera: &Viewpoint, gain: f64, color: impl Fn(DVec2) -> DVec3) -> PlatePhoto {
+pub(crate) fn photo(camera: &Viewpoint, gain: f64, color: impl Fn(DVec2) -> DVec3) -> PlatePhoto {
     let plane = &camera.region.receivers[0];
-    let picture = Raster::from_fn(SIZE, |at| color(plane.plane_point(at.as_dvec2() + 0.5).unwrap()));
+    let picture = Raster::from_fn(SIZE, |at| {
+        color(plane.plane_point::<f64>(at.as_dvec2() + 0.5).unwrap())
+    });
     PlatePhoto {
         camera: camera.clone(),
         picture: picture.map(|color| color / gain),
@@ -62,7 +64,7 @@ fn a_slope_is_the_same_from_wherever_it_is_photographed() {
         let mut n_shown = 0;
         for texel in [UVec2::new(35, 25), UVec2::new(40, 30), UVec2::new(47, 33)] {
             let in_plane = view.region.receivers[0]
-                .plane_point(texel.as_dvec2() + 0.5)
+                .plane_point::<f64>(texel.as_dvec2() + 0.5)
                 .unwrap();
             let found = choose(&view, std::slice::from_ref(&plate), texel);
             // A cubic through a line is the line.

@@ -6,6 +6,7 @@ use app_core::internals::{ambient_directions, light_points};
 use app_core::scene::Light;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use harness::reference::occlusion::{Caster, Occluder};
+use harness::reference::real::Real;
 use harness::reference::visibility::{exact_visibility, visibility_map};
 
 use crate::flat;
@@ -21,7 +22,7 @@ const HALF_SIDE_M: f64 = 0.3;
 const EDGE_M: f64 = HALF_SIDE_M * LIGHT_M / (LIGHT_M - HEIGHT_M);
 const HALF_PENUMBRA_M: f64 = RADIUS_M * HEIGHT_M / (LIGHT_M - HEIGHT_M);
 
-fn square() -> Occluder {
+pub(crate) fn square<R: Real>() -> Occluder<R> {
     let corner = |x: f64, z: f64| HALF_SIDE_M * DVec3::new(x, 0.0, z) + HEIGHT_M * DVec3::Y;
     let corners = [
         corner(-1.0, -1.0),
@@ -32,7 +33,7 @@ fn square() -> Occluder {
     Occluder::new(&corners, &[0, 1, 2, 0, 2, 3])
 }
 
-fn bulb() -> Light {
+pub(crate) fn bulb() -> Light {
     Light::Sphere {
         position_in_world: DVec3::new(0.0, LIGHT_M, 0.0),
         radius_m: RADIUS_M,
@@ -52,7 +53,7 @@ fn share_hidden(occluder: &Occluder, at: DVec2, points: &[DVec4]) -> f64 {
 
 #[test]
 fn penumbra_of_an_edge_follows_the_circle_segment() {
-    let occluder = square();
+    let occluder = square::<f64>();
     let points: Vec<DVec4> = light_points(&bulb(), &DMat4::IDENTITY, DVec3::ZERO, 4096)
         .iter()
         .map(|point| point.as_dvec4())
@@ -78,7 +79,7 @@ fn penumbra_of_a_bulb_follows_its_distance_from_the_plane_through_the_edge() {
         let past_edge = DVec2::new(HALF_SIDE_M - at_m, HEIGHT_M).normalize();
         let to_bulb = DVec2::new(-at_m, LIGHT_M);
         let expected = 1.0 - disc_beyond(past_edge.perp_dot(to_bulb) / -RADIUS_M);
-        let actual = exact_visibility(&square(), DVec2::new(at_m, 0.01), &bulb(), 4096);
+        let actual = exact_visibility(&square::<f64>(), DVec2::new(at_m, 0.01), &bulb(), 4096);
         // The bulb's lower side weighs less by its cosine, which changes by tan 22 degrees times R / d over a radius;
         // at half shadow the centroids of both halves are 0.42 radii from the middle: 0.5 0.42 0.4 0.05 or 4e-3 in all,
         // on top of the sunflower's 2e-3.
@@ -91,7 +92,7 @@ fn penumbra_of_a_bulb_follows_its_distance_from_the_plane_through_the_edge() {
 
 #[test]
 fn umbra_is_dark_and_everything_beyond_the_penumbra_is_lit() {
-    let occluder = square();
+    let occluder = square::<f64>();
     // The bulb is seen 22 degrees from the side, which widens its outline by 1 / cos 22 degrees.
     for (at_m, expected) in [
         (0.0, 0.0),
@@ -113,7 +114,7 @@ fn directional_light_has_the_penumbra_of_its_angle() {
     };
     for across in [-1.1, -0.5, 0.0, 0.3, 0.9, 1.1] {
         let at = DVec2::new(HALF_SIDE_M + across * HEIGHT_M * angular_radius_rad.tan(), 0.0);
-        let visibility = exact_visibility(&square(), at, &light, 4096);
+        let visibility = exact_visibility(&square::<f64>(), at, &light, 4096);
         let expected = 1.0 - disc_beyond(across);
         assert!(
             (visibility - expected).abs() < 3e-3,
@@ -128,7 +129,7 @@ fn what_is_above_the_light_hides_nothing() {
         position_in_world: DVec3::new(0.0, 0.9 * HEIGHT_M, 0.0),
         radius_m: 0.0,
     };
-    assert!((exact_visibility(&square(), DVec2::ZERO, &below, 16) - 1.0).abs() < 1e-12);
+    assert!((exact_visibility(&square::<f64>(), DVec2::ZERO, &below, 16) - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -167,7 +168,7 @@ fn map_looks_through_the_four_positions_of_a_pixel() {
         corner(1.0, 1.0),
         corner(-1.0, 1.0),
     ];
-    let caster = Caster {
+    let caster: Caster = Caster {
         occluder: Occluder::new(&corners, &[0, 1, 2, 0, 2, 3]),
         light_points: vec![DVec4::Y; 4],
     };
