@@ -5,3 +5,4 @@
 mod bundled;
 mod refused;
 mod reuse;
+mod scale;

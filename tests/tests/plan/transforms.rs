@@ -43,8 +43,8 @@ fn clip_space_is_the_region_with_reversed_depth() {
         assert!((px + RECT.origin_px.as_dvec2() - rig.pixel(point)).length() < 1e-9);
         assert!((clip.w - rig.depth_m(point)).abs() < 1e-12);
         assert!(
-            (ndc.z - 0.01 / rig.depth_m(point)).abs() < 1e-12,
-            "1 at a centimetre, 0 at infinity"
+            (ndc.z - 1e-6 / rig.depth_m(point)).abs() < 1e-15,
+            "1 at a micrometre, 0 at infinity"
         );
     }
 }
