@@ -1,5 +1,5 @@
 //! The passes once more: plain functions on the processor, in 64 bits, without anything of the graphics device.
-//! Some compute in 32 bits, too, to tell what rounding costs: their functions ask for a [`Real`](real::Real).
+//! Some compute in 32 bits, too, to tell what rounding costs: their functions ask for a [`Real`].
 //!
 //! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
