@@ -11,9 +11,13 @@ use crate::scene::MAX_LIGHTS;
 const N_SETS: usize = 1 << MAX_LIGHTS;
 
 impl Baseline {
-    /// Waits for the device and returns what real shadow was not seen, for the pose shown last. `light_indices` are those of
-    /// the lights in use, in the scene's list.
-    pub(crate) fn read_warnings(&self, gpu: &Gpu, light_indices: &[usize]) -> Result<Vec<Warning>, GpuError> {
+    /// Waits for the device and returns what real shadow was not seen, for the pose shown last. `listed` has the indices of the
+    /// receivers and of the lights in use, in the lists that they were given in.
+    pub(crate) fn read_warnings(
+        &self,
+        gpu: &Gpu,
+        listed: (&[usize], &[usize]),
+    ) -> Result<Vec<Warning>, GpuError> {
         if self.plan.is_constant {
             return Ok(Vec::new());
         }
@@ -22,7 +26,7 @@ impl Baseline {
             return Ok(vec![Warning::NothingToSample]);
         }
         let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
-        let unseen = unseen(&needed.unwrap_or_default(), &seen, light_indices);
+        let unseen = unseen(&needed.unwrap_or_default(), &seen, listed);
         let is_any = !unseen.is_empty();
         Ok(is_any
             .then_some(Warning::ShadowsUnseen { unseen })
@@ -48,7 +52,11 @@ fn sets_in(terms: &FloatMap) -> SeenSets {
     needed
 }
 
-fn unseen(needed: &SeenSets, seen: &SeenSets, light_indices: &[usize]) -> Vec<UnseenShadow> {
+fn unseen(
+    needed: &SeenSets,
+    seen: &SeenSets,
+    (receiver_indices, light_indices): (&[usize], &[usize]),
+) -> Vec<UnseenShadow> {
     let lights = |set: usize| {
         let used = light_indices.iter().enumerate();
         let in_set = used.filter(|(light, _)| set >> light & 1 == 1);
@@ -62,10 +70,11 @@ fn unseen(needed: &SeenSets, seen: &SeenSets, light_indices: &[usize]) -> Vec<Un
             lights: lights(set),
         })
     };
-    needed
+    let sets = needed.iter().zip(seen);
+    receiver_indices
         .iter()
-        .zip(seen)
-        .enumerate()
+        .copied()
+        .zip(sets)
         .flat_map(of_receiver)
         .collect()
 }

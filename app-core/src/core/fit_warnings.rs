@@ -44,7 +44,8 @@ impl Core {
         else {
             return Ok(Vec::new());
         };
-        Ok(method.read_warnings(&self.gpu, stage.light_indices())?)
+        let listed = (stage.receiver_indices(), stage.light_indices());
+        Ok(method.read_warnings(&self.gpu, listed)?)
     }
 
     /// Lights whose intensity is assumed more than seen, as indices in the list that they were given in.

@@ -36,7 +36,7 @@ pub struct Scene {
     pub world_from_object: DMat4,
     /// The pose of the real toy.
     pub physical_pose: Pose,
-    /// Planes that catch the shadow; at least one.
+    /// Planes that catch the shadow; at least one, in any order.
     pub receivers: Vec<Receiver>,
     /// Known lights, unless a frame brings its own. Without any, frames pass through.
     pub lights: Vec<Light>,

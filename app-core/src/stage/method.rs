@@ -99,10 +99,14 @@ impl Method {
     }
 
     /// Waits for the device and returns what the baseline lacks; the model's warnings come from its fit.
-    pub(crate) fn read_warnings(&self, gpu: &Gpu, light_indices: &[usize]) -> Result<Vec<Warning>, GpuError> {
+    pub(crate) fn read_warnings(
+        &self,
+        gpu: &Gpu,
+        listed: (&[usize], &[usize]),
+    ) -> Result<Vec<Warning>, GpuError> {
         match self {
             Self::Model(_) => Ok(Vec::new()),
-            Self::Baseline(baseline) => baseline.read_warnings(gpu, light_indices),
+            Self::Baseline(baseline) => baseline.read_warnings(gpu, listed),
         }
     }
 }

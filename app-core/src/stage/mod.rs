@@ -9,7 +9,7 @@ mod supported;
 use std::sync::Arc;
 
 use bytemuck::Zeroable;
-use glam::{DMat4, UVec2};
+use glam::{DMat4, DVec3, UVec2};
 
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
@@ -42,6 +42,8 @@ pub(crate) struct Stage {
     scene: Scene,
     preset: Preset,
     receivers: Vec<AnchoredReceiver>,
+    /// Indices of `receivers` in the scene's list.
+    receiver_indices: Vec<usize>,
     receivers_warning: Option<Warning>,
     lights: Lights,
     /// Where the object stands that was learned from.
@@ -95,7 +97,11 @@ impl Stage {
         let toy_in_world = scene
             .world_from_object
             .transform_point3(bounds_in_object.centre());
-        let receivers = Receivers::new(&scene.receivers, toy_in_world);
+        let corners_in_world: Vec<DVec3> = bounds_in_object
+            .corners()
+            .map(|corner| scene.world_from_object.transform_point3(corner))
+            .collect();
+        let receivers = Receivers::new(&scene.receivers, toy_in_world, &corners_in_world);
         let anchor_from_object = receivers.anchored[0].world_from_plane.inverse() * scene.world_from_object;
         let mut posed = PosedMesh::default();
         scene
@@ -117,6 +123,7 @@ impl Stage {
             reached_rects: Vec::new(),
             lights: Lights::new(&scene.lights, &receivers.anchored),
             receivers: receivers.anchored,
+            receiver_indices: receivers.indices,
             receivers_warning: receivers.warning,
             output: Texture::target(gpu, "output", size_px, OUTPUT_FORMAT),
             preset,
@@ -150,6 +157,11 @@ impl Stage {
     /// Indices, in the list that they were given in, of the lights that were learned under.
     pub(crate) fn light_indices(&self) -> &[usize] {
         self.state.as_ref().map_or(&[], |state| &state.light_indices)
+    }
+
+    /// Indices, in the scene's list, of the receivers in use.
+    pub(crate) fn receiver_indices(&self) -> &[usize] {
+        &self.receiver_indices
     }
 
     /// Drops what was learned and what was uploaded of frames, which a refused frame may have left half done.

@@ -1,6 +1,8 @@
 //! Selects the receivers and lights that a preset can use; the others become warnings that stand for all frames.
 
-use glam::{DMat4, DVec3};
+use std::cmp::Ordering;
+
+use glam::{DMat4, DVec2, DVec3};
 
 use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
@@ -9,25 +11,62 @@ use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
 
 /// Supported receivers.
 pub(crate) struct Receivers {
-    /// The first [`MAX_RECEIVERS`], anchored near the toy.
+    /// The [`MAX_RECEIVERS`] nearest to the toy, that one first, anchored near it.
     pub(crate) anchored: Vec<AnchoredReceiver>,
+    /// Their indices in the scene's list.
+    pub(crate) indices: Vec<usize>,
     /// About those that are left out.
     pub(crate) warning: Option<Warning>,
 }
 
 impl Receivers {
-    pub(crate) fn new(receivers: &[Receiver], toy_in_world: DVec3) -> Self {
-        let (used, left_out) = receivers.split_at(MAX_RECEIVERS.min(receivers.len()));
-        Self {
-            anchored: used
+    /// Selects for a toy around `toy_in_world`, within a box of `corners_in_world`. In which order the receivers are listed makes no difference.
+    pub(crate) fn new(receivers: &[Receiver], toy_in_world: DVec3, corners_in_world: &[DVec3]) -> Self {
+        let mut indices: Vec<usize> = (0..receivers.len()).collect();
+        indices.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|index| rank(&receivers[*index], corners_in_world));
+            let unequal = a
                 .iter()
-                .map(|receiver| AnchoredReceiver::near(receiver, toy_in_world))
-                .collect(),
+                .zip(&b)
+                .map(|(a, b)| a.total_cmp(b))
+                .find(|order| order.is_ne());
+            unequal.unwrap_or(Ordering::Equal)
+        });
+        let left_out: Vec<usize> = indices.drain(MAX_RECEIVERS.min(receivers.len())..).collect();
+        let anchored = indices
+            .iter()
+            .map(|index| AnchoredReceiver::near(&receivers[*index], toy_in_world));
+        Self {
+            anchored: anchored.collect(),
             warning: (!left_out.is_empty()).then(|| Warning::ReceiversLeftOut {
-                names: left_out.iter().map(|receiver| receiver.name.clone()).collect(),
+                names: left_out
+                    .iter()
+                    .map(|index| receivers[*index].name.clone())
+                    .collect(),
             }),
+            indices,
         }
     }
+}
+
+/// What receivers are ordered by: how far the toy is from it, in metres, and of several as far something that tells them apart.
+fn rank(receiver: &Receiver, corners_in_world: &[DVec3]) -> Vec<f64> {
+    let plane_from_world = receiver.world_from_plane.inverse();
+    let distance_m = |corner: &DVec3| {
+        let at = plane_from_world.transform_point3(*corner);
+        let beyond = DVec2::new(at.x, at.z).abs() - receiver.half_extent_m;
+        beyond.max(DVec2::ZERO).extend(at.y).length()
+    };
+    let nearest_m = corners_in_world
+        .iter()
+        .map(distance_m)
+        .fold(f64::INFINITY, f64::min);
+    let own = receiver.world_from_plane.to_cols_array();
+    [nearest_m]
+        .into_iter()
+        .chain(own)
+        .chain(receiver.half_extent_m.to_array())
+        .collect()
 }
 
 /// Supported lights.

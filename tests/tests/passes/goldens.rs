@@ -74,6 +74,25 @@ fn pictures_are_their_goldens() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// The same bytes in whatever order receivers are listed.
+#[test]
+fn receivers_may_be_listed_in_any_order() {
+    let stand = Stand::new(WALL);
+    let photo = Photo::plain(stand.setup.lights.len());
+    let frame = photo.frame(&stand, &stand.physical);
+    let listed = scene(&stand, &photo.plate(&stand));
+    let mut reversed = listed.clone();
+    reversed.receivers.reverse();
+    for preset in [Preset::Balanced, Preset::Paper] {
+        let pictures = [&listed, &reversed].map(|scene| {
+            let mut core = core_on(scene.clone(), preset).unwrap();
+            core.frame(&input(&stand, &frame)).unwrap();
+            core.read_picture().unwrap()
+        });
+        assert!(pictures[0] == pictures[1], "{preset}");
+    }
+}
+
 fn scene_of_any() -> Scene {
     let stand = Stand::new(SETUPS[0]);
     let plate = Photo::plain(1).plate(&stand);
