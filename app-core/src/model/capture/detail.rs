@@ -8,6 +8,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
+use crate::model::capture::observed::Observed;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
@@ -45,11 +46,8 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
 }
 
 /// Of the region's size, where it is needed.
@@ -76,12 +74,13 @@ impl Pass {
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let Some(target) = &targets.residual else { return };
+        let observed = &inputs.observed;
         let resources = [
-            inputs.frame.into(),
+            observed.frame.into(),
             inputs.plate.into(),
-            inputs.validity.into(),
-            inputs.visibility.into(),
-            inputs.ambient.into(),
+            observed.validity.into(),
+            observed.visibility.into(),
+            observed.ambient.into(),
             (&recorder.gpu.samplers.linear).into(),
         ];
         let groups = [

@@ -6,6 +6,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
+use crate::model::capture::observed::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
@@ -60,10 +61,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) grids: &'a wgpu::Buffer,
     pub(crate) lit_cells: &'a wgpu::Buffer,
     pub(crate) photographed: &'a wgpu::TextureView,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) observed: Observed<'a>,
 }
 
 /// Of the region's size, where it is needed.
@@ -107,14 +105,15 @@ impl Pass {
             Fineness::Smooth => &self.smooth,
             Fineness::Full => &self.full,
         };
+        let observed = &inputs.observed;
         let resources = [
             inputs.grids.into(),
             inputs.lit_cells.into(),
             inputs.photographed.into(),
-            inputs.frame.into(),
-            inputs.validity.into(),
-            inputs.visibility.into(),
-            inputs.ambient.into(),
+            observed.frame.into(),
+            observed.validity.into(),
+            observed.visibility.into(),
+            observed.ambient.into(),
             (&recorder.gpu.samplers.linear).into(),
         ];
         let groups = [

@@ -9,6 +9,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::model::capture::gbuffer;
+use crate::model::capture::observed::Observed;
 use crate::model::parts::{MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
@@ -109,11 +110,8 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
@@ -154,14 +152,15 @@ impl Pass {
         targets: &Targets,
     ) {
         let gbuffer = inputs.gbuffer;
+        let observed = &inputs.observed;
         let resources = [
             Resource::PerUse,
             (&targets.rows).into(),
-            inputs.frame.into(),
+            observed.frame.into(),
             inputs.plate.into(),
-            inputs.validity.into(),
-            inputs.visibility.into(),
-            inputs.ambient.into(),
+            observed.validity.into(),
+            observed.visibility.into(),
+            observed.ambient.into(),
             (&recorder.gpu.samplers.linear).into(),
             (&gbuffer.base.view).into(),
             (&gbuffer.normal.view).into(),

@@ -4,6 +4,7 @@ use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
+use crate::model::capture::observed::Observed;
 use crate::model::capture::pool::{POOL, Pool, PoolGrids};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::plan::Plan;
@@ -43,10 +44,7 @@ pub(crate) struct Pass(Pool);
 
 pub(crate) struct Inputs<'a> {
     pub(crate) on: PoolGrids<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) observed: Observed<'a>,
 }
 
 impl Pass {
@@ -56,7 +54,13 @@ impl Pass {
 
     /// Adds this view's colours to the cells.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
-        let pictures = [inputs.frame, inputs.validity, inputs.visibility, inputs.ambient];
+        let observed = &inputs.observed;
+        let pictures = [
+            observed.frame,
+            observed.validity,
+            observed.visibility,
+            observed.ambient,
+        ];
         self.0.encode(recorder, &inputs.on, &pictures);
     }
 }

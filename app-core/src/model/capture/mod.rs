@@ -1,5 +1,6 @@
 //! The capture path: steps that update scene state from one view of the real toy and its real shadow.
 
+pub(crate) mod observed;
 pub(crate) mod order;
 pub(crate) mod pool;
 
@@ -8,6 +9,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
 use crate::model::capture::estimate::Fineness;
 use crate::model::capture::fit::Task;
+use crate::model::capture::observed::Observed;
 use crate::model::capture::order::Step;
 use crate::model::capture::pool::PoolGrids;
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
@@ -137,10 +139,7 @@ impl CapturePath<'_> {
             grids: &self.state.grids,
             lit_cells: &self.state.lit.cells,
             photographed: &photographed.view,
-            frame: self.pictures.frame,
-            validity: self.validity(),
-            visibility: &self.captured.light.visibility.lights.view,
-            ambient: &self.captured.light.visibility.ambient.view,
+            observed: self.observed(),
         };
         self.passes
             .estimate
@@ -151,11 +150,8 @@ impl CapturePath<'_> {
         let (captured, targets) = (self.captured, &self.captured.by_pass.fit);
         let inputs = fit::Inputs {
             scene: self.scene(),
-            frame: self.pictures.frame,
+            observed: self.observed(),
             plate: &captured.plate.view,
-            validity: self.validity(),
-            visibility: &captured.light.visibility.lights.view,
-            ambient: &captured.light.visibility.ambient.view,
             gbuffer: &captured.by_pass.gbuffer,
         };
         let to_solve = fit_solve::Inputs {
@@ -198,32 +194,23 @@ impl CapturePath<'_> {
     fn lit_inputs(&self) -> lit::Inputs<'_> {
         lit::Inputs {
             on: self.pool_grids(&self.state.lit),
-            frame: self.pictures.frame,
-            validity: self.validity(),
-            visibility: &self.captured.light.visibility.lights.view,
-            ambient: &self.captured.light.visibility.ambient.view,
+            observed: self.observed(),
         }
     }
 
     fn residual_inputs(&self) -> residual::Inputs<'_> {
         residual::Inputs {
             on: self.pool_grids(&self.state.residual),
-            frame: self.pictures.frame,
+            observed: self.observed(),
             plate: &self.captured.plate.view,
-            validity: self.validity(),
-            visibility: &self.captured.light.visibility.lights.view,
-            ambient: &self.captured.light.visibility.ambient.view,
         }
     }
 
     fn detail_inputs(&self) -> detail::Inputs<'_> {
         detail::Inputs {
             scene: self.scene(),
-            frame: self.pictures.frame,
+            observed: self.observed(),
             plate: &self.captured.plate.view,
-            validity: self.validity(),
-            visibility: &self.captured.light.visibility.lights.view,
-            ambient: &self.captured.light.visibility.ambient.view,
         }
     }
 
@@ -251,6 +238,16 @@ impl CapturePath<'_> {
         Scene {
             globals: &self.region.globals,
             solution: &self.state.solution,
+        }
+    }
+
+    fn observed(&self) -> Observed<'_> {
+        let visibility = &self.captured.light.visibility;
+        Observed {
+            frame: self.pictures.frame,
+            validity: self.validity(),
+            visibility: &visibility.lights.view,
+            ambient: &visibility.ambient.view,
         }
     }
 

@@ -4,6 +4,7 @@ use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
+use crate::model::capture::observed::Observed;
 use crate::model::capture::pool::{POOL, Pool, PoolGrids};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::state::grids::{GRID, Grids};
@@ -38,11 +39,8 @@ pub(crate) struct Pass(Pool);
 
 pub(crate) struct Inputs<'a> {
     pub(crate) on: PoolGrids<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
 }
 
 impl Pass {
@@ -52,12 +50,13 @@ impl Pass {
 
     /// Adds this view's residuals to the cells.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
+        let observed = &inputs.observed;
         let pictures = [
-            inputs.frame,
+            observed.frame,
             inputs.plate,
-            inputs.validity,
-            inputs.visibility,
-            inputs.ambient,
+            observed.validity,
+            observed.visibility,
+            observed.ambient,
         ];
         self.0.encode(recorder, &inputs.on, &pictures);
     }

@@ -1,0 +1,13 @@
+//! What a view shows of the receivers, with the light that reaches them in the physical pose.
+
+/// Maps of the region that passes which learn from the receivers read, each pixel by pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct Observed<'a> {
+    /// The camera's picture, of the image's size.
+    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) validity: &'a wgpu::TextureView,
+    /// Of each light.
+    pub(crate) visibility: &'a wgpu::TextureView,
+    /// Of the ambient light; smaller, and filtered.
+    pub(crate) ambient: &'a wgpu::TextureView,
+}
