@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use app_core::session::{FileError, Files, check_path};
 use thiserror::Error;
 
+/// The session that comes with the project.
+pub const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+
 /// A session's folder.
 #[derive(Clone, Debug)]
 pub struct Folder {

@@ -14,7 +14,7 @@ use image::ImageReader;
 use thiserror::Error;
 
 use crate::compare::{Check, CompareError, Difference, Pair};
-use crate::files::{Folder, FolderError};
+use crate::files::{BUNDLED_SESSION, Folder, FolderError};
 use crate::metrics::{Regions, Scores, SizeError, measure};
 use crate::output::{WriteError, make_folder, write_png};
 
@@ -202,7 +202,7 @@ pub struct Rendered {
 /// # Errors
 /// When the bundled session cannot be read, or the core fails.
 pub fn render(core: &mut Core, preset: Preset) -> Result<Rendered, RenderError> {
-    let folder = Folder::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("sessions/llama"))?;
+    let folder = Folder::open(BUNDLED_SESSION)?;
     let session = Capture::open(folder)?;
     core.set_scene(session.scene().clone(), preset)?;
     core.frame(&FrameInput::from(&session.frame(FRAME)?))?;

@@ -6,13 +6,11 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use harness::bench::{Options, bench, csv};
-use harness::files::Folder;
-
-const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+use harness::files::{BUNDLED_SESSION, Folder};
 
 #[test]
 fn rows_are_complete_and_the_published_method_is_the_unit() {
-    let session = Capture::open(Folder::open(BUNDLED).unwrap()).unwrap();
+    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
     let options = Options {

@@ -17,9 +17,7 @@ use app_core::scene::{Camera, Pose};
 use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use glam::{DMat4, DVec3};
-use harness::files::Folder;
-
-const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
+use harness::files::{BUNDLED_SESSION, Folder};
 
 /// A core on a device that writes down what it is given.
 struct Traced {
@@ -193,7 +191,7 @@ fn from_beside(input: &FrameInput) -> FrameInput {
 }
 
 fn session() -> Capture {
-    Capture::open(Folder::open(BUNDLED).unwrap()).unwrap()
+    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
 }
 
 /// The frames after which nothing but one thing changes, and what that is.

@@ -14,19 +14,18 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::wgpu;
-use harness::files::Folder;
+use harness::files::{BUNDLED_SESSION, Folder};
 use harness::metrics::{Regions, Score, Scores, measure};
 use harness::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
 use harness::progress::Quiet;
 use harness::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
 use harness::report::{Report, mean_scores};
 
-const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
 /// The bundled session ends with a frame that shows the real toy's own pose.
 const IDENTITY_FRAME: usize = 4;
 
 fn bundled() -> Capture {
-    Capture::open(Folder::open(BUNDLED).unwrap()).unwrap()
+    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
 }
 
 /// Replays with one preset.
@@ -118,7 +117,7 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
 fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     const NAME: &str = "</script><script>alert(1)</script>";
     let (folder, out) = (TemporaryFolder::new("named"), TemporaryFolder::new("page"));
-    for entry in fs::read_dir(BUNDLED).unwrap() {
+    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
         let path = entry.unwrap().path();
         fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
     }
@@ -177,7 +176,11 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
 #[test]
 fn the_folder_of_a_session_is_never_written_to() {
     let (session, out) = (bundled(), TemporaryFolder::new("session"));
-    fs::copy(Path::new(BUNDLED).join("capture.json"), out.join("capture.json")).unwrap();
+    fs::copy(
+        Path::new(BUNDLED_SESSION).join("capture.json"),
+        out.join("capture.json"),
+    )
+    .unwrap();
     let error = run(
         &session,
         &Options {

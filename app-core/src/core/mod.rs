@@ -119,13 +119,15 @@ impl Core {
         for plate in &scene.plates {
             check_size("plate", &scene, &plate.image)?;
         }
-        scene.toy.bounds_of_pose(&scene.physical_pose)?;
+        let toy_in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         self.stage = None;
         self.gpu.release_groups();
         for compiled in self.warm_up(preset) {
             compiled?;
         }
-        let stage = self.gpu.guarded(|| Stage::new(&self.gpu, scene, preset))??;
+        let stage = self
+            .gpu
+            .guarded(|| Stage::new(&self.gpu, scene, preset, &toy_in_object))??;
         self.stage = Some(stage);
         Ok(())
     }

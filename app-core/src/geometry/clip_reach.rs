@@ -1,7 +1,7 @@
 //! Extent of a toy in its physical pose, over a whole clip and in further shown poses, in anchor space: independent
 //! of cameras.
 
-use glam::{DMat4, DVec3};
+use glam::DMat4;
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::outline::Outline;
@@ -31,10 +31,10 @@ impl ClipReach {
         posed: &mut PosedMesh,
     ) -> Result<Self, ToyError> {
         toy.pose(physical, anchor_from_object, posed)?;
-        let mut outline = Outline::new(Bounds::around(points(posed)).centre());
+        let mut outline = Outline::new(Bounds::around(posed.points()).centre());
         for moment in moments(toy, clip)?.iter().chain([physical]) {
             toy.pose(moment, anchor_from_object, posed)?;
-            points(posed).for_each(|p| outline.include(p));
+            posed.points().for_each(|p| outline.include(p));
         }
         Ok(Self {
             clip,
@@ -46,7 +46,7 @@ impl ClipReach {
     /// Includes a pose of the same toy, from a tracker or between the moments; returns whether the bounds grew.
     pub(crate) fn grow(&mut self, posed: &PosedMesh) -> bool {
         let mut has_grown = false;
-        for point in points(posed) {
+        for point in posed.points() {
             if !self.outline.holds(point) {
                 self.outline.include(point);
                 has_grown = true;
@@ -64,10 +64,6 @@ impl ClipReach {
         self.outline.points().for_each(|p| reach.include(p));
         reach
     }
-}
-
-fn points(posed: &PosedMesh) -> impl Iterator<Item = DVec3> + '_ {
-    posed.positions.iter().map(|p| p.as_dvec3())
 }
 
 /// Moments of a clip, evenly spaced, or the pose as authored.

@@ -2,10 +2,11 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
+use crate::geometry::extent::NEAR_M;
 use crate::geometry::light_points::light_in_plane;
 use crate::geometry::reach::shadow_of;
 use crate::geometry::scene_layout::SceneLayout;
-use crate::geometry::view::{NEAR_M, View};
+use crate::geometry::view::View;
 
 /// Below this distance two cameras count as the same: at the sharpest edge, of 200 codes a pixel, two codes.
 const SAME_VIEW_PX: f64 = 0.01;

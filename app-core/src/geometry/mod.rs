@@ -5,6 +5,7 @@ pub(crate) mod bounds;
 pub(crate) mod clip_reach;
 pub(crate) mod color;
 pub(crate) mod displacement;
+pub(crate) mod extent;
 pub(crate) mod light_points;
 pub(crate) mod outline;
 pub(crate) mod reach;

@@ -3,13 +3,14 @@
 //! Homographies map its pixels to receiver points, so passes that draw in a receiver's plane draw straight onto the
 //! pixels that show it: texel and pixel coincide, and an edge in the plane is as sharp as the screen allows.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::geometry::bounds::Bounds;
+use crate::geometry::extent::Extent;
 use crate::geometry::light_points::light_corners;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
-use crate::geometry::view::{NEAR_M, View};
+use crate::geometry::view::View;
 
 /// Occlusion of ambient light by the toy counts out to this many toy heights from its footprint.
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
@@ -24,10 +25,8 @@ pub struct Reach<'a> {
     planes: Vec<PlaneReach>,
     /// Radius around the toy's footprint within which it occludes ambient light.
     ambient_reach_m: f64,
-    min_px: DVec2,
-    max_px: DVec2,
-    /// A point is behind the camera: the rectangle is unbounded.
-    is_endless: bool,
+    /// In the picture.
+    extent: Extent,
 }
 
 /// The extent on one receiver.
@@ -79,15 +78,13 @@ impl<'a> Reach<'a> {
             world_from_anchor,
             planes: planes.collect(),
             ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
-            min_px: DVec2::INFINITY,
-            max_px: DVec2::NEG_INFINITY,
-            is_endless: false,
+            extent: Extent::EMPTY,
         }
     }
 
     /// Includes a point of the toy, in anchor space, its shadows and the receivers near it.
     pub fn include(&mut self, in_anchor: DVec3) {
-        self.include_px(
+        self.extent.include(
             self.view
                 .image_px_from(&self.world_from_anchor, in_anchor.extend(1.0)),
         );
@@ -109,20 +106,7 @@ impl<'a> Reach<'a> {
     /// The rectangle around all points, within the image; `None` when they are out of the picture.
     #[must_use]
     pub fn region(&self) -> Option<PixelRect> {
-        let image_px = self.view.image_px;
-        if self.is_endless {
-            return Some(PixelRect {
-                origin_px: UVec2::ZERO,
-                size_px: image_px,
-            });
-        }
-        let within = |px: DVec2| px.clamp(DVec2::ZERO, image_px.as_dvec2()).as_uvec2();
-        let (min_px, max_px) = (within(self.min_px.floor()), within(self.max_px.ceil()));
-        let size_px = max_px.saturating_sub(min_px);
-        (size_px.min_element() > 0).then_some(PixelRect {
-            origin_px: min_px,
-            size_px,
-        })
+        self.extent.rect(self.view.image_px)
     }
 
     /// Extent of toy and shadows on each receiver, within the rectangle that is kept.
@@ -155,16 +139,7 @@ impl<'a> Reach<'a> {
         }
         let at = DVec4::new(on_receiver.x, 0.0, on_receiver.y, 1.0);
         let px = self.view.image_px_from(&plane.world_from_plane, at);
-        self.include_px(px);
-    }
-
-    fn include_px(&mut self, at: DVec3) {
-        if at.z <= NEAR_M {
-            self.is_endless = true;
-            return;
-        }
-        self.min_px = self.min_px.min(at.truncate() / at.z);
-        self.max_px = self.max_px.max(at.truncate() / at.z);
+        self.extent.include(px);
     }
 }
 

@@ -3,12 +3,10 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use crate::geometry::bounds::Bounds;
+use crate::geometry::extent::{Extent, NEAR_M};
 use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::PixelRect;
 use crate::scene::{Camera, Intrinsics, Light};
-
-/// Nearest depth that a camera shows, in metres: of any scene a small part, since reversed depth loses no precision by it.
-pub(crate) const NEAR_M: f64 = 1e-6;
 
 /// A camera in the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,20 +59,11 @@ impl View {
     /// it is out of the picture.
     #[must_use]
     pub fn image_rect(&self, world_from_space: &DMat4, bounds: &Bounds) -> Option<PixelRect> {
-        let (mut min_px, mut max_px) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut extent = Extent::EMPTY;
         for corner in bounds.corners() {
-            let at = self.image_px_from(world_from_space, corner.extend(1.0));
-            if at.z <= NEAR_M {
-                (min_px, max_px) = (DVec2::ZERO, self.image_px.as_dvec2());
-                break;
-            }
-            min_px = min_px.min(at.truncate() / at.z);
-            max_px = max_px.max(at.truncate() / at.z);
+            extent.include(self.image_px_from(world_from_space, corner.extend(1.0)));
         }
-        let within = |px: DVec2| px.clamp(DVec2::ZERO, self.image_px.as_dvec2()).as_uvec2();
-        let origin_px = within(min_px.floor());
-        let size_px = within(max_px.ceil()).saturating_sub(origin_px);
-        (size_px.min_element() > 0).then_some(PixelRect { origin_px, size_px })
+        extent.rect(self.image_px)
     }
 
     /// Homography from (x, z, 1) of a receiver to (u w, v w, w) in the image; w is the depth in metres.

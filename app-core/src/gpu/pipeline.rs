@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 use std::hash::Hash;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use wgpu::{ColorTargetState, DepthStencilState, Face, VertexAttribute, VertexFormat, VertexStepMode};
 
-use super::bindings::{BindingCache, Layout, N_GROUPS, Slot};
+use super::bindings::{BindingCache, Layout, N_GROUPS, Slot, locked};
 use super::device::Device;
 use super::shader::Shader;
 
@@ -99,15 +99,9 @@ impl PipelineCache {
 
     /// Drops everything, to be compiled anew.
     pub(crate) fn clear(&self) {
-        self.modules
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clear();
-        self.draws.lock().unwrap_or_else(PoisonError::into_inner).clear();
-        self.computes
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clear();
+        locked(&self.modules).clear();
+        locked(&self.draws).clear();
+        locked(&self.computes).clear();
     }
 
     fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
@@ -209,12 +203,11 @@ fn cached<K: Clone + Eq + Hash, V: Clone>(
     key: &K,
     make: impl FnOnce() -> V,
 ) -> V {
-    let locked = || cache.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(value) = locked().get(key) {
+    if let Some(value) = locked(cache).get(key) {
         return value.clone();
     }
     let made = make();
-    locked().entry(key.clone()).or_insert(made).clone()
+    locked(cache).entry(key.clone()).or_insert(made).clone()
 }
 
 fn attribute(&(shader_location, format): &Stream) -> [VertexAttribute; 1] {

@@ -218,28 +218,22 @@ impl Render<'_> {
 
 /// An attachment that is cleared to zero and stored.
 pub(crate) fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
-    wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-            store: wgpu::StoreOp::Store,
-        },
-    }
+    cleared_to(view, wgpu::Color::TRANSPARENT)
 }
 
-/// An attachment that starts at a value and is kept.
+/// An attachment that is cleared to a value and stored.
 pub(crate) fn cleared_to(
     view: &wgpu::TextureView,
     value: wgpu::Color,
 ) -> wgpu::RenderPassColorAttachment<'_> {
     wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
         ops: wgpu::Operations {
             load: wgpu::LoadOp::Clear(value),
             store: wgpu::StoreOp::Store,
         },
-        ..cleared(view)
     }
 }
 

@@ -111,13 +111,13 @@ impl Plan {
 }
 
 impl Plan {
-    /// Pixels of the region, counted from its corner, at most `reach_px` from those that show the physical toy.
+    /// Pixels of the region at most `reach_px` from those that show the physical toy: their corner, counted from the
+    /// region's, and their size.
     #[must_use]
-    pub fn near_physical_toy(&self, reach_px: u32) -> Option<PixelRect> {
+    pub fn near_physical_toy(&self, reach_px: u32) -> Option<(UVec2, UVec2)> {
         // What rounding adds in 32 bits is less than a pixel.
-        let margin_px = reach_px + 1;
-        self.physical_toy
-            .map(|toy| toy.grown(margin_px, self.region.size_px))
+        let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
+        Some((near.origin_px, near.size_px))
     }
 
     /// The plan of another view of the same scene: lights keep their points, so that only the view changes.

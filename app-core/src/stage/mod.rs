@@ -31,7 +31,7 @@ use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
 use crate::scene::{Camera, Image, Scene};
-use crate::toy::{PosedMesh, ToyError};
+use crate::toy::{self, PosedMesh, ToyError};
 
 use footprint::Footprint;
 use method::Method;
@@ -88,11 +88,15 @@ struct MethodState {
 }
 
 impl Stage {
-    pub(crate) fn new(gpu: &Gpu, scene: Scene, preset: Preset) -> Result<Self, ToyError> {
-        let in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+    pub(crate) fn new(
+        gpu: &Gpu,
+        scene: Scene,
+        preset: Preset,
+        toy_in_object: &toy::Bounds,
+    ) -> Result<Self, ToyError> {
         let bounds_in_object = Bounds {
-            min: in_object.min.as_dvec3(),
-            max: in_object.max.as_dvec3(),
+            min: toy_in_object.min.as_dvec3(),
+            max: toy_in_object.max.as_dvec3(),
         };
         let toy_in_world = scene
             .world_from_object
@@ -111,7 +115,7 @@ impl Stage {
         let frame = Texture::picture(gpu, "frame", size_px);
         Ok(Self {
             bounds_in_object,
-            physical_bounds: Bounds::around(posed.positions.iter().map(|p| p.as_dvec3())),
+            physical_bounds: Bounds::around(posed.points()),
             toy: ToyMesh::new(gpu, &scene.toy, &posed),
             posed,
             frame_codes: frame.codes(gpu),

@@ -53,7 +53,7 @@ impl Stage {
             .pose(&self.scene.physical_pose, &anchor_from_object, &mut self.posed)?;
         self.world_from_object = *world_from_object;
         self.is_object_placed = true;
-        self.physical_bounds = Bounds::around(self.posed.positions.iter().map(|p| p.as_dvec3()));
+        self.physical_bounds = Bounds::around(self.posed.points());
         self.toy.physical.write(gpu, &self.posed);
         Ok(())
     }

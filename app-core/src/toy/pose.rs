@@ -19,6 +19,13 @@ pub struct PosedMesh {
     pub normals: Vec<Vec3>,
 }
 
+impl PosedMesh {
+    /// The positions in 64 bits.
+    pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.positions.iter().map(|position| position.as_dvec3())
+    }
+}
+
 impl Toy {
     /// Poses the toy, and writes positions and normals.
     ///

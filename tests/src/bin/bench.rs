@@ -13,12 +13,10 @@ use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
 use harness::bench::{Options, Row, bench, csv, rebuild, rebuilt_table, table};
-use harness::files::Folder;
+use harness::files::{BUNDLED_SESSION, Folder};
 use harness::output::{make_folder, remove_file, write_png, write_whole};
 use harness::program::exit_code;
 
-/// The session that comes with the project.
-const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
 /// Where the result goes that was given no place, below the top of the repository.
 const RESULTS: &str = "target/bench";
 /// File name of the result.

@@ -12,15 +12,13 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
-use harness::files::Folder;
+use harness::files::{BUNDLED_SESSION, Folder};
 use harness::page::PAGE_FILE;
 use harness::program::exit_code;
 use harness::progress::{Progress, Quiet, on_stderr};
 use harness::replay::{Options, REPORT_FILE, replay};
 use harness::report::Report;
 
-/// The session that comes with the project.
-const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
 /// Where results go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/replay";
 

@@ -8,11 +8,9 @@ use app_core::gpu::AdapterChoice;
 use app_core::scene::{Camera, Image, Intrinsics, Plate, Scene};
 use app_core::session::{Capture, Session};
 use app_core::wgpu::{Instance, InstanceDescriptor};
-use harness::files::Folder;
+use harness::files::{BUNDLED_SESSION, Folder};
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
-
-const BUNDLED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
 
 /// The session is this much larger.
 const SHRINK: u32 = 4;
@@ -42,7 +40,7 @@ pub(crate) fn first_input() -> FrameInput {
 
 /// Both in full size.
 pub(crate) fn whole() -> (Scene, FrameInput) {
-    let session = Capture::open(Folder::open(BUNDLED).unwrap()).unwrap();
+    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
     (
         session.scene().clone(),
         FrameInput::from(&session.frame(0).unwrap()),

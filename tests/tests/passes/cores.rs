@@ -35,17 +35,22 @@ impl Drop for SharedCore {
     }
 }
 
-/// A core that has a scene.
-pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<SharedCore, CoreError> {
+/// A core that no test uses, with whatever scene.
+pub(crate) fn any_core() -> Result<SharedCore, CoreError> {
     let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
-    let mut core = match idle {
+    let core = match idle {
         Some(core) => core,
         None => pollster::block_on(Core::headless(
             &wgpu::Instance::default(),
             &AdapterChoice::Fastest,
         ))?,
     };
-    let staged = core.set_scene(scene, preset);
-    let core = SharedCore(Some(core));
-    staged.map(|()| core)
+    Ok(SharedCore(Some(core)))
+}
+
+/// A core that has a scene.
+pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<SharedCore, CoreError> {
+    let mut core = any_core()?;
+    core.set_scene(scene, preset)?;
+    Ok(core)
 }

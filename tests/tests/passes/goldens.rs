@@ -5,7 +5,7 @@ use app_core::scene::{Image, Scene};
 use glam::DVec3;
 use harness::golden::{Goldens, ON_HARDWARE, ON_SOFTWARE};
 
-use crate::cores::core_on;
+use crate::cores::{any_core, core_on};
 use crate::photo::Photo;
 use crate::run::{input, plate_of, scene};
 use crate::setups::{SETUPS, Setup, WALL};
@@ -59,10 +59,7 @@ fn seen_by(stands: &[Stand]) -> Image {
 
 #[test]
 fn pictures_are_their_goldens() {
-    let is_software = core_on(scene_of_any(), Preset::Balanced)
-        .unwrap()
-        .gpu()
-        .is_software();
+    let is_software = any_core().unwrap().gpu().is_software();
     let checks = if is_software { ON_SOFTWARE } else { ON_HARDWARE };
     let failures =
         pictures().map(|(name, picture)| Goldens::of_project().check(name, &picture, checks).err());
@@ -91,12 +88,6 @@ fn receivers_may_be_listed_in_any_order() {
         });
         assert!(pictures[0] == pictures[1], "{preset}");
     }
-}
-
-fn scene_of_any() -> Scene {
-    let stand = Stand::new(SETUPS[0]);
-    let plate = Photo::plain(1).plate(&stand);
-    scene(&stand, &plate)
 }
 
 /// A part of `cargo xtask bless`: makes them anew, and fails, so that someone looks.

@@ -97,7 +97,6 @@ impl Pass {
         let colors = [&targets.color, &targets.lit, &targets.base];
         let colors = colors.map(|texture| Some(cleared(&texture.view)));
         let near = inputs.plan.near_physical_toy(REACH_PX);
-        let near = near.map(|rect| (rect.origin_px, rect.size_px));
         recorder.fullscreen_within(&self.draw, &groups, &colors, near);
     }
 }

@@ -64,7 +64,6 @@ impl Pass {
         let own = recorder.bind(&self.draw, GROUP_PASS, &[gbuffer_depth.into()]);
         let marks = Some(cleared_to(&targets.marks.view, FAR));
         let near = plan.near_physical_toy(BLEED_PX);
-        let near = near.map(|rect| (rect.origin_px, rect.size_px));
         recorder.fullscreen_within(&self.draw, &[own], &[marks], near);
     }
 }
