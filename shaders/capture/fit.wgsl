@@ -3,7 +3,8 @@
 // Receiver: frame / gain = plate c (A + bounce A (1 - A)
 //   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
 // is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
-// Toy: frame / gain = base (toy_0 + toy_1 n.y + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i with self-shadowing.
+// Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
+// with self-shadowing.
 // Intensities: frame = gain plate (ambient_model + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
@@ -130,8 +131,9 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
   eq.value = f[channel] / fit.gain[channel];
   let received = textureLoad(gbuffer_received, texel, 0);
-  eq.columns[0] = base[channel];
-  eq.columns[1] = base[channel] * normal.y;
+  let part = hemispheres(normal);
+  eq.columns[0] = base[channel] * part.x;
+  eq.columns[1] = base[channel] * part.y;
   for (var i = 0u; i < globals.n_lights; i++) {
     eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i];
   }

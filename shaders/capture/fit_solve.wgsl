@@ -1,8 +1,13 @@
 // Solves the normal equations that `fit` summed, per channel, with weak priors for under-constrained unknowns.
 //
+// A toy of few faces does not tell its lights apart from the ambient light. The receiver does: what falls on the toy from
+// above is to a light as the ambient part of the receiver's radiance is to that light's part, and what comes from below
+// is what the receiver throws back. Light is not negative, so an unknown that would be is 0, and the others make up.
+//
 // Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
 // Writes: the solution, and in the last step the accumulated sums.
-// CPU reference: reference/fit.rs.
+// CPU reference: reference/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
+// only ever taken out here, the most negative one first.
 
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
@@ -21,6 +26,10 @@ const SAME_GAIN_WEIGHT: f32 = 10.0;
 const MAX_FRAMES: f32 = 8.0;
 // Weight of the three channels' common solution, for the toy, against their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
+// Weight of what the receiver tells of the light on the toy, against the toy's energy.
+const RECEIVER_LIGHT_WEIGHT: f32 = 0.01;
+// Part of the light from above that a receiver throws back: middle grey and somewhat less, since the toy shades it.
+const PRIOR_REFLECTANCE: f32 = 0.25;
 // Bounce of a toy of middle grey: the mean over channels in sessions of the bundled toy.
 const PRIOR_BOUNCE: f32 = 0.27;
 // Direct fraction of all lights together, half of the plate's radiance; each as if of equal intensity at one metre.
@@ -165,16 +174,103 @@ fn solve_intensities(channel: u32) {
   }
 }
 
+// Adds the equation that the sum of coefficients times unknowns is 0.
+fn add_relation(weight: f32, coefficients: array<f32, N_COLUMNS>) {
+  var c = coefficients;
+  for (var i = 0u; i < N_COLUMNS; i++) {
+    for (var j = 0u; j < N_COLUMNS; j++) { matrix[i * N_COLUMNS + j] += weight * c[i] * c[j]; }
+  }
+}
+
+// Cosine of light `i` to a receiver, at its reference point; 0 where it is behind it.
+fn reference_cosine(receiver: u32, i: u32) -> f32 {
+  let light = globals.receivers[receiver].lights[i];
+  let reference = globals.receivers[receiver].reference_in_plane;
+  let to_light = light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
+  let distance_m = length(to_light);
+  if distance_m == 0.0 { return 1.0; }
+  return max(to_light.y / distance_m, 0.0);
+}
+
+// The first receiver that light `i` shines on, or the first of all.
+fn receiver_in_light(i: u32) -> u32 {
+  for (var k = 0u; k < globals.n_receivers; k++) {
+    if reference_cosine(k, i) > 0.0 { return k; }
+  }
+  return 0u;
+}
+
+// Adds what the receivers tell of the light on the toy; `channels` are those whose mean is taken.
+fn add_receiver_light(weight: f32, channels: vec3f) {
+  var from_below: array<f32, N_COLUMNS>;
+  from_below[0] = -PRIOR_REFLECTANCE;
+  from_below[1] = 1.0;
+  for (var i = 0u; i < step.n_columns - 2u; i++) {
+    let k = receiver_in_light(i);
+    let cosine = reference_cosine(k, i);
+    var ambient_fraction = 1.0;
+    for (var j = 0u; j < step.n_columns - 2u; j++) {
+      ambient_fraction -= dot(solution.receivers[k].direct_fraction[j].rgb, channels);
+    }
+    let fraction = dot(solution.receivers[k].direct_fraction[i].rgb, channels);
+    let normal = transpose(globals.receivers[k].plane_from_anchor)[1].xyz;
+    let part = hemispheres(normal);
+    var relation: array<f32, N_COLUMNS>;
+    relation[0] = -fraction * part.x;
+    relation[1] = -fraction * part.y;
+    relation[2u + i] = ambient_fraction * cosine;
+    add_relation(weight, relation);
+    from_below[2u + i] = -PRIOR_REFLECTANCE * reference_cosine(0u, i);
+  }
+  add_relation(weight, from_below);
+}
+
+// Takes unknown `column` out of the equations: it is 0.
+fn take_out(column: u32) {
+  for (var i = 0u; i < N_COLUMNS; i++) {
+    matrix[i * N_COLUMNS + column] = 0.0;
+    matrix[column * N_COLUMNS + i] = 0.0;
+  }
+  matrix[column * N_COLUMNS + column] = 1.0;
+  unknowns[column] = 0.0;
+}
+
+// Solves the equations that are loaded, with no unknown below 0.
+fn solve_non_negative() {
+  let whole = matrix;
+  let right = unknowns;
+  var out: array<bool, N_COLUMNS>;
+  for (var n_out = 0u; n_out < step.n_columns; n_out++) {
+    matrix = whole;
+    unknowns = right;
+    for (var i = 0u; i < step.n_columns; i++) {
+      if out[i] { take_out(i); }
+    }
+    solve();
+    var lowest = 0u;
+    for (var i = 1u; i < step.n_columns; i++) {
+      if unknowns[i] < unknowns[lowest] { lowest = i; }
+    }
+    if unknowns[lowest] >= 0.0 { return; }
+    out[lowest] = true;
+    unknowns[lowest] = 0.0;
+  }
+}
+
 // A channel in which the toy is dark follows the others: light is nearly white, base colours are not.
 fn solve_toy(channel: u32) {
   load_equations(0u, 3u);
-  let energy = matrix[0];
+  let energy = matrix[0] + matrix[N_COLUMNS + 1u];
   for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, 0.0); }
-  solve();
+  add_receiver_light(RECEIVER_LIGHT_WEIGHT * energy, vec3f(1.0 / 3.0));
+  solve_non_negative();
   let white = unknowns;
   load_equations(channel, 1u);
   for (var i = 0u; i < step.n_columns; i++) { add_prior(i, WHITE_WEIGHT * energy, white[i]); }
-  solve();
+  var only = vec3f(0.0);
+  only[channel] = 1.0;
+  add_receiver_light(RECEIVER_LIGHT_WEIGHT * energy, only);
+  solve_non_negative();
   store_toy(channel);
 }
 

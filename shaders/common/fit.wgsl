@@ -17,7 +17,7 @@ struct Fit {
   // Each light's power over that when the plate was taken.
   intensity: array<vec4f, MAX_LIGHTS>,
   receivers: array<ReceiverFit, MAX_RECEIVERS>,
-  // Radiance of the toy over its base colour and the gain: constant, vertical gradient, a factor per light's cosine.
+  // Radiance of the toy over its base colour and the gain: light from above, from below, a factor per light's cosine.
   toy: array<vec4f, N_COLUMNS>,
 }
 

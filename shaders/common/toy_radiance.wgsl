@@ -1,8 +1,9 @@
-// Fitted radiance of the toy over base colour and gain: a constant, a vertical gradient, and one factor per light,
-// stated at the plate's intensity, for intensity times cosine times visibility.
+// Fitted radiance of the toy over base colour and gain: ambient light from above and from below, and one factor per
+// light, stated at the plate's intensity, for intensity times cosine times visibility. None of them is negative.
 
 fn toy_radiance_over_base(normal: vec3f, received: vec4f) -> vec3f {
-  var sum = fit.toy[0].rgb + fit.toy[1].rgb * normal.y;
+  let part = hemispheres(normal);
+  var sum = part.x * fit.toy[0].rgb + part.y * fit.toy[1].rgb;
   for (var i = 0u; i < globals.n_lights; i++) { sum += fit.toy[2u + i].rgb * fit.intensity[i].rgb * received[i]; }
-  return max(sum, vec3f(0.0));
+  return sum;
 }

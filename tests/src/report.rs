@@ -128,6 +128,8 @@ pub struct FitEntry {
     pub bounce: [f32; 3],
     /// Each light's share of the plate's radiance at the reference point.
     pub direct_fraction: Vec<[f32; 3]>,
+    /// Radiance of the toy over its base colour: from above, from below, and each light's where it falls straight on.
+    pub toy: Vec<[f32; 3]>,
 }
 
 impl FrameEntry {
@@ -205,6 +207,10 @@ impl FitEntry {
                 .iter()
                 .take(n_lights.min(MAX_LIGHTS))
                 .map(|direct_fraction| rgb(*direct_fraction))
+                .collect(),
+            toy: fit.toy[..2 + n_lights.min(MAX_LIGHTS)]
+                .iter()
+                .map(|light| rgb(*light))
                 .collect(),
         }
     }

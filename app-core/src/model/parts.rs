@@ -10,5 +10,7 @@ pub(crate) const CELLS: Part = part!("common/cells");
 pub(crate) const ACCUMULATED: Part = part!("common/accumulated");
 /// The model of a receiver: the frame as a fraction of the plate.
 pub(crate) const MODEL: Part = part!("common/model");
+/// Ambient light of two colours, from above and from below.
+pub(crate) const HEMISPHERES: Part = part!("common/hemispheres");
 /// The fitted light on the toy.
 pub(crate) const TOY_RADIANCE: Part = part!("common/toy_radiance");

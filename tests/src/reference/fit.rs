@@ -16,6 +16,10 @@ const TOY_CAUCHY_SCALE: f64 = 0.12;
 const PRIOR_WEIGHT: f64 = 1e-4;
 /// Weight of the solution that all channels share, for the toy, as a fraction of their common energy.
 const WHITE_WEIGHT: f64 = 0.003;
+/// Weight of what the receivers tell of the light on the toy, as a fraction of the toy's energy.
+const RECEIVER_LIGHT_WEIGHT: f64 = 0.01;
+/// Part of what falls on a receiver that comes back up to the toy, as far as nothing else tells.
+const PRIOR_REFLECTANCE: f64 = 0.25;
 /// Weight by which further receivers keep the first one's gain, as a fraction of the first column's energy.
 const SAME_GAIN_WEIGHT: f64 = 10.0;
 /// Bounce that is expected, as a fraction of the ambient light that the toy takes: that of a toy of middle grey.
@@ -36,6 +40,8 @@ pub struct FitConstants {
     pub prior_weight: f64,
     /// Weight of the common solution of all channels, for the toy, against their common energy.
     pub white_weight: f64,
+    /// Weight of what the receivers tell of the light on the toy, against the toy's energy.
+    pub receiver_light_weight: f64,
 }
 
 impl Default for FitConstants {
@@ -44,6 +50,7 @@ impl Default for FitConstants {
             cauchy_scale: CAUCHY_SCALE,
             prior_weight: PRIOR_WEIGHT,
             white_weight: WHITE_WEIGHT,
+            receiver_light_weight: RECEIVER_LIGHT_WEIGHT,
         }
     }
 }
@@ -272,27 +279,74 @@ pub fn fit_toy<R: Real>(
         let each = [0, 1, 2].map(|k| toy_equations::<R>(region, samples, &solution, (step > 0, k)));
         let mut all = NormalEquations::new(n_columns);
         each.iter().for_each(|equations| all.join(equations));
-        let energy = all.energy(0);
-        let weight = R::from_f64(constants.prior_weight) * energy;
-        (0..n_columns).for_each(|i| all.expect(i, R::ZERO, weight));
-        let white = all.solve();
-        let white_weight = R::from_f64(constants.white_weight) * energy;
-        for (channel, mut equations) in each.into_iter().enumerate() {
-            if equations.energy(0) <= R::ZERO {
-                continue;
+        let energy = all.energy(0) + all.energy(1);
+        if energy <= R::ZERO {
+            continue;
+        }
+        let [weight, white_weight, receiver_weight] = [
+            constants.prior_weight,
+            constants.white_weight,
+            constants.receiver_light_weight,
+        ]
+        .map(|weight| R::from_f64(weight) * energy);
+        let expect_receiver_light = |equations: &mut NormalEquations<R>, channels: DVec3| {
+            for relation in receiver_light::<R>(region, &solution, channels) {
+                equations.observe(&relation, R::ZERO, receiver_weight);
             }
+        };
+        (0..n_columns).for_each(|i| all.expect(i, R::ZERO, weight));
+        expect_receiver_light(&mut all, DVec3::splat(1.0 / 3.0));
+        let white = all.solve_non_negative();
+        let found = each.into_iter().enumerate().map(|(channel, mut equations)| {
             white
                 .iter()
                 .enumerate()
                 .for_each(|(i, w)| equations.expect(i, *w, white_weight));
-            solution
-                .toy
-                .iter_mut()
-                .zip(equations.solve())
-                .for_each(|(slot, value)| slot[channel] = value.to_f64());
+            expect_receiver_light(&mut equations, DVec3::AXES[channel]);
+            equations.solve_non_negative()
+        });
+        let found: Vec<Vec<R>> = found.collect();
+        for (channel, found) in found.into_iter().enumerate() {
+            let slots = solution.toy.iter_mut().zip(found);
+            slots.for_each(|(slot, value)| slot[channel] = value.to_f64());
         }
     }
     solution
+}
+
+/// What the receivers tell of the light on the toy: sums of coefficients times its unknowns that are 0, in the mean of
+/// `channels`.
+///
+/// Of what a receiver shows in the open, each light's part is to the ambient part as its light at the toy times the cosine to
+/// the receiver is to the ambient light on a surface that lies like the receiver; and from below comes what the first
+/// receiver throws back.
+fn receiver_light<R: Real>(region: &Region, solution: &Solution, channels: DVec3) -> Vec<Vec<R>> {
+    let n_lights = region.lights.len();
+    let cosine = |plane: &ReceiverPlane, i: usize| {
+        let light = plane.lights[i];
+        let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
+        (light.truncate() - light.w * at).normalize().y.max(0.0)
+    };
+    let of_light = |i: usize| {
+        let lit = region.receivers.iter().position(|plane| cosine(plane, i) > 0.0);
+        let receiver = lit.unwrap_or(0);
+        let plane = &region.receivers[receiver];
+        let parts = &solution.receivers[receiver].direct_fractions;
+        let ambient_part = 1.0 - parts.iter().map(|part| part.dot(channels)).sum::<f64>();
+        // How far up the receiver faces, in anchor space.
+        let upward = plane.plane_from_anchor.inverse().y_axis.y;
+        let mut relation = vec![0.0; 2 + n_lights];
+        relation[0] = -parts[i].dot(channels) * (1.0 + upward) / 2.0;
+        relation[1] = -parts[i].dot(channels) * (1.0 - upward) / 2.0;
+        relation[2 + i] = ambient_part * cosine(plane, i);
+        relation
+    };
+    let mut from_below = vec![-PRIOR_REFLECTANCE, 1.0];
+    from_below.extend((0..n_lights).map(|i| -PRIOR_REFLECTANCE * cosine(&region.receivers[0], i)));
+    let relations = (0..n_lights).map(of_light).chain([from_below]);
+    relations
+        .map(|relation| relation.into_iter().map(R::from_f64).collect())
+        .collect()
 }
 
 fn toy_equations<R: Real>(
@@ -323,11 +377,12 @@ fn toy_equations<R: Real>(
     equations
 }
 
-/// What the light on the toy is made of: constant, vertical gradient, and what is received of each light at its level.
+/// What the light on the toy is made of: from above, from below, and what is received of each light at its level.
 #[must_use]
 pub fn toy_columns<R: Real>(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<Vector<R, 3>> {
     let lights = intensities.iter().zip(received.to_array());
-    [R::ONE, R::from_f64(normal.y)]
+    [1.0 + normal.y, 1.0 - normal.y]
+        .map(|twice| R::from_f64(0.5 * twice))
         .into_iter()
         .map(Vector::splat)
         .chain(lights.map(|(intensity, received)| Vector::from(*intensity) * R::from_f64(received)))
@@ -340,7 +395,7 @@ pub fn toy_radiance<R: Real>(solution: &Solution, normal: DVec3, received: DVec4
     let columns = toy_columns::<R>(normal, received, &solution.intensities);
     let terms = columns.into_iter().zip(&solution.toy);
     let sum: Vector<R, 3> = terms.map(|(column, light)| column * Vector::from(*light)).sum();
-    DVec3::from(sum).max(DVec3::ZERO)
+    sum.into()
 }
 
 /// 1 for no residual, a half for one of `scale`.

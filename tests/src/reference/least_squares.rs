@@ -51,6 +51,40 @@ impl<R: Real> NormalEquations<R> {
         self.matrix[column][column]
     }
 
+    /// The unknowns that cost least of all those without one below 0: of every set of them that is 0 the others are solved for.
+    ///
+    /// The work doubles with each unknown. Not finite where they are not determined.
+    #[must_use]
+    pub fn solve_non_negative(&self) -> Vec<R> {
+        let n = self.right.len();
+        let solutions = (0..1_u32 << n).map(|zeros| self.solve_without(|column| zeros >> column & 1 == 1));
+        let allowed = solutions.filter(|unknowns| unknowns.iter().all(|unknown| *unknown >= R::ZERO));
+        let best = allowed.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        best.unwrap_or_else(|| self.solve())
+    }
+
+    /// The unknowns, where those that `is_zero` tells are 0.
+    fn solve_without(&self, is_zero: impl Fn(usize) -> bool) -> Vec<R> {
+        let mut left = self.clone();
+        for column in (0..self.right.len()).filter(|column| is_zero(*column)) {
+            left.matrix.iter_mut().for_each(|row| row[column] = R::ZERO);
+            left.matrix[column].fill(R::ZERO);
+            left.matrix[column][column] = R::ONE;
+            left.right[column] = R::ZERO;
+        }
+        left.solve()
+    }
+
+    /// Weighted squares that are left, up to a constant.
+    fn cost(&self, unknowns: &[R]) -> R {
+        let rows = self.matrix.iter().zip(&self.right).zip(unknowns);
+        rows.map(|((row, right), unknown)| {
+            let product: R = row.iter().zip(unknowns).map(|(a, b)| *a * *b).sum();
+            *unknown * (product - *right - *right)
+        })
+        .sum()
+    }
+
     /// The unknowns, by elimination with partial pivoting; not finite where they are not determined.
     #[must_use]
     pub fn solve(&self) -> Vec<R> {

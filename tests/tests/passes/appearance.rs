@@ -121,7 +121,7 @@ fn a_fault_in_the_appearance_is_found() {
             "> 0.0 {\n    return Appearance(",
             "> 9.0 {\n    return Appearance(",
         ),
-        (", vec3f(0.0));", ", vec3f(-1e9));"),
+        ("part.x * fit.toy[0]", "part.y * fit.toy[0]"),
         ("* received[i]", "* received[0]"),
         ("fit.intensity[", "fit.toy["),
     ];

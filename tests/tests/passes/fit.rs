@@ -113,9 +113,10 @@ fn toy() {
     for run in runs() {
         let samples = toy_samples(run);
         assert!(samples.len() > 80, "the toy is too small");
-        // The exposure is that of the receivers.
+        // Exposure and parts of the light are those of the receivers.
         let start = Solution {
             gain: run.solution.gain,
+            receivers: run.solution.receivers.clone(),
             ..start(run.region.lights.len())
         };
         let expected = fit_toy::<f64>(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);

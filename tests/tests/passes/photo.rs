@@ -37,7 +37,7 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
         gain: DVec3::new(1.04, 1.0, 0.96),
         intensities: vec![DVec3::ONE; n_lights],
         receivers: receivers.collect(),
-        toy: [DVec3::splat(0.4), DVec3::splat(0.15)]
+        toy: [DVec3::splat(0.55), DVec3::splat(0.25)]
             .into_iter()
             .chain(light)
             .take(2 + n_lights)

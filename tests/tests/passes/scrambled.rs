@@ -52,8 +52,8 @@ impl Scrambled {
         solution.intensities = vec![DVec3::new(0.7, 0.8, 0.6), DVec3::new(1.2, 1.1, 1.3)];
         // So that no light at all may be left in a channel.
         solution.receivers[1].bounce.z = 0.0;
-        // So that what faces down would have less than none.
-        solution.toy[1] = DVec3::splat(0.9);
+        // So that what faces straight down has none, where no light falls on it.
+        solution.toy[1] = DVec3::ZERO;
         let one_in = |n: u32, seed: u32| move |at: UVec2| number(at, seed) * f64::from(n) < 1.0;
         Self {
             region: stand.region(&rect),

@@ -14,6 +14,7 @@ pub(crate) fn without_priors() -> FitConstants {
     FitConstants {
         prior_weight: 0.0,
         white_weight: 0.0,
+        receiver_light_weight: 0.0,
         ..FitConstants::default()
     }
 }

@@ -9,7 +9,7 @@ use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::capture::gbuffer::{self, BASE_FORMAT};
-use crate::model::parts::TOY_RADIANCE;
+use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
@@ -18,6 +18,7 @@ use crate::passes::parts::{DEPTH, FULLSCREEN};
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &HEMISPHERES,
     &TOY_RADIANCE,
     &DEPTH,
     &FULLSCREEN,

@@ -10,7 +10,7 @@ use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::model::capture::gbuffer;
 use crate::model::capture::observed::Observed;
-use crate::model::parts::{MODEL, TOY_RADIANCE};
+use crate::model::parts::{HEMISPHERES, MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
@@ -27,6 +27,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &FIT,
     &FIT_STEP,
     &MODEL,
+    &HEMISPHERES,
     &TOY_RADIANCE,
     &PIXEL,
     &part!("capture/fit"),

@@ -6,7 +6,7 @@ use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::model::capture::gbuffer;
-use crate::model::parts::TOY_RADIANCE;
+use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
@@ -17,6 +17,7 @@ use crate::passes::parts::{CHANNELS, PIXEL};
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &HEMISPHERES,
     &TOY_RADIANCE,
     &PIXEL,
     &CHANNELS,

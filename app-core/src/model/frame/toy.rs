@@ -14,7 +14,7 @@ use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow::{
     self, GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
 };
-use crate::model::parts::TOY_RADIANCE;
+use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
@@ -26,6 +26,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
     &TOY_LIGHT,
+    &HEMISPHERES,
     &TOY_RADIANCE,
     &SELF_SHADOW_MAPS,
     &MATERIAL,

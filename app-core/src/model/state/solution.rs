@@ -72,7 +72,7 @@ pub(crate) fn start(n_lights: usize) -> Fit {
         receivers: [receiver; MAX_RECEIVERS],
         toy: [[0.0; 4]; N_COLUMNS],
     };
-    fit.toy[0] = [0.5; 4];
+    fit.toy[..2].fill([0.5; 4]);
     fit
 }
 
