@@ -41,5 +41,5 @@ fn fs_describe(
   let base = vec4f(base_color(uv, color), 1.0);
   if is_behind_receiver(at.xy, at.w) { discard; }
   let normal = unit_normal(interpolated_normal);
-  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(normal, in_anchor));
+  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(true, normal, in_anchor));
 }

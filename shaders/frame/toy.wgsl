@@ -106,19 +106,22 @@ fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
 }
 
-// Relative change of the light on a surface, from 0 to 1. A pixel at a fold shows several faces: the most similar one
-// counts.
-fn light_change(texel: vec2i, lit: vec3f) -> f32 {
-  let last = vec2i(globals.region_size_px) - 1;
-  var least = 1.0;
-  for (var y = -1; y <= 1; y++) {
-    for (var x = -1; x <= 1; x++) {
-      let was_lit = textureLoad(appearance_lit, clamp(texel + vec2i(x, y), vec2i(0), last), 0).rgb;
-      let brighter = max(largest(was_lit), largest(lit));
-      if brighter > 0.0 { least = min(least, largest(abs(lit - was_lit)) / brighter); }
-    }
-  }
-  return smoothstep(SAME_LIGHT, OTHER_LIGHT, least);
+// How far the light on a surface has visibly changed from `was_lit` to `lit`, from 0 to 1.
+fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
+  let brighter = max(largest(was_lit), largest(lit));
+  if brighter == 0.0 { return 0.0; }
+  return smoothstep(SAME_LIGHT, OTHER_LIGHT, largest(abs(lit - was_lit)) / brighter);
+}
+
+// 1 where the toy differs from what the camera saw in this place: its surface has moved, or its light has changed.
+//
+// The light it was seen under is that of the same point in the physical pose: what a pixel of the frame shows in its
+// middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
+// either, and are done.
+fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
+  if moved == 1.0 || light_change(lit, textureLoad(appearance_lit, texel, 0).rgb) == 0.0 { return moved; }
+  let received = light_received(true, physical_normal, physical_in_anchor);
+  return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
 }
 
 // Tint at a point of the physical pose.
@@ -150,12 +153,12 @@ fn fs_toy(
     select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
-  let lit = toy_radiance_over_base(normal, light_received(normal, in_anchor));
+  let lit = toy_radiance_over_base(normal, light_received(false, normal, in_anchor));
   let unseen = fit.gain.rgb * base * tint(physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   if is_behind_receiver(at.xy - offset_px, at.w) { discard; }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
-  let is_relit = select(light_change(vec2i(at.xy), lit), 1.0, is_moved == 1.0);
-  return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(max(is_moved, is_relit)));
+  let is_other = difference(vec2u(at.xy), is_moved, lit, physical_normal, physical_in_anchor);
+  return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(is_other));
 }

@@ -76,7 +76,7 @@ impl Pass {
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let maps = inputs.self_shadow.resources(recorder.gpu);
+        let maps = inputs.self_shadow.resources(recorder.gpu, inputs.self_shadow);
         let groups = [
             recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
             recorder.bind(&self.draw, GROUP_SELF_SHADOW, &maps),

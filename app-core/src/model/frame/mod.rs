@@ -115,7 +115,7 @@ impl FramePath<'_> {
             toy: self.toy,
             appearance: &self.captured.by_pass.appearance,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
-            self_shadow: &self.drawn.light.self_shadow,
+            self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
             tints: &self.state.tints,
         }
     }

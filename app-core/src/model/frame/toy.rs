@@ -80,7 +80,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
     pub(crate) gbuffer_depth: &'a wgpu::TextureView,
-    pub(crate) self_shadow: &'a self_shadow::Targets,
+    /// Of the shown pose, and of the physical one.
+    pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
 }
 
@@ -138,7 +139,8 @@ impl Pass {
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let maps = inputs.self_shadow.resources(recorder.gpu);
+        let [shown, physical] = inputs.self_shadow;
+        let maps = shown.resources(recorder.gpu, physical);
         let materials = inputs.toy.bind_materials(recorder, &self.draw);
         let offsets: &[Vec2] = if targets.drawn.len() == 1 {
             &[Vec2::ZERO]

@@ -31,7 +31,13 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 /// Group of the maps, in this pass and where they are read.
 pub(crate) const GROUP_SELF_SHADOW: usize = 3;
 /// Slots of the group where the maps are read.
-pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>(), Slot::Depth, Slot::Comparison];
+pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[
+    Slot::uniform::<SelfShadow>(),
+    Slot::Depth,
+    Slot::Comparison,
+    Slot::uniform::<SelfShadow>(),
+    Slot::Depth,
+];
 /// And where they are drawn.
 const TILES_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
@@ -85,12 +91,14 @@ impl Targets {
         }
     }
 
-    /// Resources of [`SELF_SHADOW_GROUP`].
-    pub(crate) fn resources<'a>(&'a self, gpu: &'a Gpu) -> [Resource<'a>; 3] {
+    /// Resources of [`SELF_SHADOW_GROUP`]: the maps of a pose, then those of the physical one.
+    pub(crate) fn resources<'a>(&'a self, gpu: &'a Gpu, physical: &'a Self) -> [Resource<'a>; 5] {
         [
             (&self.tiles).into(),
             (&self.depth.view).into(),
             (&gpu.samplers.nearer).into(),
+            (&physical.tiles).into(),
+            (&physical.depth.view).into(),
         ]
     }
 }
