@@ -121,7 +121,7 @@ pub mod internals {
     pub use crate::model::diagnostics::conditioning::light_conditioning;
     pub use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS, outliers};
     pub use crate::model::lighting::self_shadow::SelfShadow;
-    pub use crate::model::plan::{LightPlan, Plan};
+    pub use crate::model::plan::Plan;
     pub use crate::model::planned as planned_by_model;
     pub use crate::model::state::grids::{Grid, Grids, MAX_CELLS, grids_over, holds};
     pub use crate::model::state::solution::{Fit, N_COLUMNS, N_FIT_SUMS, ReceiverFit};

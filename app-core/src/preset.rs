@@ -108,7 +108,7 @@ pub enum Settings {
 /// Settings of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelSettings {
-    /// Points over each light, a multiple of 16 up to 64, of a light whose penumbra is wider than a pixel.
+    /// Points over each light, a multiple of 16 up to 64.
     pub n_light_points: usize,
     /// Directions of ambient light, a multiple of 16 up to 64.
     pub n_ambient_directions: usize,

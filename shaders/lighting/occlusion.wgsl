@@ -1,7 +1,8 @@
 // Shadows of the posed toy on the receivers, from many points of a light in one pass.
 //
 // Each instance flattens the mesh from one light point onto one receiver and draws it where the camera sees it, so a
-// contact edge is as sharp as the screen. Point i is drawn for position i % 4 within the pixel; blending adds up.
+// contact edge is as sharp as the screen. Each point is drawn for its own position within the pixel, so that a hard edge has as many steps as a soft one;
+// blending adds up.
 // Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it,
 // and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
@@ -21,8 +22,11 @@ struct LightPoints {
   _pad: u32,
 }
 
-// Positions within a pixel: a rotated grid, each in a row and a column of its own.
-const POSITIONS = array<vec2f, 4>(vec2f(0.375, 0.125), vec2f(0.875, 0.375), vec2f(0.125, 0.625), vec2f(0.625, 0.875));
+// Column and row step from one point's position within a pixel to the next one's: each point is in a row and a column of
+// its own, and neighbours on the light are far apart. Of all odd steps these have the least RMS error of the part that a
+// straight edge of any direction hides, with 64 points over discs of 0, 1/4 and 1 pixel radius: .011, .016 and .016, where
+// four positions have .084, .027 and .022.
+const POSITION_STEPS = vec2u(47u, 53u);
 
 @group(1) @binding(0) var<uniform> light_points: LightPoints;
 
@@ -53,6 +57,11 @@ struct Flattened {
   @location(1) @interpolate(flat, either) depth: f32,
 }
 
+// Where a point is drawn for, from the top left corner of a texel, in texels.
+fn position_in_texel(point: u32) -> vec2f {
+  return (vec2f(point * POSITION_STEPS % light_points.n_points) + 0.5) / f32(light_points.n_points);
+}
+
 @vertex
 fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Flattened {
   let receiver = instance / light_points.n_points;
@@ -60,7 +69,7 @@ fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: 
   let in_plane = (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
   var clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
   // Moves the position to the pixel's centre, where the rasteriser samples.
-  let to_centre_px = (0.5 - POSITIONS[point % 4u]) * light_points.texel_px;
+  let to_centre_px = (0.5 - position_in_texel(point)) * light_points.texel_px;
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
   return Flattened(clip, in_plane.y, f32(point + 1u) / f32(light_points.n_points + 1u));
 }

@@ -34,8 +34,8 @@ impl BaselinePlan {
                 why: "the preset's shadow is constant",
             });
         }
-        let lights = facts.penumbra_px.iter().take(MAX_LIGHTS);
-        let n_lights = lights.fold(0, |n_lights, _| n_lights + 1);
+        #[allow(clippy::cast_possible_truncation, reason = "at most four")]
+        let n_lights = facts.n_lights.min(MAX_LIGHTS) as u32;
         Self {
             region: facts.region,
             n_lights,

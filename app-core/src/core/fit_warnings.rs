@@ -55,7 +55,7 @@ impl Core {
         };
         let sums = self.gpu.read_buffer(&model.state.fit_sums)?;
         let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
-        let conditioning = light_conditioning(&sums, model.region.plan.lights.len());
+        let conditioning = light_conditioning(&sums, model.region.plan.n_lights);
         let lights = stage.light_indices().iter().zip(conditioning);
         Ok(lights
             .filter_map(|(light, conditioning)| (conditioning < LEAST_CONDITIONING).then_some(*light))

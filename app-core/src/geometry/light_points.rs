@@ -24,8 +24,7 @@ pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
 /// area.
 ///
 /// The disc of a sphere faces the toy; seen from anywhere near the toy it is the sphere's outline.
-/// Source: Vogel 1979 (sunflower spiral). Of 64 points every fourth is spread over the whole light again, so that
-/// each position within a pixel of `occlusion` samples all of it.
+/// Source: Vogel 1979 (sunflower spiral).
 #[must_use]
 pub fn light_points(
     light: &Light,

@@ -4,9 +4,8 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::extent::{Extent, NEAR_M};
-use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::PixelRect;
-use crate::scene::{Camera, Intrinsics, Light};
+use crate::scene::{Camera, Intrinsics};
 
 /// A camera in the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,42 +108,5 @@ impl View {
         let origin_px = rect.origin_px.as_dvec2();
         let region_px_from_image_px = DMat3::from_translation(-origin_px);
         (region_px_from_image_px * self.image_px_from_plane(world_from_plane)).inverse()
-    }
-
-    /// Widest penumbra that a toy within `toy`, boxed in a receiver's plane space, casts there from `light`, in
-    /// pixels at the toy's distance.
-    ///
-    /// An edge at height h, at distance D from a disc of radius R that is a height d over the receiver, makes a
-    /// penumbra of 2 R h D / (d - h)^2 along the light; a far disc of half-angle b at elevation e one of
-    /// 2 h tan b / sin^2 e. A light behind the receiver makes none.
-    #[must_use]
-    pub fn penumbra_px(&self, light: &Light, world_from_plane: &DMat4, toy: &Bounds) -> f64 {
-        let centre = toy.centre();
-        let height_m = toy.max.y.max(0.0);
-        let light_at = light_in_plane(light, &world_from_plane.inverse());
-        if light_at.y <= 0.0 {
-            return 0.0;
-        }
-        let width_m = match *light {
-            Light::Sphere { radius_m, .. } => {
-                let above_toy_m = light_at.y - height_m;
-                // A light no higher than the toy has an unbounded penumbra.
-                if above_toy_m <= 0.0 {
-                    return if radius_m > 0.0 { f64::INFINITY } else { 0.0 };
-                }
-                let distance_m = light_at
-                    .truncate()
-                    .distance(DVec3::new(centre.x, height_m, centre.z));
-                2.0 * radius_m * height_m * distance_m / (above_toy_m * above_toy_m)
-            }
-            Light::Directional {
-                angular_radius_rad, ..
-            } => 2.0 * height_m * angular_radius_rad.tan() / (light_at.y * light_at.y),
-        };
-        let depth_m = self
-            .image_px_from(world_from_plane, centre.extend(1.0))
-            .z
-            .max(NEAR_M);
-        width_m * self.intrinsics.fx_px.max(self.intrinsics.fy_px) / depth_m
     }
 }

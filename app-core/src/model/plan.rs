@@ -10,10 +10,6 @@ use crate::plan::{LeftOut, SceneFacts};
 use crate::preset::ModelSettings;
 use crate::scene::MAX_LIGHTS;
 
-/// A penumbra narrower than this is drawn as a hard edge.
-const HARD_PENUMBRA_PX: f64 = 1.0;
-/// Light points of a hard edge: one for each position within a pixel, so that it stays antialiased.
-const N_HARD_POINTS: usize = 4;
 /// Steps of the reweighted least squares; each more moved no direct fraction by 1e-3 on the sessions they were chosen
 /// on.
 const N_FIT_STEPS: u32 = 5;
@@ -26,13 +22,6 @@ const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
-/// The plan of one light's visibility.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LightPlan {
-    /// Points drawn: 4 for a hard edge, else a multiple of 16.
-    pub n_points: usize,
-}
-
 /// Sizes and numbers of all that is allocated and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -40,8 +29,10 @@ pub struct Plan {
     pub region: PixelRect,
     /// Pixels of the region that can show the physical toy, counted from its corner.
     pub physical_toy: Option<PixelRect>,
-    /// One entry a light, at most four.
-    pub lights: Vec<LightPlan>,
+    /// Lights whose shadows are moved, at most four.
+    pub n_lights: usize,
+    /// Points over each of them, a multiple of 16: of a hard light as well, whose edge they antialias.
+    pub n_light_points: usize,
     /// Directions of ambient light.
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
@@ -75,24 +66,13 @@ impl Plan {
     #[must_use]
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
-        let lights: Vec<LightPlan> = facts
-            .penumbra_px
-            .iter()
-            .take(MAX_LIGHTS)
-            .map(|px| LightPlan {
-                n_points: if *px < HARD_PENUMBRA_PX {
-                    N_HARD_POINTS
-                } else {
-                    settings.n_light_points
-                },
-            })
-            .collect();
+        let n_lights = facts.n_lights.min(MAX_LIGHTS);
         let fit_stride_px = fit_stride_px(size_px);
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
-            left_out: left_out(facts, &lights),
+            left_out: left_out(facts, n_lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
@@ -100,12 +80,13 @@ impl Plan {
             n_toy_draws: settings.n_toy_draws,
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
-            self_shadow: self_shadow(&lights, settings),
+            self_shadow: self_shadow(n_lights, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             fit_stride_px,
             n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
-            lights,
+            n_lights,
+            n_light_points: settings.n_light_points,
         }
     }
 }
@@ -119,16 +100,6 @@ impl Plan {
         let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
         Some((near.origin_px, near.size_px))
     }
-
-    /// The plan of another view of the same scene: lights keep their points, so that only the view changes.
-    #[must_use]
-    pub fn for_view(&self, facts: &SceneFacts, settings: &ModelSettings) -> Self {
-        Self {
-            lights: self.lights.clone(),
-            self_shadow: self.self_shadow.clone(),
-            ..Self::new(facts, settings)
-        }
-    }
 }
 
 /// The part of a rectangle of the image that lies in the region, counted from that one's corner.
@@ -141,11 +112,9 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
 }
 
 /// An atlas for the toy's shadow on itself.
-fn self_shadow(lights: &[LightPlan], settings: &ModelSettings) -> ShadowAtlas {
-    let n_points = lights
-        .iter()
-        .map(|light| light.n_points.min(settings.n_self_shadow_points));
-    ShadowAtlas::new(n_points.collect(), settings.self_shadow_tile_px)
+fn self_shadow(n_lights: usize, settings: &ModelSettings) -> ShadowAtlas {
+    let n_points = settings.n_light_points.min(settings.n_self_shadow_points);
+    ShadowAtlas::new(vec![n_points; n_lights], settings.self_shadow_tile_px)
 }
 
 /// The smallest stride that leaves no more than [`MAX_FIT_PIXELS`], and at least one pixel along each side.
@@ -156,7 +125,7 @@ fn fit_stride_px(size_px: UVec2) -> u32 {
         .unwrap_or(largest)
 }
 
-fn left_out(facts: &SceneFacts, lights: &[LightPlan]) -> Vec<LeftOut> {
+fn left_out(facts: &SceneFacts, n_lights: usize) -> Vec<LeftOut> {
     let mut left_out = Vec::new();
     if facts.is_plate_complete {
         left_out.push(LeftOut {
@@ -170,16 +139,10 @@ fn left_out(facts: &SceneFacts, lights: &[LightPlan]) -> Vec<LeftOut> {
             why: "one is listed",
         });
     }
-    if lights.len() < 2 {
+    if n_lights < 2 {
         left_out.push(LeftOut {
             what: "overlap of shadows",
             why: "one light is listed",
-        });
-    }
-    if lights.iter().all(|light| light.n_points == N_HARD_POINTS) {
-        left_out.push(LeftOut {
-            what: "penumbra",
-            why: "every light's penumbra is narrower than a pixel",
         });
     }
     left_out

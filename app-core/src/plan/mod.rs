@@ -12,8 +12,8 @@ pub struct SceneFacts {
     pub region: PixelRect,
     /// Pixels of the image that can show the physical toy; none where it is out of the picture.
     pub physical_toy: Option<PixelRect>,
-    /// Width of each listed light's widest penumbra on the screen, in pixels.
-    pub penumbra_px: Vec<f64>,
+    /// Lights whose shadows are moved.
+    pub n_lights: usize,
     /// Receivers that shadows are moved on, one to four.
     pub n_receivers: u32,
     /// One plate shows all of the region, or several together.

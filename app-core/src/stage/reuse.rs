@@ -132,7 +132,7 @@ impl Stage {
         match (self.preset.settings(), &mut state.method) {
             (Settings::Model(settings), Method::Model(model)) => {
                 let facts = self.facts(footprint, region);
-                let plan = model.region.plan.for_view(&facts, &self.settings(settings));
+                let plan = Plan::new(&facts, &self.settings(settings));
                 model.follow(gpu, plan, &globals(&footprint.view, &region, &self.layout()));
             }
             (Settings::Baseline(settings), Method::Baseline(baseline)) => {
@@ -153,7 +153,7 @@ impl Stage {
             let facts = self.facts(footprint, region_in(&state.method, footprint));
             let plan = Plan::new(&facts, &self.settings(settings));
             let known = &model.region.plan;
-            if plan.lights != known.lights || plan.self_shadow != known.self_shadow {
+            if plan.self_shadow != known.self_shadow {
                 return self.start(gpu, input, footprint);
             }
         }
@@ -177,16 +177,6 @@ impl Stage {
 
     fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {
         let world_from_anchor = self.layout().world_from_anchor();
-        let widest_px = |light: &Light| {
-            let widths = self.receivers.iter().map(|receiver| {
-                let plane_from_anchor = receiver.world_from_plane.inverse() * world_from_anchor;
-                let toy = footprint.bounds.transformed(&plane_from_anchor);
-                footprint
-                    .view
-                    .penumbra_px(light, &receiver.world_from_plane, &toy)
-            });
-            widths.fold(0.0, f64::max)
-        };
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_receivers = self.receivers.len() as u32;
         SceneFacts {
@@ -194,7 +184,7 @@ impl Stage {
             physical_toy: footprint
                 .view
                 .image_rect(&world_from_anchor, &self.physical_bounds),
-            penumbra_px: self.lights.used.iter().map(widest_px).collect(),
+            n_lights: self.lights.used.len(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),
         }
@@ -241,9 +231,9 @@ impl Stage {
 
     /// The points of each light, as many as are planned.
     fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
-        let lights = self.lights.used.iter().zip(&plan.lights);
+        let lights = self.lights.used.iter();
         lights
-            .map(|(light, planned)| self.points_of(light, planned.n_points))
+            .map(|light| self.points_of(light, plan.n_light_points))
             .collect()
     }
 

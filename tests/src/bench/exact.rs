@@ -18,15 +18,17 @@ use glam::{DMat4, DVec3, UVec2};
 
 use crate::metrics::{self, Regions};
 use crate::reference::model::Region;
-use crate::reference::occlusion::{Occluder, SAMPLE_POSITIONS};
+use crate::reference::occlusion::{Occluder, sample_position};
 use crate::reference::visibility::exact_visibility;
 use crate::replay::ReplayError;
 use crate::report::mean_scores;
 
 use super::{Options, Row};
 
-/// Rays from each of a pixel's four sample positions to each light.
-const N_RAYS: usize = 64;
+/// Positions within a pixel from which rays go to each light.
+const N_POSITIONS: usize = 16;
+/// Rays from each of them.
+const N_RAYS: usize = 16;
 
 /// Scores a preset with exact visibility.
 pub(super) fn measure(
@@ -165,7 +167,7 @@ impl Rays {
 
     fn texel(&self, occluders: &[Occluder], texel: UVec2) -> [f32; 4] {
         let mut visibility = [0.0; 4];
-        for position in SAMPLE_POSITIONS {
+        for position in (0..N_POSITIONS).map(|i| sample_position(i, N_POSITIONS)) {
             let point = self.region.receiver_point::<f64>(texel.as_dvec2() + position);
             let receiver = point.map_or(0, |point| point.receiver);
             for (sum, light) in visibility.iter_mut().zip(&self.lights[receiver]) {
@@ -174,7 +176,7 @@ impl Rays {
                 });
                 #[allow(clippy::cast_possible_truncation, reason = "maps hold no more")]
                 let of_sample = of_sample as f32;
-                *sum += 0.25 * of_sample;
+                *sum += of_sample / N_POSITIONS as f32;
             }
         }
         visibility

@@ -7,13 +7,14 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 use super::model::Region;
 use super::real::{Real, Vector};
 
-/// Where light points are seen from within a pixel: a rotated grid, that of Vulkan's standard sample locations.
-pub const SAMPLE_POSITIONS: [DVec2; 4] = [
-    DVec2::new(0.375, 0.125),
-    DVec2::new(0.875, 0.375),
-    DVec2::new(0.125, 0.625),
-    DVec2::new(0.625, 0.875),
-];
+/// Where light point `i` of `n_points` is seen from within a pixel, from its top left corner, in pixels: a lattice of as many
+/// rows and columns.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
+    let [column, row] = [47, 53].map(|step| (i * step % n_points) as f64);
+    (DVec2::new(column, row) + 0.5) / n_points as f64
+}
 
 type Triangle<R> = [Vector<R, 3>; 3];
 
@@ -99,7 +100,7 @@ pub struct Caster<R = f64> {
 /// Share of the light points, each seen from its position, that the mesh hides from `texel` of a map of `map_px` texels
 /// over the region, or `None` where that texel looks past the receivers. There is a caster for each of them.
 ///
-/// Light point i is seen from position i % 4. Of several receivers a texel shows the one at its centre;
+/// Light point i is seen from [`sample_position`]. Of several receivers a texel shows the one at its centre;
 /// a single one is taken to go on for ever.
 #[must_use]
 pub fn hidden_share<R: Real>(
@@ -117,7 +118,7 @@ pub fn hidden_share<R: Real>(
     let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
     let mut n_hidden = 0.0;
     for (i, light_point) in caster.light_points.iter().enumerate() {
-        let position = texel.as_dvec2() + SAMPLE_POSITIONS[i % SAMPLE_POSITIONS.len()];
+        let position = texel.as_dvec2() + sample_position(i, caster.light_points.len());
         let in_plane = plane.plane_point::<R>(position * region_px_per_texel)?;
         // A point behind the receiver lights nothing of it.
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);

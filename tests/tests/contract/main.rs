@@ -112,7 +112,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
         &SceneFacts {
             region,
             physical_toy: Some(region),
-            penumbra_px: vec![10.0],
+            n_lights: 1,
             n_receivers: 1,
             is_plate_complete: true,
         },

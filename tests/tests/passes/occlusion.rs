@@ -44,8 +44,8 @@ fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share
 fn visibility_of_each_light() {
     for run in runs() {
         let stand = &run.stand;
-        for (i, light) in run.plan.lights.iter().enumerate() {
-            let casters = |posed: &PosedMesh| stand.light_casters(posed, i, light.n_points);
+        for i in 0..run.plan.n_lights {
+            let casters = |posed: &PosedMesh| stand.light_casters(posed, i, run.plan.n_light_points);
             let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
             compare(
                 run,

@@ -6,7 +6,6 @@ mod light_points;
 mod outliers;
 mod outline;
 mod passes;
-mod penumbra;
 mod preset;
 mod region;
 mod rig;

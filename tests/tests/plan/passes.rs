@@ -22,7 +22,7 @@ const SIZES_PX: [[u32; 2]; 12] = [
     [15, 8191],
 ];
 
-fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
+fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
     let region = PixelRect {
         origin_px: UVec2::new(3, 7),
         size_px: size_px.into(),
@@ -30,7 +30,7 @@ fn plan(size_px: [u32; 2], penumbra_px: &[f64]) -> Plan {
     let facts = SceneFacts {
         region,
         physical_toy: Some(region),
-        penumbra_px: penumbra_px.to_vec(),
+        n_lights,
         n_receivers: 2,
         is_plate_complete: false,
     };
@@ -44,7 +44,7 @@ fn leaves_out(plan: &Plan, what: &str) -> bool {
 
 #[test]
 fn a_new_pose_costs_the_frame_path_alone() {
-    let plan = plan([640, 360], &[10.0, 10.0]);
+    let plan = plan([640, 360], 2);
     let light = ["occlusion", "visibility"];
     let drawn = ["self_shadow", "moved_mask", "toy", "coverage", "composite"];
     // A light each, and the ambient light.
@@ -66,7 +66,7 @@ fn a_new_pose_costs_the_frame_path_alone() {
 /// Each pass comes after those whose results it reads.
 #[test]
 fn the_capture_path_reads_what_was_made_before() {
-    let plan = plan([640, 360], &[10.0]);
+    let plan = plan([640, 360], 1);
     for change in [Change::View, Change::Scene] {
         let planned = planned_by_model(&plan, change);
         let place = |name: &str| planned.iter().position(|(_, pass)| *pass == name).unwrap();
@@ -95,40 +95,23 @@ fn the_capture_path_reads_what_was_made_before() {
 #[test]
 fn further_lights_are_left_out() {
     for n_lights in 1..=6 {
-        let plan = plan([640, 360], &vec![10.0; n_lights]);
-        assert_eq!(plan.lights.len(), n_lights.min(4), "the fifth is left out");
+        let plan = plan([640, 360], n_lights);
+        assert_eq!(plan.n_lights, n_lights.min(4), "the fifth is left out");
         assert_eq!(leaves_out(&plan, "overlap of shadows"), n_lights == 1);
     }
 }
 
 #[test]
-fn a_hard_light_costs_four_points_and_no_penumbra() {
-    let settings = BALANCED;
-    let n_points = |plan: &Plan| plan.lights.iter().map(|light| light.n_points).collect::<Vec<_>>();
-    let hard = plan([640, 360], &[0.0, 0.99]);
-    assert_eq!(n_points(&hard), [4, 4]);
-    assert!(leaves_out(&hard, "penumbra"));
-    let mixed = plan([640, 360], &[0.0, 1.0]);
-    assert_eq!(n_points(&mixed), [4, settings.n_light_points]);
-    assert!(!leaves_out(&mixed, "penumbra"));
-    // A light no higher than the toy has a penumbra without end.
-    assert_eq!(
-        n_points(&plan([640, 360], &[f64::INFINITY])),
-        [settings.n_light_points]
-    );
-}
-
-#[test]
 fn a_scene_without_lights_has_nothing_to_overlap() {
-    let plan = plan([640, 360], &[]);
-    assert!(plan.lights.is_empty() && leaves_out(&plan, "overlap of shadows"));
+    let plan = plan([640, 360], 0);
+    assert!(plan.n_lights == 0 && leaves_out(&plan, "overlap of shadows"));
 }
 
 #[test]
 fn ambient_maps_cover_the_region() {
     let divisor = BALANCED.ambient_divisor;
     for size_px in SIZES_PX {
-        let plan = plan(size_px, &[10.0]);
+        let plan = plan(size_px, 1);
         assert_eq!(plan.region.size_px.to_array(), size_px);
         for (n_texels, side_px) in plan.ambient_px.to_array().into_iter().zip(size_px) {
             let covered = n_texels * divisor;
@@ -143,7 +126,7 @@ fn ambient_maps_cover_the_region() {
 #[test]
 fn the_fit_takes_enough_pixels_and_not_many() {
     for size_px in SIZES_PX {
-        let plan = plan(size_px, &[10.0]);
+        let plan = plan(size_px, 1);
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.fit_stride_px));
         let (n_taken, n_pixels) = (width * height, u64::from(size_px[0]) * u64::from(size_px[1]));
         // The next smaller stride would be too many: at most one in four is lost by that, and as much by rounding.

@@ -91,7 +91,7 @@ impl Task {
     pub(crate) fn step(&self, plan: &Plan, index: u32, exposure_ratio: f32) -> FitStep {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
         #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
-        let n_columns = 2 + plan.lights.len() as u32;
+        let n_columns = 2 + plan.n_lights as u32;
         FitStep {
             is_reweighted: u32::from(index > 0 || self.is_refinement),
             n_rows: plan.n_fit_rows,

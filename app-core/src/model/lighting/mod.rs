@@ -30,7 +30,7 @@ pub(crate) enum Step {
 impl Step {
     /// The steps that compute the visibilities of a plan's lights.
     pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
-        (0..plan.lights.len()).map(Self::Light).chain([Self::Ambient])
+        (0..plan.n_lights).map(Self::Light).chain([Self::Ambient])
     }
 
     /// The passes that it runs, in order.

@@ -42,8 +42,8 @@ shared_struct! {
 }
 
 impl LightPoints {
-    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are 4 or a multiple of 16, up to
-    /// 64, in the space of the first receiver, then those of the next.
+    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are a multiple of 16, up to 64, in the
+    /// space of the first receiver, then those of the next.
     fn new(points: &[Vec4], n_points: u32, (size_px, region_px): (UVec2, UVec2)) -> Self {
         let mut light_points = Self {
             points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],

@@ -44,7 +44,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let format = half_float(plan.lights.len());
+        let format = half_float(plan.n_lights);
         Self {
             lights: Texture::target(gpu, "visibility", plan.region.size_px, format),
             ambient: Texture::target(gpu, "ambient", plan.ambient_px, half_float(1)),
