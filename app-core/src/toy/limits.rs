@@ -1,4 +1,9 @@
-//! Upper bounds on what a file may ask for, checked before anything is allocated.
+//! Upper bounds on what a file may ask for, checked before anything is allocated, and ranges of its numbers.
+//!
+//! The ranges are far outside any real toy. They keep the arithmetic finite: in 32 bits on the GPU, where squares and
+//! products of three must not overflow, and in 64 bits on the way there.
+
+use std::ops::RangeInclusive;
 
 /// Size of a toy's file.
 pub(super) const MAX_FILE_BYTES: usize = 256 << 20;
@@ -26,3 +31,19 @@ pub(super) const MAX_TEXTURE_SIDE_PX: u32 = 8192;
 pub(super) const MAX_TEXELS: u64 = 64 << 20;
 /// Poses that a clip's bounds are taken from.
 pub(super) const MAX_BOUNDS_SAMPLES: usize = 1024;
+
+/// Coordinates, offsets, scales, entries of matrices and weights of morph targets, in units of the file: a scene of
+/// 1e6 m, in the smallest unit that a scene's transform of the toy may have, 1e-6 m.
+pub(super) const NUMBER: RangeInclusive<f32> = -1e12..=1e12;
+/// The end of [`NUMBER`], for poses from the caller and for poses in object space.
+pub(super) const MAX_NUMBER: f64 = 1e12;
+/// Texture coordinates. Beyond, neighbours of 32 bits are a sixteenth of the picture apart.
+pub(super) const UV: RangeInclusive<f32> = -1e6..=1e6;
+/// Factors of the base colour, as glTF has them.
+pub(super) const FACTOR: RangeInclusive<f32> = 0.0..=1.0;
+/// Colours of vertices, which are then clamped to [`FACTOR`] as glTF asks for; beyond, they are no colours.
+pub(super) const COLOR: RangeInclusive<f32> = -1e3..=1e3;
+/// Times of keys, in seconds: three hundred years, as for the times that are asked for.
+pub(super) const KEY_SECS: RangeInclusive<f32> = -1e10..=1e10;
+/// Coordinates of a posed toy in anchor space, in metres: those of a scene.
+pub(super) const MAX_POSED_M: f64 = 1e6;
