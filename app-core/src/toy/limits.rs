@@ -25,6 +25,8 @@ pub(super) const MAX_JOINTS: usize = (1 << 16) - 1;
 pub(super) const MAX_MORPH_WEIGHTS: usize = 1 << 20;
 /// Sets of four joints (`JOINTS_0`, `JOINTS_1`, …) that one vertex may follow.
 pub(super) const MAX_JOINT_SETS: u32 = 8;
+/// Materials of the file, used or not: each takes 16 bytes on the device, and a draw of its own in each pass.
+pub(super) const MAX_MATERIALS: usize = 4096;
 /// Width and height of a texture.
 pub(super) const MAX_TEXTURE_SIDE_PX: u32 = 8192;
 /// Texels of all textures together.

@@ -4,10 +4,10 @@ use gltf::json::texture::WrappingMode;
 use gltf::json::{Index, material::Material as JsonMaterial};
 
 use super::accessor::Source;
-use super::check::check_range;
+use super::check::{check_limit, check_range};
 use super::container::{allowed, get};
 use super::error::{Flaw, ToyWarning};
-use super::limits::FACTOR;
+use super::limits::{FACTOR, MAX_MATERIALS};
 use super::texture::{Texture, TextureStore};
 
 /// Appearance of a surface: the base colour of the metallic-roughness model.
@@ -77,6 +77,12 @@ pub(super) fn read(
     is_used: &[bool],
     warnings: &mut Vec<ToyWarning>,
 ) -> Result<(Vec<Material>, Vec<Texture>), Flaw> {
+    check_limit(
+        "materials",
+        source.root.materials.len(),
+        MAX_MATERIALS,
+        "materials",
+    )?;
     let mut store = TextureStore::new(source);
     let mut materials = Vec::with_capacity(source.root.materials.len() + 1);
     for (i, (material, &is_used)) in source.root.materials.iter().zip(is_used).enumerate() {

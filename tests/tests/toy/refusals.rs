@@ -79,6 +79,13 @@ fn containers() -> Vec<Refusal> {
 fn references() -> Vec<Refusal> {
     let position = "meshes[0].primitives[0].attributes.POSITION";
     vec![
+        changed(
+            "many materials",
+            &["materials", "4097 materials are more than the 4096 allowed"],
+            |glb| {
+                glb.json["materials"] = vec![json!({}); 4097].into();
+            },
+        ),
         changed("no such accessor", &[position, "refers to accessor 99"], |glb| {
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99.into();
         }),
