@@ -11,7 +11,7 @@ use super::check::{check_count, check_limit};
 use super::container::{self, check_extensions, get};
 use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::geometry::{self, Geometry};
-use super::limits::{MAX_INDICES, MAX_VERTICES};
+use super::limits::{MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
 use super::material::{self, Material, tex_coord};
 use super::outward::turn_outward;
 use super::rig::{Rig, RigPose, Set};
@@ -212,6 +212,7 @@ impl SceneReader<'_> {
             MAX_INDICES,
             field,
         )?;
+        check_limit("triangles", self.n_indices / 3, MAX_TRIANGLES, field)?;
         let (geometry_index, material) = (drawable.geometry, drawable.material);
         let surface = Surface {
             geometry: geometry_index,

@@ -10,7 +10,7 @@ use super::accessor::{Source, grouped};
 use super::check::{check_count, check_limit};
 use super::container::{allowed, get};
 use super::error::{Flaw, ToyProblem, ToyWarning};
-use super::limits::{COLOR, FACTOR, MAX_INDICES, MAX_VERTICES};
+use super::limits::{COLOR, FACTOR, MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
 use super::skin::{Influences, read_influences};
 use super::topology::{compacted, triangles, unwelded};
 
@@ -217,12 +217,8 @@ fn read_triangles(
         check_count("corners of triangles", corners.len(), whole, &field)?;
     }
     let triangles = triangles(mode, &corners);
-    check_limit(
-        "indices",
-        triangles.as_ref().map_or(0, Vec::len),
-        MAX_INDICES,
-        &field,
-    )?;
+    let n_triangles = triangles.as_ref().map_or(0, Vec::len) / 3;
+    check_limit("triangles", n_triangles, MAX_TRIANGLES, &field)?;
     Ok(triangles)
 }
 

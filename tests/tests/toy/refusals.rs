@@ -105,6 +105,30 @@ fn references() -> Vec<Refusal> {
             let indices = glb.u16s("SCALAR", &[0, 1, 1]);
             glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
         }),
+        changed(
+            "many triangles",
+            &[
+                "meshes[0].primitives[0]",
+                "250001 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(250_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+            },
+        ),
+        changed(
+            "many triangles together",
+            &[
+                "meshes[0].primitives[0]",
+                "250002 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+                glb.push("nodes", json!({ "mesh": 0 }));
+                glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+            },
+        ),
         changed("no area", &["meshes", "no triangles"], |glb| {
             let positions = glb.floats("VEC3", &[1.0; 9]);
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
