@@ -120,7 +120,8 @@ fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
 
 /// All that determines a vertex's position in its node, bit by bit.
 fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) -> Vec<u32> {
-    let bits = |point: Vec3| point.to_array().map(f32::to_bits);
+    // Adding zero gives both zeros the same bits.
+    let bits = |point: Vec3| point.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
     let mut key = bits(geometry.positions[vertex]).to_vec();
     for (index, target) in moving {
         let offset = target.offset(vertex);
