@@ -5,6 +5,7 @@
 // visibility, reversed depth.
 
 struct Vertex {
+  @builtin(instance_index) material: u32,
   @location(0) in_anchor: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
@@ -17,11 +18,13 @@ struct Surface {
   @location(1) uv: vec2f,
   @location(2) color: vec4f,
   @location(3) in_anchor: vec3f,
+  @location(4) @interpolate(flat, either) material: u32,
 }
 
 @vertex
 fn vs_project(in: Vertex) -> Surface {
-  return Surface(globals.clip_from_anchor * vec4f(in.in_anchor, 1.0), in.normal, in.uv, in.color, in.in_anchor);
+  let clip = globals.clip_from_anchor * vec4f(in.in_anchor, 1.0);
+  return Surface(clip, in.normal, in.uv, in.color, in.in_anchor, in.material);
 }
 
 struct GbufferTexel {
@@ -37,9 +40,10 @@ fn fs_describe(
   @location(1) uv: vec2f,
   @location(2) color: vec4f,
   @location(3) in_anchor: vec3f,
+  @location(4) @interpolate(flat, either) material: u32,
 ) -> GbufferTexel {
-  let base = vec4f(base_color(uv, color), 1.0);
+  let base = vec4f(base_color(material, uv, color), 1.0);
   if is_behind_receiver(at.xy, at.w) { discard; }
   let normal = unit_normal(interpolated_normal);
-  return GbufferTexel(base, vec4f(normal, f32(material.index)), light_received(true, normal, in_anchor));
+  return GbufferTexel(base, vec4f(normal, f32(material)), light_received(true, normal, in_anchor));
 }

@@ -1,13 +1,7 @@
 // Base colour of the toy's model, linear.
 
-struct Material {
-  base_color_linear: vec4f,
-  index: u32,
-  _pad_0: u32,
-  _pad_1: vec2u,
-}
-
-@group(2) @binding(0) var<uniform> material: Material;
+// Of each material; a draw's instance is its material.
+@group(2) @binding(0) var<storage, read> base_colors_linear: array<vec4f>;
 @group(2) @binding(1) var base_texture: texture_2d<f32>;
 @group(2) @binding(2) var base_sampler: sampler;
 
@@ -16,8 +10,9 @@ struct Material {
 // 3.53 at a bias of 0, 3.21 without mips.
 const MIP_BIAS: f32 = -1.0;
 
-fn base_color(uv: vec2f, vertex_color: vec4f) -> vec3f {
-  return (material.base_color_linear * vertex_color * textureSampleBias(base_texture, base_sampler, uv, MIP_BIAS)).rgb;
+fn base_color(material: u32, uv: vec2f, vertex_color: vec4f) -> vec3f {
+  let texel = textureSampleBias(base_texture, base_sampler, uv, MIP_BIAS);
+  return (base_colors_linear[material] * vertex_color * texel).rgb;
 }
 
 // Interpolated normals can vanish between opposite ones; up is as good as any direction there.

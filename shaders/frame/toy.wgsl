@@ -33,6 +33,7 @@ const OTHER_LIGHT: f32 = 0.08;
 const CARRIED_WEIGHT: f32 = 1e-3;
 
 struct Vertex {
+  @builtin(instance_index) material: u32,
   @location(0) in_anchor: vec3f,
   @location(1) normal: vec3f,
   @location(2) uv: vec2f,
@@ -49,13 +50,23 @@ struct Surface {
   @location(3) color: vec4f,
   @location(4) physical_in_anchor: vec3f,
   @location(5) physical_normal: vec3f,
+  @location(6) @interpolate(flat, either) material: u32,
 }
 
 @vertex
 fn vs_toy(in: Vertex) -> Surface {
   var clip = globals.clip_from_anchor * vec4f(in.in_anchor, 1.0);
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * offset_px / globals.region_size_px, 0.0, 0.0);
-  return Surface(clip, in.in_anchor, in.normal, in.uv, in.color, in.physical_in_anchor, in.physical_normal);
+  return Surface(
+    clip,
+    in.in_anchor,
+    in.normal,
+    in.uv,
+    in.color,
+    in.physical_in_anchor,
+    in.physical_normal,
+    in.material,
+  );
 }
 
 // Whether the camera's colour at `texel` is of another material of the model.
@@ -124,9 +135,9 @@ fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, phys
   return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
 }
 
-// Tint at a point of the physical pose.
-fn tint(physical_in_anchor: vec3f) -> vec3f {
-  return between_tints(TINT_PYRAMID * tint_grid_of(material.index), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
+// Tint of a material at a point of the physical pose.
+fn tint(material: u32, physical_in_anchor: vec3f) -> vec3f {
+  return between_tints(TINT_PYRAMID * tint_grid_of(material), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
 }
 
 struct Drawn {
@@ -144,8 +155,9 @@ fn fs_toy(
   @location(3) color: vec4f,
   @location(4) physical_in_anchor: vec3f,
   @location(5) interpolated_physical_normal: vec3f,
+  @location(6) @interpolate(flat, either) material: u32,
 ) -> Drawn {
-  let base = base_color(uv, color);
+  let base = base_color(material, uv, color);
   let normal = unit_normal(interpolated_normal);
   let physical_normal = unit_normal(interpolated_physical_normal);
   let physical_facing = facing(physical_in_anchor, physical_normal);
@@ -154,7 +166,7 @@ fn fs_toy(
   let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(false, normal, in_anchor));
-  let unseen = fit.gain.rgb * base * tint(physical_in_anchor) * lit;
+  let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   if is_behind_receiver(at.xy - offset_px, at.w) { discard; }

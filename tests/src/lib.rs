@@ -4,6 +4,7 @@ pub mod bench;
 pub mod compare;
 pub mod false_color;
 pub mod files;
+pub mod fuzz;
 pub mod golden;
 pub mod metrics;
 pub mod output;

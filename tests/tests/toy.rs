@@ -4,6 +4,10 @@
 
 #[path = "toy/builder.rs"]
 mod builder;
+#[path = "toy/hard.rs"]
+mod hard;
+#[path = "toy/out_of_range.rs"]
+mod out_of_range;
 #[path = "toy/poses.rs"]
 mod poses;
 #[path = "toy/refusals.rs"]

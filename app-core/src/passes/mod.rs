@@ -6,6 +6,7 @@
 pub(crate) mod counting;
 pub(crate) mod globals;
 pub(crate) mod list;
+pub(crate) mod materials;
 mod mips;
 pub(crate) mod parts;
 pub(crate) mod pictures;

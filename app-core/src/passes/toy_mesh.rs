@@ -1,26 +1,16 @@
 //! The toy on the device: what never changes, the physical pose, and the pose of the frame.
 
-use std::iter;
 use std::ops::Range;
 
-use glam::UVec2;
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
-use crate::gpu::bindings::{GROUP_DRAW, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
-use crate::gpu::shader::{Part, part};
-use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::{Texture, picture_sampler};
-use crate::passes::mips::mips;
-use crate::toy::{PosedMesh, ShadowRanges, Toy, Wrap};
+use crate::passes::materials::Materials;
+use crate::toy::{PosedMesh, ShadowRanges, Toy};
 
-/// The WGSL of the group of a material.
-pub(crate) const MATERIAL: Part = part!("common/material", structs: [Material]);
-/// What the group holds.
-pub(crate) const MATERIAL_GROUP: &[Slot] = &[Slot::uniform::<Material>(), Slot::Filtered, Slot::Sampler];
 /// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
 pub(crate) const LOOK_STREAMS: [Stream; 4] = [
     (2, VertexFormat::Float32x2),
@@ -28,19 +18,6 @@ pub(crate) const LOOK_STREAMS: [Stream; 4] = [
     (0, VertexFormat::Float32x3),
     (1, VertexFormat::Float32x3),
 ];
-
-shared_struct! {
-    /// A material as the shaders have it.
-    pub(crate) struct Material {
-        pub base_color_linear: [f32; 4],
-        pub index: u32,
-        pub _pad_0: u32,
-        pub _pad_1: [u32; 2],
-    }
-}
-
-/// The texture of a material that has none.
-const WHITE: [u8; 4] = [255; 4];
 
 /// Positions and normals of a pose, in anchor space.
 pub(crate) struct PoseBuffers {
@@ -78,15 +55,10 @@ impl PoseBuffers {
 /// A run of indices with one material.
 struct Run {
     indices: Range<u32>,
-    material: usize,
-}
-
-/// A material on the device.
-struct MaterialBuffers {
-    uniform: wgpu::Buffer,
-    /// Index of its texture.
-    texture: usize,
-    sampler: wgpu::Sampler,
+    /// Index of the material, which the shaders take from the instance.
+    material: u32,
+    /// Index of its look.
+    look: usize,
 }
 
 /// The toy's buffers.
@@ -97,9 +69,7 @@ pub(crate) struct ToyMesh {
     uvs: wgpu::Buffer,
     colors: wgpu::Buffer,
     runs: Vec<Run>,
-    materials: Vec<MaterialBuffers>,
-    /// Those of the toy, then the one of materials without any.
-    textures: Vec<Texture>,
+    materials: Materials,
     /// The pose the real toy was made in.
     pub(crate) physical: PoseBuffers,
     /// The pose to be shown.
@@ -108,6 +78,7 @@ pub(crate) struct ToyMesh {
 
 impl ToyMesh {
     pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh) -> Self {
+        let materials = Materials::new(gpu, toy);
         Self {
             indices: gpu.buffer(
                 "indices",
@@ -126,41 +97,20 @@ impl ToyMesh {
                 bytemuck::cast_slice(toy.colors_linear().unwrap_or(&vec![[1.0; 4]; toy.n_vertices()])),
                 BufferUsages::VERTEX,
             ),
-            runs: toy
-                .parts()
-                .iter()
-                .map(|part| Run {
-                    indices: part.indices.clone(),
-                    material: part.material,
-                })
-                .collect(),
-            materials: toy
-                .materials()
-                .iter()
-                .enumerate()
-                .map(|(index, material)| MaterialBuffers::new(gpu, toy, index, material))
-                .collect(),
-            textures: textures(gpu, toy),
+            runs: runs(toy, &materials),
+            materials,
             physical: PoseBuffers::new(gpu, physical),
             shown: PoseBuffers::new(gpu, physical),
         }
     }
 
     pub(crate) fn n_materials(&self) -> usize {
-        self.materials.len()
+        self.materials.n()
     }
 
-    /// Group [`GROUP_DRAW`] of a pipeline, one a material.
+    /// Group `GROUP_DRAW` of a pipeline, one a look.
     pub(crate) fn bind_materials<T>(&self, recorder: &Recorder<'_>, pipeline: &Pipeline<T>) -> Vec<Group> {
-        let bind = |material: &MaterialBuffers| {
-            let resources = [
-                (&material.uniform).into(),
-                (&self.textures[material.texture].view).into(),
-                (&material.sampler).into(),
-            ];
-            recorder.bind(pipeline, GROUP_DRAW, &resources)
-        };
-        self.materials.iter().map(bind).collect()
+        self.materials.bind(recorder, pipeline)
     }
 
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
@@ -181,7 +131,7 @@ impl ToyMesh {
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
-    pub(crate) fn draw_parts(&self, render: &mut Render<'_>, streams: &[&PoseBuffers], materials: &[Group]) {
+    pub(crate) fn draw_parts(&self, render: &mut Render<'_>, streams: &[&PoseBuffers], looks: &[Group]) {
         render.0.set_vertex_buffer(0, self.uvs.slice(..));
         render.0.set_vertex_buffer(1, self.colors.slice(..));
         for (slot, pose) in (2..).step_by(2).zip(streams) {
@@ -191,53 +141,39 @@ impl ToyMesh {
         render
             .0
             .set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let mut current = None;
         for run in &self.runs {
-            if let Some(material) = materials.get(run.material) {
-                render.set(material);
-                render.0.draw_indexed(run.indices.clone(), 0, 0..1);
+            if current != Some(run.look)
+                && let Some(look) = looks.get(run.look)
+            {
+                render.set(look);
+                current = Some(run.look);
             }
+            render
+                .0
+                .draw_indexed(run.indices.clone(), 0, run.material..run.material + 1);
         }
     }
 }
 
-impl MaterialBuffers {
-    fn new(gpu: &Gpu, toy: &Toy, index: usize, material: &crate::toy::Material) -> Self {
-        let n_textures = toy.textures().len();
-        let used = material.base_color_texture.map(|used| used.texture);
-        let mode = |wrap: Wrap| match wrap {
-            Wrap::Repeat => wgpu::AddressMode::Repeat,
-            Wrap::MirroredRepeat => wgpu::AddressMode::MirrorRepeat,
-            Wrap::ClampToEdge => wgpu::AddressMode::ClampToEdge,
-        };
-        let wrap = material
-            .base_color_texture
-            .as_ref()
-            .map_or([Wrap::Repeat; 2], |used| [used.wrap_u, used.wrap_v]);
-        let sampler = picture_sampler(gpu, "base colour", wrap.map(mode));
-        let uniform = Material {
-            base_color_linear: material.base_color_linear,
-            index: u32::try_from(index).unwrap_or(u32::MAX),
-            _pad_0: 0,
-            _pad_1: [0; 2],
-        };
-        Self {
-            uniform: gpu.uniform("material", &uniform),
-            texture: used.filter(|used| *used < n_textures).unwrap_or(n_textures),
-            sampler,
+/// The draws of a toy, those with the same material as one where they follow one another.
+fn runs(toy: &Toy, materials: &Materials) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for part in toy.parts() {
+        let indices = part.indices.clone();
+        // Materials are counted when they are read.
+        let material = u32::try_from(part.material).unwrap_or(u32::MAX);
+        match (runs.last_mut(), materials.look(part.material)) {
+            (Some(last), _) if last.material == material && last.indices.end == indices.start => {
+                last.indices.end = indices.end;
+            }
+            (_, Some(look)) => runs.push(Run {
+                indices,
+                material,
+                look,
+            }),
+            (_, None) => {}
         }
     }
-}
-
-/// The toy's textures with their mips, then a white one.
-fn textures(gpu: &Gpu, toy: &Toy) -> Vec<Texture> {
-    let mipped = |size_px, rgba8: &[u8]| {
-        let mips = mips(size_px, rgba8);
-        let levels: Vec<&[u8]> = iter::once(rgba8).chain(mips.iter().map(Vec::as_slice)).collect();
-        Texture::mipped(gpu, "base colour", size_px, &levels)
-    };
-    let own = toy
-        .textures()
-        .iter()
-        .map(|image| mipped(UVec2::new(image.width_px, image.height_px), &image.rgba8_srgb));
-    own.chain([mipped(UVec2::ONE, &WHITE)]).collect()
+    runs
 }

@@ -68,6 +68,16 @@ pub enum FieldError {
     /// A matrix that swaps handedness.
     #[error("the matrix mirrors: its axes must be right-handed")]
     Mirrored,
+    /// A picture of more pixels than a camera of a phone has.
+    #[error("{width_px} x {height_px} px are more than the {max_pixels} pixels that a picture may have")]
+    PictureTooLarge {
+        /// Columns.
+        width_px: u32,
+        /// Rows.
+        height_px: u32,
+        /// The most pixels allowed.
+        max_pixels: u64,
+    },
     /// Pictures that would take more memory than a session may.
     #[error("the pictures hold more than {max_pixels} pixels in all")]
     TooManyPixels {
@@ -82,6 +92,9 @@ pub(crate) const COORDINATE_M: RangeInclusive<f64> = -1e6..=1e6;
 pub(crate) const EXTENT_M: RangeInclusive<f64> = 1e-6..=1e6;
 /// Lengths of things that may be points, in metres.
 pub(crate) const RADIUS_M: RangeInclusive<f64> = 0.0..=1e6;
+/// Pixels of one picture: a still of 4096 x 3072, larger than those of the cameras that track, which give at most
+/// 4032 x 3024. Maps of the whole picture take some 140 bytes a pixel.
+pub(crate) const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
 /// Focal lengths, in pixels.
 pub(crate) const FOCAL_PX: RangeInclusive<f64> = 1e-3..=1e6;
 /// Positions in a picture or beside it, in pixels.
@@ -113,6 +126,18 @@ pub(crate) fn number(value: f64, range: &RangeInclusive<f64>) -> Result<f64, Fie
             max: *range.end(),
         })
     }
+}
+
+/// The size of a picture.
+pub(crate) fn picture_size(width_px: u32, height_px: u32) -> Result<(), FieldError> {
+    if u64::from(width_px) * u64::from(height_px) > MAX_PICTURE_PIXELS {
+        return Err(FieldError::PictureTooLarge {
+            width_px,
+            height_px,
+            max_pixels: MAX_PICTURE_PIXELS,
+        });
+    }
+    Ok(())
 }
 
 /// A point, in metres.

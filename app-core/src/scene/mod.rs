@@ -51,6 +51,8 @@ impl Scene {
     pub(crate) fn check(&self) -> Result<(), InputError> {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
+        let size = check::picture_size(self.width_px, self.height_px);
+        InputError::at("width_px, height_px", size)?;
         if self.receivers.is_empty() {
             return InputError::at("receivers", Err(FieldError::Empty));
         }

@@ -1,16 +1,17 @@
 //! Reads accessors: every offset, stride and count is checked before a byte is touched.
 
 use std::cell::Cell;
+use std::ops::RangeInclusive;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 use gltf::json::accessor::{Accessor, Type, sparse::Sparse};
 use gltf::json::{Index, Root, buffer};
 
-use super::check::{check_finite, check_limit};
+use super::check::{check_finite, check_limit, check_range};
 use super::component::{float_decoder, integer_decoder};
 use super::container::{allowed, get};
 use super::error::{Flaw, ToyProblem};
-use super::limits::MAX_DECODED_VALUES;
+use super::limits::{MAX_DECODED_VALUES, NUMBER, UV};
 
 /// The JSON tree with its binary chunk, and how much has been decoded from it.
 pub(super) struct Source<'a> {
@@ -51,9 +52,23 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Reads finite numbers, element after element; normalised integers become fractions.
+    /// Reads finite numbers of a range, element after element; normalised integers become fractions.
+    pub(super) fn floats_within(
+        &self,
+        field: &str,
+        index: Index<Accessor>,
+        shape: Type,
+        range: &RangeInclusive<f32>,
+    ) -> Result<Vec<f32>, Flaw> {
+        let values = self.floats(field, index, shape)?;
+        let field = named(field, index);
+        check_range(&field, &values, shape.multiplicity(), range)?;
+        Ok(values)
+    }
+
+    /// Reads finite numbers of any size.
     pub(super) fn floats(&self, field: &str, index: Index<Accessor>, shape: Type) -> Result<Vec<f32>, Flaw> {
-        let field = format!("{field} (accessor {})", index.value());
+        let field = named(field, index);
         let accessor = get(self.root, &field, index, "accessor")?;
         let component = allowed(accessor.component_type, &field)?.0;
         let decode = float_decoder(component, accessor.normalized).ok_or_else(|| {
@@ -75,7 +90,7 @@ impl<'a> Source<'a> {
         index: Index<Accessor>,
         shape: Type,
     ) -> Result<Vec<u32>, Flaw> {
-        let field = format!("{field} (accessor {})", index.value());
+        let field = named(field, index);
         let accessor = get(self.root, &field, index, "accessor")?;
         let component = allowed(accessor.component_type, &field)?.0;
         let decode = integer_decoder(component)
@@ -83,16 +98,14 @@ impl<'a> Source<'a> {
         self.decode(&field, accessor, shape, decode)
     }
 
-    pub(super) fn vec2s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec2>, Flaw> {
-        Ok(grouped(&self.floats(field, index, Type::Vec2)?))
+    /// Texture coordinates.
+    pub(super) fn uvs(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec2>, Flaw> {
+        Ok(grouped(&self.floats_within(field, index, Type::Vec2, &UV)?))
     }
 
+    /// Points, offsets or normals.
     pub(super) fn vec3s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec3>, Flaw> {
-        Ok(grouped(&self.floats(field, index, Type::Vec3)?))
-    }
-
-    pub(super) fn vec4s(&self, field: &str, index: Index<Accessor>) -> Result<Vec<Vec4>, Flaw> {
-        Ok(grouped(&self.floats(field, index, Type::Vec4)?))
+        Ok(grouped(&self.floats_within(field, index, Type::Vec3, &NUMBER)?))
     }
 
     /// The bytes of a buffer view, and its stride where it has one.
@@ -222,7 +235,11 @@ impl<'a> Source<'a> {
     }
 }
 
-fn grouped<const N: usize, T: From<[f32; N]>>(values: &[f32]) -> Vec<T> {
+fn named(field: &str, index: Index<Accessor>) -> String {
+    format!("{field} (accessor {})", index.value())
+}
+
+pub(super) fn grouped<const N: usize, T: From<[f32; N]>>(values: &[f32]) -> Vec<T> {
     values.as_chunks().0.iter().copied().map(T::from).collect()
 }
 

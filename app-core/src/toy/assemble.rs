@@ -11,8 +11,9 @@ use super::check::{check_count, check_limit};
 use super::container::{self, check_extensions, get};
 use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::geometry::{self, Geometry};
-use super::limits::{MAX_INDICES, MAX_VERTICES};
+use super::limits::{MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
 use super::material::{self, Material, tex_coord};
+use super::outward::turn_outward;
 use super::rig::{Rig, RigPose, Set};
 use super::shadow_indices::ShadowIndices;
 use super::surface::{Surface, is_mirrored, lay_out};
@@ -140,13 +141,14 @@ impl SceneReader<'_> {
         warnings: &mut Vec<ToyWarning>,
     ) -> Result<Vec<Drawable>, Flaw> {
         let n_targets = graph::n_morph_targets(mesh);
+        let first = self.geometries.len();
         let mut drawables = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let field = format!("meshes[{index}].primitives[{i}]");
             let found = primitive.targets.as_ref().map_or(0, Vec::len);
             check_count("morph targets", found, n_targets, &field)?;
             let (material, tex_coord) = self.material(&field, primitive)?;
-            match geometry::read(self.source, &field, primitive, tex_coord)? {
+            match geometry::read(self.source, &field, primitive, tex_coord, warnings)? {
                 Some(geometry) if geometry.indices.is_empty() => {}
                 Some(geometry) => {
                     self.geometries.push(geometry);
@@ -159,6 +161,8 @@ impl SceneReader<'_> {
                 None => warnings.push(ToyWarning::PrimitiveSkipped { field }),
             }
         }
+        let fields: Vec<String> = drawables.iter().map(|drawable| drawable.field.clone()).collect();
+        turn_outward(&mut self.geometries[first..], &fields, warnings);
         Ok(drawables)
     }
 
@@ -208,6 +212,7 @@ impl SceneReader<'_> {
             MAX_INDICES,
             field,
         )?;
+        check_limit("triangles", self.n_indices / 3, MAX_TRIANGLES, field)?;
         let (geometry_index, material) = (drawable.geometry, drawable.material);
         let surface = Surface {
             geometry: geometry_index,

@@ -5,8 +5,9 @@ use glam::{DAffine3, DVec3, Vec3};
 use super::Toy;
 use super::clip::{Clip, ClipId};
 use super::error::ToyError;
-use super::limits::MAX_BOUNDS_SAMPLES;
+use super::limits::{MAX_BOUNDS_SAMPLES, MAX_NUMBER};
 use super::moment::Pose;
+use super::pose::is_within;
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,7 @@ impl Toy {
     /// The box around the toy in one pose, in object space.
     ///
     /// # Errors
-    /// As [`Toy::pose`].
+    /// As [`Toy::pose`], but for a position that is not from -1e12 to 1e12 along each axis.
     pub fn bounds_of_pose(&self, pose: &Pose) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         self.include_pose(pose, &mut bounds)?;
@@ -46,7 +47,7 @@ impl Toy {
     /// movement between two of them can reach a little beyond it.
     ///
     /// # Errors
-    /// As [`Toy::pose`].
+    /// As [`Toy::bounds_of_pose`].
     pub fn bounds_over_clip(&self, id: ClipId) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         for time_secs in moments_secs(self.clip(id)?) {
@@ -64,16 +65,13 @@ impl Toy {
             let mut fault = None;
             surface.deform(geometry, &rig_pose, &active, |vertex, position: DVec3, _| {
                 let position = position.as_vec3();
-                if !position.is_finite() {
+                if !is_within(position, MAX_NUMBER) {
                     fault = Some(surface.first_vertex + vertex);
                 }
                 bounds.include(position);
             });
             if let Some(vertex) = fault {
-                return Err(ToyError::PoseOverflow {
-                    file: self.file.clone(),
-                    vertex,
-                });
+                return Err(self.overflow(vertex, MAX_NUMBER));
             }
         }
         Ok(())

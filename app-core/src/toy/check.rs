@@ -1,5 +1,7 @@
 //! Checks that apply to every part of a file.
 
+use std::ops::RangeInclusive;
+
 use super::error::{Flaw, ToyProblem};
 
 /// Refuses a count above its limit; `what` is counted.
@@ -45,6 +47,26 @@ pub(super) fn check_finite(field: &str, values: &[f32], width: usize) -> Result<
         n_bad,
         n: values.len(),
         first: first / width,
+    }
+    .at(field))
+}
+
+/// Refuses NaN, and numbers outside a range. `width` numbers make one element.
+pub(super) fn check_range(
+    field: &str,
+    values: &[f32],
+    width: usize,
+    range: &RangeInclusive<f32>,
+) -> Result<(), Flaw> {
+    check_finite(field, values, width)?;
+    let Some(first) = values.iter().position(|value| !range.contains(value)) else {
+        return Ok(());
+    };
+    Err(ToyProblem::Range {
+        element: first / width,
+        value: values[first],
+        min: *range.start(),
+        max: *range.end(),
     }
     .at(field))
 }

@@ -10,6 +10,7 @@ use super::check::check_count;
 use super::container::{allowed, get};
 use super::error::{Flaw, ToyProblem, ToyWarning};
 use super::graph::{Graph, Local};
+use super::limits::{KEY_SECS, NUMBER};
 use super::track::{Interpolation, Track};
 
 /// Index of a clip within its toy, from 0.
@@ -124,7 +125,11 @@ fn read_track(
         Property::MorphTargetWeights => Type::Scalar,
     };
     let output = format!("{field}.output");
-    let values = source.floats(&output, sampler.output, shape)?;
+    let values = match shape {
+        // Of any length, which is taken out in 64 bits.
+        Type::Vec4 => source.floats(&output, sampler.output, shape)?,
+        _ => source.floats_within(&output, sampler.output, shape, &NUMBER)?,
+    };
     let expected = times_secs
         .len()
         .saturating_mul(interpolation.values_per_key())
@@ -143,7 +148,7 @@ fn read_times(
     field: &str,
     input: gltf::json::Index<gltf::json::Accessor>,
 ) -> Result<Vec<f64>, Flaw> {
-    let times = source.floats(field, input, Type::Scalar)?;
+    let times = source.floats_within(field, input, Type::Scalar, &KEY_SECS)?;
     if times.is_empty() {
         return Err(ToyProblem::Count {
             what: "keys",

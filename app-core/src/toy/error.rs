@@ -76,13 +76,15 @@ pub enum ToyError {
         /// The time asked for.
         time_secs: f64,
     },
-    /// Finite numbers whose product is too large to be stored.
-    #[error("{file}: pose: the position of vertex {vertex} is beyond what a 32-bit float holds")]
+    /// Numbers in range whose product is not.
+    #[error("{file}: pose: the position of vertex {vertex} is not from -{max} to {max} along each axis")]
     PoseOverflow {
         /// The file as named by the caller.
         file: String,
         /// First vertex at fault.
         vertex: usize,
+        /// Largest coordinate allowed, in units of the space that the toy is posed in.
+        max: f64,
     },
 }
 
@@ -175,6 +177,18 @@ pub enum ToyProblem {
         n: usize,
         /// The first element at fault.
         first: usize,
+    },
+    /// A number too small or too large.
+    #[error("{value} in element {element} is not from {min} to {max}")]
+    Range {
+        /// The element at fault.
+        element: usize,
+        /// The number as written.
+        value: f32,
+        /// Smallest allowed.
+        min: f32,
+        /// Largest allowed.
+        max: f32,
     },
     /// Two counts that must agree.
     #[error("has {found} {what}, but {expected} are needed")]
@@ -272,6 +286,38 @@ pub enum ToyWarning {
     WeightsRepaired {
         /// Vertices touched, over the whole file.
         n_vertices: usize,
+    },
+    /// Colours of vertices outside 0 to 1: clamped, as glTF asks for.
+    #[error("{field}: {n_vertices} colours were not from 0 to 1 and were clamped")]
+    ColorsClamped {
+        /// Path of the attribute.
+        field: String,
+        /// Vertices touched.
+        n_vertices: usize,
+    },
+    /// Normals of length zero: taken from the faces around them.
+    #[error("{field}: {n_vertices} normals had no length and were taken from the faces")]
+    NormalsFromFaces {
+        /// Path of the attribute.
+        field: String,
+        /// Vertices touched.
+        n_vertices: usize,
+    },
+    /// Normals that pointed away from the outer side of most of their faces: turned around.
+    #[error("{field}: {n_vertices} normals pointed into the toy and were turned around")]
+    NormalsInverted {
+        /// Path of the attribute.
+        field: String,
+        /// Vertices touched.
+        n_vertices: usize,
+    },
+    /// Closed pieces whose faces looked inwards: turned around.
+    #[error("{field}: {n_triangles} triangles of closed pieces faced inwards and were turned around")]
+    FacesInverted {
+        /// Path of the primitive.
+        field: String,
+        /// Triangles touched.
+        n_triangles: usize,
     },
     /// A skin on a primitive that has no joints: drawn rigid.
     #[error("{field}: has a skin but no joints, drawn rigid")]

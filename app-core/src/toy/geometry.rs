@@ -6,11 +6,11 @@ use gltf::json::mesh::{MorphTarget as JsonTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, mesh::Mode};
 
-use super::accessor::Source;
+use super::accessor::{Source, grouped};
 use super::check::{check_count, check_limit};
 use super::container::{allowed, get};
-use super::error::{Flaw, ToyProblem};
-use super::limits::{MAX_INDICES, MAX_VERTICES};
+use super::error::{Flaw, ToyProblem, ToyWarning};
+use super::limits::{COLOR, FACTOR, MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
 use super::skin::{Influences, read_influences};
 use super::topology::{compacted, triangles, unwelded};
 
@@ -56,6 +56,46 @@ pub(super) struct ActiveTarget<'a> {
 }
 
 impl Geometry {
+    /// Corners of each triangle.
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        self.indices.as_chunks().0
+    }
+
+    /// Turns a triangle around.
+    pub(super) fn turn_triangle(&mut self, triangle: usize) {
+        let (b, c) = (3 * triangle + 1, 3 * triangle + 2);
+        if self.normals.is_some() {
+            self.indices.swap(b, c);
+        } else {
+            // Its vertices follow one another, which its normal is taken from.
+            self.swap_vertices(b, c);
+        }
+    }
+
+    /// Turns the normal of a vertex around, in every morph target.
+    pub(super) fn turn_normal(&mut self, vertex: usize) {
+        let of_targets = self
+            .targets
+            .iter_mut()
+            .filter_map(|target| target.normals.as_mut());
+        for normals in self.normals.iter_mut().chain(of_targets) {
+            normals[vertex] = -normals[vertex];
+        }
+    }
+
+    fn swap_vertices(&mut self, a: usize, b: usize) {
+        let of_targets = self
+            .targets
+            .iter_mut()
+            .filter_map(|target| target.positions.as_mut());
+        for positions in of_targets.chain([&mut self.positions]) {
+            positions.swap(a, b);
+        }
+        self.uvs.iter_mut().for_each(|uvs| uvs.swap(a, b));
+        self.colors.iter_mut().for_each(|colors| colors.swap(a, b));
+        self.influences.iter_mut().for_each(|all| all.swap(a, b));
+    }
+
     pub(super) fn active_targets(&self, weights: &[f64]) -> Vec<ActiveTarget<'_>> {
         let all = self
             .targets
@@ -98,6 +138,7 @@ pub(super) fn read(
     field: &str,
     primitive: &Primitive,
     tex_coord: u32,
+    warnings: &mut Vec<ToyWarning>,
 ) -> Result<Option<Geometry>, Flaw> {
     let mode = allowed(primitive.mode, &format!("{field}.mode"))?;
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
@@ -124,6 +165,10 @@ pub(super) fn read(
     let targets = targets
         .map(|(i, target)| gather.target(i, target, normals.is_some()))
         .collect::<Result<_, _>>()?;
+    let mut colors = gather.attribute("COLOR_0", attribute(Semantic::Colors(0)), read_colors)?;
+    colors
+        .iter_mut()
+        .for_each(|colors| clamp_colors(colors, field, warnings));
     let influences = read_influences(source, field, primitive, n_vertices)?;
     if let Some(influences) = &influences {
         source.charge(
@@ -135,11 +180,11 @@ pub(super) fn read(
         targets,
         influences: influences.map(|all| all.gather(&corners.sources)),
         uvs: gather.attribute(
-            "TEXCOORD",
+            &format!("TEXCOORD_{tex_coord}"),
             attribute(Semantic::TexCoords(tex_coord)),
-            Source::vec2s,
+            Source::uvs,
         )?,
-        colors: gather.attribute("COLOR_0", attribute(Semantic::Colors(0)), read_colors)?,
+        colors,
         normals: gather.attribute("NORMAL", normals, Source::vec3s)?,
         positions: gather.picked(&positions)?,
         indices: corners.indices,
@@ -172,12 +217,8 @@ fn read_triangles(
         check_count("corners of triangles", corners.len(), whole, &field)?;
     }
     let triangles = triangles(mode, &corners);
-    check_limit(
-        "indices",
-        triangles.as_ref().map_or(0, Vec::len),
-        MAX_INDICES,
-        &field,
-    )?;
+    let n_triangles = triangles.as_ref().map_or(0, Vec::len) / 3;
+    check_limit("triangles", n_triangles, MAX_TRIANGLES, &field)?;
     Ok(triangles)
 }
 
@@ -225,12 +266,28 @@ impl<'a> Gather<'a> {
 
 /// Colours with or without alpha.
 fn read_colors(source: &Source, field: &str, index: Index<Accessor>) -> Result<Vec<Vec4>, Flaw> {
+    let read = |shape| source.floats_within(field, index, shape, &COLOR);
     match get(source.root, field, index, "accessor")?.type_ {
-        Checked::Valid(Type::Vec3) => Ok(source
-            .vec3s(field, index)?
-            .into_iter()
-            .map(|rgb| rgb.extend(1.0))
-            .collect()),
-        _ => source.vec4s(field, index),
+        Checked::Valid(Type::Vec3) => {
+            let colors = grouped::<3, Vec3>(&read(Type::Vec3)?);
+            Ok(colors.into_iter().map(|rgb| rgb.extend(1.0)).collect())
+        }
+        _ => Ok(grouped(&read(Type::Vec4)?)),
+    }
+}
+
+/// Clamps colours of vertices, as glTF asks for.
+///
+/// Source: glTF 2.0 specification, 3.7.2.1 (meshes, overview).
+fn clamp_colors(colors: &mut [Vec4], field: &str, warnings: &mut Vec<ToyWarning>) {
+    let mut n_vertices = 0;
+    for color in colors {
+        let clamped = color.clamp(Vec4::splat(*FACTOR.start()), Vec4::splat(*FACTOR.end()));
+        n_vertices += usize::from(clamped != *color);
+        *color = clamped;
+    }
+    if n_vertices > 0 {
+        let field = format!("{field}.attributes.COLOR_0");
+        warnings.push(ToyWarning::ColorsClamped { field, n_vertices });
     }
 }

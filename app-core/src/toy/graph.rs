@@ -5,10 +5,10 @@ use std::ops::Range;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::{self, Root, mesh::Mesh};
 
-use super::check::{check_count, check_finite, check_limit};
+use super::check::{check_count, check_finite, check_limit, check_range};
 use super::container::get;
 use super::error::{Flaw, ToyProblem};
-use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES};
+use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES, NUMBER};
 
 /// Every node of the file, in the scene or not: a joint may be outside of it.
 pub(super) struct Graph {
@@ -175,7 +175,7 @@ fn append_weights(root: &Root, node: &json::Node, field: &str, all: &mut Vec<f64
     if let Some(weights) = node.weights.as_ref().or(mesh.weights.as_ref()) {
         let field = format!("{field}.weights");
         check_count("weights", weights.len(), n_targets, &field)?;
-        check_finite(&field, weights, 1)?;
+        check_range(&field, weights, 1, &NUMBER)?;
         all.extend(weights.iter().copied().map(f64::from));
     }
     all.resize(n_weights, 0.0);
@@ -196,7 +196,7 @@ fn local(node: &json::Node, field: &str) -> Result<Local, Flaw> {
     }
     let vector = |name: &str, written: Option<[f32; 3]>, default: [f32; 3]| {
         let value = written.unwrap_or(default);
-        check_finite(&format!("{field}.{name}"), &value, 3)?;
+        check_range(&format!("{field}.{name}"), &value, 3, &NUMBER)?;
         Ok(DVec3::from_array(value.map(f64::from)))
     };
     let field_of_rotation = format!("{field}.rotation");
@@ -222,7 +222,7 @@ pub(super) fn unit_rotation(xyzw: [f64; 4]) -> Option<DQuat> {
 pub(super) fn affine(columns: &[f32; 16], field: &str, element: usize) -> Result<DAffine3, Flaw> {
     // Exporters that invert numerically leave a last row that is off by rounding.
     const TOLERANCE: f32 = 1e-4;
-    check_finite(field, columns, 16)?;
+    check_range(field, columns, 16, &NUMBER)?;
     let [a, b, c, d] = [0, 4, 8, 12].map(|i| [columns[i], columns[i + 1], columns[i + 2], columns[i + 3]]);
     let last_row = [a[3], b[3], c[3], d[3] - 1.0];
     if last_row.iter().any(|value| value.abs() > TOLERANCE) {

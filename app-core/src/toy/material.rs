@@ -4,15 +4,16 @@ use gltf::json::texture::WrappingMode;
 use gltf::json::{Index, material::Material as JsonMaterial};
 
 use super::accessor::Source;
-use super::check::check_finite;
+use super::check::{check_limit, check_range};
 use super::container::{allowed, get};
 use super::error::{Flaw, ToyWarning};
+use super::limits::{FACTOR, MAX_MATERIALS};
 use super::texture::{Texture, TextureStore};
 
 /// Appearance of a surface: the base colour of the metallic-roughness model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Linear RGBA, normally from 0 to 1; multiplies the texture and the vertex colour.
+    /// Linear RGBA, from 0 to 1; multiplies the texture and the vertex colour.
     pub base_color_linear: [f32; 4],
     /// The texture, where there is one.
     pub base_color_texture: Option<MaterialTexture>,
@@ -76,13 +77,20 @@ pub(super) fn read(
     is_used: &[bool],
     warnings: &mut Vec<ToyWarning>,
 ) -> Result<(Vec<Material>, Vec<Texture>), Flaw> {
+    check_limit(
+        "materials",
+        source.root.materials.len(),
+        MAX_MATERIALS,
+        "materials",
+    )?;
     let mut store = TextureStore::new(source);
     let mut materials = Vec::with_capacity(source.root.materials.len() + 1);
     for (i, (material, &is_used)) in source.root.materials.iter().zip(is_used).enumerate() {
         let field = format!("materials[{i}].pbrMetallicRoughness");
         let base = &material.pbr_metallic_roughness;
         let base_color_linear = base.base_color_factor.0;
-        check_finite(&format!("{field}.baseColorFactor"), &base_color_linear, 4)?;
+        let factor_field = format!("{field}.baseColorFactor");
+        check_range(&factor_field, &base_color_linear, 4, &FACTOR)?;
         let field = format!("{field}.baseColorTexture");
         let base_color_texture = match &base.base_color_texture {
             Some(info) if is_used => texture(&mut store, &field, info.index, warnings)?,

@@ -22,6 +22,8 @@ mod limits;
 mod material;
 mod moment;
 mod normal;
+mod outward;
+mod pieces;
 mod pose;
 mod rig;
 mod shadow_indices;

@@ -5,6 +5,7 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::Toy;
 use super::error::ToyError;
 use super::geometry::{ActiveTarget, Geometry};
+use super::limits::{MAX_NUMBER, MAX_POSED_M};
 use super::moment::{NodeId, NodePose, Pose};
 use super::normal::{carried_normal, face_normal};
 use super::rig::{RigPose, Set};
@@ -34,7 +35,8 @@ impl Toy {
     /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest.
     ///
     /// # Errors
-    /// An id of another toy, a time or a transform that is not one, or a position too large to be stored.
+    /// An id of another toy, a time or a transform that is not one or too large, or a position that is not from -1e6 m
+    /// to 1e6 m along each axis.
     pub fn pose(&self, pose: &Pose, anchor_from_object: &DMat4, out: &mut PosedMesh) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;
         out.positions.resize(self.n_vertices(), Vec3::ZERO);
@@ -77,8 +79,13 @@ impl Toy {
             if !(trs.translation.is_finite() && trs.rotation.is_finite() && trs.scale.is_finite()) {
                 return flaw(*id, "its transform is not finite");
             }
-            if trs.rotation.length_recip().is_infinite() {
-                return flaw(*id, "its rotation has no length");
+            let largest = trs.translation.abs().max(trs.scale.abs()).max_element();
+            if largest > MAX_NUMBER {
+                return flaw(*id, "its transform is not from -1000000000000 to 1000000000000");
+            }
+            // Neither zero nor beyond 64 bits when squared.
+            if !trs.rotation.length_recip().is_normal() {
+                return flaw(*id, "its rotation has no length that can be taken out");
             }
         }
         for (id, weights) in &pose.morph_weights {
@@ -88,19 +95,36 @@ impl Toy {
             if !weights.iter().all(|weight| weight.is_finite()) {
                 return flaw(*id, "a morph weight is not finite");
             }
+            if weights.iter().any(|weight| weight.abs() > MAX_NUMBER) {
+                return flaw(*id, "a morph weight is not from -1000000000000 to 1000000000000");
+            }
         }
         Ok(())
     }
 
     fn check_positions(&self, positions: &[Vec3]) -> Result<(), ToyError> {
-        match positions.iter().position(|position| !position.is_finite()) {
-            Some(vertex) => Err(ToyError::PoseOverflow {
-                file: self.file.clone(),
-                vertex,
-            }),
+        let is_outside = |position: &Vec3| !is_within(*position, MAX_POSED_M);
+        match positions.iter().position(is_outside) {
+            Some(vertex) => Err(self.overflow(vertex, MAX_POSED_M)),
             None => Ok(()),
         }
     }
+
+    pub(super) fn overflow(&self, vertex: usize, max: f64) -> ToyError {
+        ToyError::PoseOverflow {
+            file: self.file.clone(),
+            vertex,
+            max,
+        }
+    }
+}
+
+/// Whether each coordinate is a number of no more than `max` either way.
+pub(super) fn is_within(position: Vec3, max: f64) -> bool {
+    position
+        .to_array()
+        .iter()
+        .all(|coordinate| f64::from(coordinate.abs()) <= max)
 }
 
 fn pose_surface(

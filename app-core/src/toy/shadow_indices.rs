@@ -11,6 +11,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::geometry::{Geometry, MorphTarget};
+use super::pieces::Pieces;
 use super::surface::Surface;
 
 /// Triangles of welded corners.
@@ -119,7 +120,8 @@ fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
 
 /// All that determines a vertex's position in its node, bit by bit.
 fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) -> Vec<u32> {
-    let bits = |point: Vec3| point.to_array().map(f32::to_bits);
+    // Adding zero gives both zeros the same bits.
+    let bits = |point: Vec3| point.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
     let mut key = bits(geometry.positions[vertex]).to_vec();
     for (index, target) in moving {
         let offset = target.offset(vertex);
@@ -132,68 +134,4 @@ fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) 
     let influences = geometry.influences.iter().flat_map(|all| all.of(vertex));
     key.extend(influences.flat_map(|(joint, weight)| [u32::from(joint), weight.to_bits()]));
     key
-}
-
-/// Connected components of the triangles, and which of these pieces are closed.
-struct Pieces {
-    /// Union-find parent of each vertex; the root of a piece is its own.
-    parents: Vec<u32>,
-    /// For each root, whether its piece has an edge that is not met from both sides alike, or is inside out.
-    is_open: Vec<bool>,
-}
-
-impl Pieces {
-    /// `places` are the positions of all vertices, each in its node.
-    fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
-        let mut pieces = Self {
-            parents: (0..).take(places.len()).collect(),
-            is_open: vec![false; places.len()],
-        };
-        // How often an edge is passed from lower to higher index, less how often the other way.
-        let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
-        for &[a, b, c] in triangles {
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *passes.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-                pieces.join(from, to);
-            }
-        }
-        for ([corner, _], _) in passes.into_iter().filter(|(_, n)| *n != 0) {
-            let root = pieces.root(corner);
-            pieces.is_open[root as usize] = true;
-        }
-        for (root, volume) in pieces.volumes(triangles, places) {
-            pieces.is_open[root as usize] |= volume <= 0.0;
-        }
-        pieces
-    }
-
-    /// Six times the volume of each piece, by its root: negative where its faces look inwards.
-    fn volumes(&mut self, triangles: &[[u32; 3]], places: &[Vec3]) -> HashMap<u32, f64> {
-        let mut volumes = HashMap::new();
-        for corners in triangles {
-            let [a, b, c] = corners.map(|corner| places[corner as usize].as_dvec3());
-            *volumes.entry(self.root(corners[0])).or_default() += a.dot(b.cross(c));
-        }
-        volumes
-    }
-
-    fn is_closed(&mut self, corner: u32) -> bool {
-        let root = self.root(corner);
-        !self.is_open[root as usize]
-    }
-
-    fn root(&mut self, mut corner: u32) -> u32 {
-        while self.parents[corner as usize] != corner {
-            // Path halving, for later lookups.
-            let parent = self.parents[corner as usize];
-            self.parents[corner as usize] = self.parents[parent as usize];
-            corner = parent;
-        }
-        corner
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
 }

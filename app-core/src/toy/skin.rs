@@ -10,7 +10,7 @@ use super::check::{check_count, check_limit};
 use super::container::get;
 use super::error::{Flaw, ToyProblem};
 use super::graph::affine;
-use super::limits::{MAX_JOINT_SETS, MAX_JOINTS};
+use super::limits::{MAX_JOINT_SETS, MAX_JOINTS, NUMBER};
 
 pub(super) struct Skin {
     /// Nodes of the joints.
@@ -61,6 +61,15 @@ impl Influences {
             .iter()
             .max()
             .map_or(0, |&joint| usize::from(joint) + 1)
+    }
+
+    /// Exchanges two vertices.
+    pub(super) fn swap(&mut self, a: usize, b: usize) {
+        for k in 0..self.n_per_vertex {
+            let (a, b) = (a * self.n_per_vertex + k, b * self.n_per_vertex + k);
+            self.joints.swap(a, b);
+            self.weights.swap(a, b);
+        }
     }
 
     pub(super) fn gather(&self, sources: &[u32]) -> Self {
@@ -114,7 +123,7 @@ fn read_matrices(
     field: &str,
     index: gltf::json::Index<gltf::json::Accessor>,
 ) -> Result<Vec<DAffine3>, Flaw> {
-    let values = source.floats(field, index, Type::Mat4)?;
+    let values = source.floats_within(field, index, Type::Mat4, &NUMBER)?;
     values
         .as_chunks()
         .0

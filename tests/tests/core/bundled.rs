@@ -13,7 +13,7 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 /// The session is this much larger.
-const SHRINK: u32 = 4;
+pub(crate) const SHRINK: u32 = 4;
 
 static CORE: LazyLock<Mutex<Core>> = LazyLock::new(|| Mutex::new(open_core()));
 

@@ -3,6 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bundled;
+mod coplanar;
+mod file;
+mod normals;
 mod refused;
 mod reuse;
 mod scale;

@@ -31,6 +31,18 @@ fn pictures_that_do_not_fit_are_refused() {
         })
     ));
 
+    let large = Scene {
+        width_px: 8000,
+        height_px: 2000,
+        plates: Vec::new(),
+        ..scene()
+    };
+    let refused = core.set_scene(large, Preset::Balanced).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("width_px, height_px: 8000 x 2000 px are more than the 12582912"),
+        "{refused}"
+    );
+
     core.set_scene(scene(), Preset::Balanced).unwrap();
     let mut cut = input.image.as_ref().clone();
     cut.rgba8.pop();

@@ -69,6 +69,25 @@ fn what_is_optional_may_be_missing() {
     assert!(capture.scene().lights.is_empty() && capture.scene().plates.is_empty());
 }
 
+#[test]
+fn a_picture_larger_than_a_still_is_refused_before_any_is_read() {
+    for (width, height, is_too_large) in [(7680, 4320, true), (4097, 3072, true), (4032, 3024, false)] {
+        let mut parts = Parts::good();
+        parts.set("width", json!(width));
+        parts.set("height", json!(height));
+        let Err(error) = parts.open() else {
+            panic!("the pictures are of another size");
+        };
+        let error = error.to_string();
+        let limit = "more than the 12582912 pixels that a picture may have";
+        assert_eq!(
+            error.contains("(width, height)") && error.contains(limit),
+            is_too_large,
+            "{error}"
+        );
+    }
+}
+
 fn time_in_clip(pose: &Pose) -> Option<f64> {
     match pose {
         Pose::Clip { time_secs, .. } => Some(*time_secs),

@@ -33,6 +33,7 @@ pub(crate) fn refusals() -> Vec<Refusal> {
         containers(),
         references(),
         numbers(),
+        ranges(),
         skins(),
         animations(),
         pictures(),
@@ -78,6 +79,13 @@ fn containers() -> Vec<Refusal> {
 fn references() -> Vec<Refusal> {
     let position = "meshes[0].primitives[0].attributes.POSITION";
     vec![
+        changed(
+            "many materials",
+            &["materials", "4097 materials are more than the 4096 allowed"],
+            |glb| {
+                glb.json["materials"] = vec![json!({}); 4097].into();
+            },
+        ),
         changed("no such accessor", &[position, "refers to accessor 99"], |glb| {
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99.into();
         }),
@@ -97,6 +105,30 @@ fn references() -> Vec<Refusal> {
             let indices = glb.u16s("SCALAR", &[0, 1, 1]);
             glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
         }),
+        changed(
+            "many triangles",
+            &[
+                "meshes[0].primitives[0]",
+                "250001 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(250_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+            },
+        ),
+        changed(
+            "many triangles together",
+            &[
+                "meshes[0].primitives[0]",
+                "250002 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+                glb.push("nodes", json!({ "mesh": 0 }));
+                glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+            },
+        ),
         changed("no area", &["meshes", "no triangles"], |glb| {
             let positions = glb.floats("VEC3", &[1.0; 9]);
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
@@ -186,6 +218,114 @@ fn numbers() -> Vec<Refusal> {
             },
         ),
     ]
+}
+
+/// Finite numbers whose squares or products leave what 32 bits hold, or that glTF does not allow.
+fn ranges() -> Vec<Refusal> {
+    let attribute = |name, shape: &'static str, values: &'static [f32]| {
+        changed(
+            name,
+            &["primitives[0].attributes", name, "is not from"],
+            move |glb| {
+                let n_numbers = if shape == "VEC2" { 2 } else { 3 };
+                let mut all = vec![0.0; 3 * n_numbers];
+                all[..values.len()].copy_from_slice(values);
+                let accessor = glb.floats(shape, &all);
+                glb.json["meshes"][0]["primitives"][0]["attributes"][name] = accessor.into();
+            },
+        )
+    };
+    let factor = |name, factor: [f32; 4]| {
+        changed(
+            name,
+            &["materials[0].pbrMetallicRoughness.baseColorFactor", "from 0 to 1"],
+            move |glb| {
+                glb.json["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorFactor": factor } }]);
+            },
+        )
+    };
+    let node = |field: &'static str, value: serde_json::Value| {
+        changed(field, &["nodes[0].", field, "is not from"], move |glb| {
+            glb.json["nodes"][0][field] = value.clone()
+        })
+    };
+    vec![
+        attribute("POSITION", "VEC3", &[0.0, 3e38]),
+        attribute("NORMAL", "VEC3", &[-3e38]),
+        attribute("COLOR_0", "VEC3", &[1e30]),
+        attribute("TEXCOORD_0", "VEC2", &[1e30]),
+        factor("bright factor", [1e30, 0.0, 0.0, 1.0]),
+        factor("negative factor", [0.0, -1.0, 0.0, 1.0]),
+        factor("alpha factor", [0.0, 0.0, 0.0, 1.5]),
+        node("translation", json!([0.0, 1e20, 0.0])),
+        node("scale", json!([1e20, 1.0, 1.0])),
+        node(
+            "matrix",
+            json!([1, 0, 0, 0, 0, 1e20, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
+        ),
+        morphed(
+            "morph offset",
+            &["POSITION of targets[0]", "element 1", "is not from"],
+            1e30,
+            0.0,
+        ),
+        morphed("morph weight", &["nodes[0].weights", "is not from"], 1.0, 1e30),
+        moved(
+            "animated value",
+            &["samplers[0].output", "is not from"],
+            "translation",
+            [1.0, 1e30],
+        ),
+        moved(
+            "animated scale",
+            &["samplers[0].output", "is not from"],
+            "scale",
+            [1.0, -1e30],
+        ),
+        moved(
+            "late key",
+            &["samplers[0].input", "is not from"],
+            "translation",
+            [1e30, 0.0],
+        ),
+        bound_far(),
+    ]
+}
+
+/// A target that moves one corner by `offset`, at a weight.
+fn morphed(name: &'static str, words: &[&'static str], offset: f32, weight: f32) -> Refusal {
+    changed(name, words, |glb| {
+        let target = glb.floats("VEC3", &[0.0, 0.0, 0.0, offset, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        glb.json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
+        glb.json["nodes"][0]["weights"] = json!([weight]);
+    })
+}
+
+/// A track of one key.
+fn moved(name: &'static str, words: &[&'static str], path: &str, [time, value]: [f32; 2]) -> Refusal {
+    changed(name, words, |glb| {
+        let keys = [glb.floats("SCALAR", &[time]), glb.floats("VEC3", &[value; 3])];
+        glb.animate("move", path, "STEP", keys);
+    })
+}
+
+/// An inverse bind matrix that scales far.
+fn bound_far() -> Refusal {
+    let joints = |glb: &mut Glb| glb.u16s("VEC4", &[0; 12]);
+    let weights = |glb: &mut Glb| glb.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
+    let mut glb = skinned(joints, weights);
+    let mut matrices = [0.0; 32];
+    for diagonal in [0, 5, 10, 15, 16, 21, 26, 31] {
+        matrices[diagonal] = 1.0;
+    }
+    matrices[21] = 1e30;
+    let matrices = glb.floats("MAT4", &matrices);
+    glb.json["skins"][0]["inverseBindMatrices"] = matrices.into();
+    broken(
+        "bound far",
+        &["skins[0].inverseBindMatrices", "element 1", "is not from"],
+        glb,
+    )
 }
 
 fn skins() -> Vec<Refusal> {

@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use app_core::toy::Toy;
+use app_core::toy::{Pose, PosedMesh, Toy, ToyWarning};
+use glam::DMat4;
 use serde_json::json;
 
 use super::FILE;
@@ -58,11 +59,21 @@ fn a_closed_piece_is_drawn_from_one_side_and_an_open_one_from_both() {
 }
 
 #[test]
-fn a_piece_whose_faces_look_inwards_counts_as_open() {
+fn a_piece_whose_faces_look_inwards_is_turned_around() {
     let inwards = FACES.map(|[a, b, c]| [a, c, b]);
     let toy = faceted(&inwards);
     let ranges = &toy.shadow_indices().ranges;
-    assert_eq!((ranges.all.clone(), ranges.facing.clone()), (0..15, 0..30));
+    assert_eq!((ranges.all.clone(), ranges.facing.clone()), (0..15, 0..18));
+    let [ToyWarning::FacesInverted { n_triangles: 4, .. }] = toy.warnings() else {
+        panic!("{:?}", toy.warnings());
+    };
+    // Its normals, taken from the faces, are those of the piece that was right from the start.
+    let posed = |toy: &Toy| {
+        let mut posed = PosedMesh::default();
+        toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
+        posed.normals
+    };
+    assert_eq!(posed(&toy), posed(&faceted(&FACES)));
 }
 
 #[test]

@@ -13,8 +13,9 @@ use crate::model::lighting::self_shadow::{
 };
 use crate::model::plan::Plan;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
 use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::{LOOK_STREAMS, MATERIAL, MATERIAL_GROUP, ToyMesh};
+use crate::passes::toy_mesh::{LOOK_STREAMS, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,

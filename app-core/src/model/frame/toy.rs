@@ -19,8 +19,9 @@ use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
 use crate::passes::globals::GLOBALS;
+use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
 use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED};
-use crate::passes::toy_mesh::{LOOK_STREAMS, MATERIAL, MATERIAL_GROUP, ToyMesh};
+use crate::passes::toy_mesh::{LOOK_STREAMS, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,

@@ -6,7 +6,7 @@ use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_
 use super::place::{camera, fresnel_lens, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles};
-use crate::scene::{FieldError, Intrinsics, Pose, Scene, check};
+use crate::scene::{Intrinsics, Pose, Scene, check};
 use crate::session::SessionWarning;
 use crate::session::error::SessionError;
 use crate::session::files::Files;
@@ -16,8 +16,6 @@ use glam::DMat4;
 
 const MAX_TOY_BYTES: u64 = 256 << 20;
 const MAX_SIDE_PX: f64 = 16384.0;
-/// Pixels of one picture: four times those of a 4K camera.
-const MAX_PICTURE_PIXELS: u64 = 1 << 25;
 
 /// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.
 pub(super) fn capture_from_record(
@@ -85,17 +83,11 @@ fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
         "height",
         check::number(f64::from(record.height), &(1.0..=MAX_SIDE_PX)),
     )?;
-    let size = PictureSize {
+    at("width, height", check::picture_size(record.width, record.height))?;
+    Ok(PictureSize {
         width_px: record.width,
         height_px: record.height,
-    };
-    if size.n_pixels() > MAX_PICTURE_PIXELS {
-        let error = FieldError::TooManyPixels {
-            max_pixels: MAX_PICTURE_PIXELS,
-        };
-        return Err(in_index("width, height", error));
-    }
-    Ok(size)
+    })
 }
 
 fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {

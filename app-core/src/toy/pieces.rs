@@ -1,0 +1,96 @@
+//! Pieces of a shape: which triangles hang together, which pieces are closed, and which of those are inside out.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec3};
+
+/// Connected components of triangles.
+pub(super) struct Pieces {
+    /// Union-find parent of each vertex; the root of a piece is its own.
+    parents: Vec<u32>,
+    /// For each root, whether its piece has an edge that is not met from both sides alike.
+    is_open: Vec<bool>,
+    /// Of each piece, by its root.
+    volumes: HashMap<u32, Volume>,
+}
+
+/// Six times a volume: negative where faces look inwards.
+#[derive(Clone, Copy, Default)]
+struct Volume {
+    signed: f64,
+    /// The most that rounding can have changed it by.
+    rounding: f64,
+}
+
+impl Pieces {
+    /// `places` are the positions of all vertices, each in its node.
+    pub(super) fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
+        let mut pieces = Self {
+            parents: (0..).take(places.len()).collect(),
+            is_open: vec![false; places.len()],
+            volumes: HashMap::new(),
+        };
+        // How often an edge is passed from lower to higher index, less how often the other way.
+        let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
+        for &[a, b, c] in triangles {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                *passes.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+                pieces.join(from, to);
+            }
+        }
+        for ([corner, _], _) in passes.into_iter().filter(|(_, n)| *n != 0) {
+            let root = pieces.root(corner);
+            pieces.is_open[root as usize] = true;
+        }
+        for corners in triangles {
+            let root = pieces.root(corners[0]);
+            let corners = corners.map(|corner| places[corner as usize].as_dvec3());
+            pieces.volumes.entry(root).or_default().add(corners);
+        }
+        pieces
+    }
+
+    /// Whether the piece of a vertex is closed, and its faces look outwards.
+    pub(super) fn is_closed(&mut self, corner: u32) -> bool {
+        self.closed_volume(corner)
+            .is_some_and(|volume| volume.signed > 0.0)
+    }
+
+    /// Whether it is closed and beyond doubt its faces look inwards: a sheet with two sides has no volume but rounding.
+    pub(super) fn is_inside_out(&mut self, corner: u32) -> bool {
+        self.closed_volume(corner)
+            .is_some_and(|volume| volume.signed < -volume.rounding)
+    }
+
+    /// The vertex that stands for the whole piece of another one.
+    pub(super) fn root(&mut self, mut corner: u32) -> u32 {
+        while self.parents[corner as usize] != corner {
+            // Path halving, for later lookups.
+            let parent = self.parents[corner as usize];
+            self.parents[corner as usize] = self.parents[parent as usize];
+            corner = parent;
+        }
+        corner
+    }
+
+    fn closed_volume(&mut self, corner: u32) -> Option<Volume> {
+        let root = self.root(corner);
+        let volume = self.volumes.get(&root).copied();
+        volume.filter(|_| !self.is_open[root as usize])
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+}
+
+impl Volume {
+    /// Adds the tetrahedron from the origin to a triangle.
+    fn add(&mut self, [a, b, c]: [DVec3; 3]) {
+        // Products of three numbers of 32 bits, in sums of nine: a rounding each, and those of adding up.
+        const N_ROUNDINGS: f64 = 16.0;
+        self.signed += a.dot(b.cross(c));
+        self.rounding += N_ROUNDINGS * f64::EPSILON * a.length() * b.length() * c.length();
+    }
+}

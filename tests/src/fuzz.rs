@@ -1,0 +1,173 @@
+//! Bytes from outside to whatever reads them: nothing may panic, and what is accepted is finite.
+//!
+//! Fuzzing (`tests/fuzz`) and property tests (`tests/tests/mutated.rs`) drive the same functions.
+
+use std::sync::Arc;
+
+use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_path};
+use app_core::toy::{Pose, PosedMesh, Toy};
+use glam::{DMat4, Vec3};
+
+/// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
+pub const INDEX: &[u8] = include_bytes!("../fuzz/seeds/capture/good.json");
+/// A triangle with a clip, a skin and a morph target.
+pub const TOY: &[u8] = include_bytes!("../fuzz/seeds/toy/skinned.glb");
+/// A picture of 2 x 2 pixels, colours and alpha.
+pub const PICTURE: &[u8] = include_bytes!("../fuzz/seeds/picture/good.png");
+
+/// Frames of a session that are looked at.
+const MAX_FRAMES: usize = 4;
+
+/// Reads a toy's file and poses it.
+///
+/// # Panics
+/// Where a toy that is accepted has a pose that is accepted and not finite.
+pub fn toy(bytes: &[u8]) {
+    if let Ok(toy) = Toy::from_glb("fuzzed.glb", bytes) {
+        check_toy(&toy);
+    }
+}
+
+/// The same for a file put together from its two chunks: two bytes of the first one's length, then both.
+///
+/// # Panics
+/// As [`toy`].
+pub fn toy_chunks(bytes: &[u8]) {
+    toy(&glb_from_chunks(bytes));
+}
+
+/// Opens a session whose `capture.json` is these bytes, and reads its frames.
+///
+/// # Panics
+/// Where a session that is accepted holds a number that is not finite.
+pub fn capture(bytes: &[u8]) {
+    session(bytes, TOY, PICTURE);
+}
+
+/// Decodes a picture and a mask of 2 x 2 pixels.
+///
+/// # Panics
+/// Where a picture that is accepted is of another size.
+pub fn picture(bytes: &[u8]) {
+    session(INDEX, TOY, bytes);
+}
+
+/// Whether a session of these three files can be opened, and every frame read.
+#[must_use]
+pub fn opens(index: &[u8], toy: &[u8], picture: &[u8]) -> bool {
+    open(index, toy, picture)
+        .is_some_and(|capture| (0..capture.n_frames()).all(|index| capture.frame(index).is_ok()))
+}
+
+fn open(index: &[u8], toy: &[u8], picture: &[u8]) -> Option<Capture> {
+    let files = Memory {
+        index: index.into(),
+        toy: toy.into(),
+        picture: picture.into(),
+    };
+    Capture::open(files).ok()
+}
+
+fn session(index: &[u8], toy: &[u8], picture: &[u8]) {
+    let Some(capture) = open(index, toy, picture) else {
+        return;
+    };
+    let scene = capture.scene();
+    assert!(scene.world_from_object.is_finite());
+    for index in 0..capture.n_frames().min(MAX_FRAMES) {
+        if let Ok(frame) = capture.frame(index) {
+            assert!(frame.world_from_object.is_finite() && frame.camera.world_from_camera.is_finite());
+            let n_bytes = 4 * frame.image.width_px as usize * frame.image.height_px as usize;
+            assert_eq!(frame.image.rgba8.len(), n_bytes);
+            pose(&scene.toy, &frame.shown_pose, &frame.world_from_object);
+        }
+        if let Ok(Some(truth)) = capture.truth(index) {
+            assert_eq!(truth.image.rgba8.len(), truth.mask.rgba8.len());
+        }
+    }
+}
+
+/// Poses a toy as authored and at moments of each clip, and bounds it.
+///
+/// # Panics
+/// Where a pose that is accepted is not finite.
+pub fn check_toy(toy: &Toy) {
+    let _ = toy.bounds_of_pose(&Pose::Authored);
+    pose(toy, &Pose::Authored, &DMat4::IDENTITY);
+    for name in toy.clip_names().iter().take(4) {
+        let Ok(clip) = toy.find_clip(name) else { continue };
+        let end_secs = toy.clips()[clip.index()].duration_secs;
+        for fraction in [0.0, 0.3, 1.0] {
+            let time_secs = fraction * end_secs;
+            pose(toy, &Pose::Clip { clip, time_secs }, &DMat4::IDENTITY);
+        }
+    }
+}
+
+/// Poses a toy; returns whether it could be.
+///
+/// # Panics
+/// Where the pose is accepted and not finite, or has a normal of another length than 1.
+pub fn pose(toy: &Toy, pose: &Pose, anchor_from_object: &DMat4) -> bool {
+    let mut posed = PosedMesh::default();
+    if toy.pose(pose, anchor_from_object, &mut posed).is_err() {
+        return false;
+    }
+    check_finite(&posed.positions);
+    assert!(posed.normals.iter().all(|normal| normal.is_normalized()));
+    assert_eq!(posed.positions.len(), toy.n_vertices());
+    assert!(
+        toy.indices()
+            .iter()
+            .all(|index| (*index as usize) < toy.n_vertices())
+    );
+    true
+}
+
+/// Whether all positions are numbers.
+///
+/// # Panics
+/// Where one is not.
+pub fn check_finite(positions: &[Vec3]) {
+    assert!(positions.iter().all(|position| position.is_finite()));
+}
+
+fn glb_from_chunks(bytes: &[u8]) -> Vec<u8> {
+    let (length, chunks) = bytes.split_first_chunk().unwrap_or((&[0; 2], &[]));
+    let n_json = usize::from(u16::from_le_bytes(*length)).min(chunks.len());
+    let (json, bin) = chunks.split_at(n_json);
+    let padded = |chunk: &[u8], padding: u8| {
+        let mut chunk = chunk.to_vec();
+        chunk.resize(chunk.len().next_multiple_of(4), padding);
+        chunk
+    };
+    let (json, bin) = (padded(json, b' '), padded(bin, 0));
+    let length = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
+    let header = [*b"glTF", length(2), length(28 + json.len() + bin.len())].concat();
+    let json_head = [length(json.len()), *b"JSON"].concat();
+    let bin_head = [length(bin.len()), *b"BIN\0"].concat();
+    [header, json_head, json, bin_head, bin].concat()
+}
+
+/// A session of three files.
+struct Memory {
+    index: Arc<[u8]>,
+    toy: Arc<[u8]>,
+    picture: Arc<[u8]>,
+}
+
+impl Files for Memory {
+    fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
+        check_path(path)?;
+        let bytes = match path.rsplit_once('.') {
+            Some((_, "json")) => &self.index,
+            Some((_, "glb")) => &self.toy,
+            Some((_, "png" | "jpg")) => &self.picture,
+            _ => return Err(FileError::Missing),
+        };
+        if bytes.len() as u64 > max_bytes {
+            return Err(FileError::TooLarge { max_bytes });
+        }
+        Ok(bytes.to_vec())
+    }
+}

@@ -1,0 +1,140 @@
+//! The bundled toy's file, and changes to it.
+
+use std::fs;
+
+use app_core::toy::Toy;
+use harness::files::BUNDLED_SESSION;
+use serde_json::{Value, json};
+
+/// The bundled toy's file, whose accessors are packed.
+pub(crate) struct File {
+    json: Value,
+    bytes: Vec<u8>,
+    /// First byte of the binary chunk's contents.
+    bin: usize,
+}
+
+impl File {
+    pub(crate) fn open() -> Self {
+        let bytes = fs::read(format!("{BUNDLED_SESSION}/toy.glb")).unwrap();
+        let n_json_bytes = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        let json = serde_json::from_slice(&bytes[20..20 + n_json_bytes]).unwrap();
+        Self {
+            json,
+            bin: 20 + n_json_bytes + 8,
+            bytes,
+        }
+    }
+
+    /// The primitives' accessors that `find` selects.
+    fn accessors(&self, find: impl Fn(&Value) -> &Value) -> Vec<usize> {
+        let primitives = self.json["meshes"][0]["primitives"].as_array().unwrap();
+        let index = |primitive| usize::try_from(find(primitive).as_u64().unwrap()).unwrap();
+        primitives.iter().map(index).collect()
+    }
+
+    /// The bytes of an accessor whose elements take `size` bytes.
+    fn elements(&mut self, accessor: usize, size: usize) -> &mut [u8] {
+        let number = |value: &Value| usize::try_from(value.as_u64().unwrap_or(0)).unwrap();
+        let accessor = &self.json["accessors"][accessor];
+        let view = &self.json["bufferViews"][number(&accessor["bufferView"])];
+        let first = self.bin + number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
+        let n_bytes = size * number(&accessor["count"]);
+        &mut self.bytes[first..first + n_bytes]
+    }
+
+    /// Changes each normal of the first `n` primitives.
+    pub(crate) fn change_normals(mut self, n: usize, change: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
+        for accessor in self
+            .accessors(|primitive| &primitive["attributes"]["NORMAL"])
+            .into_iter()
+            .take(n)
+        {
+            for bytes in self.elements(accessor, 12).as_chunks_mut::<12>().0 {
+                let normal = [0, 4, 8].map(|k| f32::from_le_bytes(bytes[k..k + 4].try_into().unwrap()));
+                bytes.copy_from_slice(change(normal).map(f32::to_le_bytes).as_flattened());
+            }
+        }
+        self
+    }
+
+    /// Turns every triangle around.
+    pub(crate) fn turn_faces(mut self) -> Self {
+        for accessor in self.accessors(|primitive| &primitive["indices"]) {
+            for [_, b, c] in self
+                .elements(accessor, 2)
+                .as_chunks_mut::<2>()
+                .0
+                .as_chunks_mut()
+                .0
+            {
+                std::mem::swap(b, c);
+            }
+        }
+        self
+    }
+
+    /// Adds a square of the first material that faces up, around a point in object space.
+    pub(crate) fn add_square(mut self, [x, y, z]: [f32; 3], half_m: f32) -> Self {
+        let corner = |along: f32, across: f32| [x + along * half_m, y, z + across * half_m];
+        let corners = [
+            corner(-1.0, 1.0),
+            corner(1.0, 1.0),
+            corner(1.0, -1.0),
+            corner(-1.0, -1.0),
+        ];
+        let triangles = [0, 1, 2, 0, 2, 3].map(|k: usize| corners[k]);
+        let numbers = triangles.as_flattened().iter();
+        self.bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        let first = self.bytes.len() - 72 - self.bin;
+        let n_views = push(
+            &mut self.json["bufferViews"],
+            json!({ "buffer": 0, "byteOffset": first, "byteLength": 72 }),
+        );
+        let position = push(
+            &mut self.json["accessors"],
+            json!({ "bufferView": n_views, "componentType": 5126, "type": "VEC3", "count": 6 }),
+        );
+        let primitive = json!({ "attributes": { "POSITION": position }, "material": 0 });
+        let mesh = push(&mut self.json["meshes"], json!({ "primitives": [primitive] }));
+        let node = push(&mut self.json["nodes"], json!({ "mesh": mesh }));
+        push(&mut self.json["scenes"][0]["nodes"], json!(node));
+        self.packed()
+    }
+
+    /// The same with the tree and the binary chunk as they are now.
+    fn packed(self) -> Self {
+        let mut text = serde_json::to_vec(&self.json).unwrap();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let bin = &self.bytes[self.bin..];
+        let u32_bytes = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
+        let head = [*b"glTF", u32_bytes(2), u32_bytes(28 + text.len() + bin.len())];
+        let (json_head, bin_head) = (
+            [u32_bytes(text.len()), *b"JSON"],
+            [u32_bytes(bin.len()), *b"BIN\0"],
+        );
+        Self {
+            bytes: [
+                head.as_flattened(),
+                json_head.as_flattened(),
+                &text,
+                bin_head.as_flattened(),
+                bin,
+            ]
+            .concat(),
+            bin: 28 + text.len(),
+            ..self
+        }
+    }
+
+    pub(crate) fn toy(&self) -> Toy {
+        Toy::from_glb("toy.glb", &self.bytes).unwrap()
+    }
+}
+
+/// Appends to a list and returns the index.
+fn push(list: &mut Value, value: Value) -> usize {
+    let list = list.as_array_mut().unwrap();
+    list.push(value);
+    list.len() - 1
+}
