@@ -129,6 +129,8 @@ pub mod internals {
     pub use crate::passes::globals::{Globals, globals};
     pub use crate::passes::plate::{PlateView, PlateViews};
     pub use crate::plan::{Change, LeftOut, SceneFacts};
+    pub use crate::plates::exposure::match_plates;
+    pub use crate::plates::overlap::compared_plates;
     pub use crate::readback::inject::InjectedVisibility;
     pub use crate::readback::{FloatMap, Map};
 

@@ -47,6 +47,14 @@ pub enum FieldError {
     /// A list that needs an entry.
     #[error("the list is empty, but needs at least one entry")]
     Empty,
+    /// A list with more entries than are handled.
+    #[error("the list has {n} entries, but at most {max} are handled")]
+    TooMany {
+        /// Its length.
+        n: usize,
+        /// Longest that is handled.
+        max: usize,
+    },
     /// A field that this kind of entry needs.
     #[error("missing, but needed for this kind")]
     Missing,
@@ -112,6 +120,15 @@ pub(crate) fn number(value: f64, range: &RangeInclusive<f64>) -> Result<f64, Fie
             min: *range.start(),
             max: *range.end(),
         })
+    }
+}
+
+/// A list of a length that is handled.
+pub(crate) fn at_most(n: usize, max: usize) -> Result<(), FieldError> {
+    if n <= max {
+        Ok(())
+    } else {
+        Err(FieldError::TooMany { n, max })
     }
 }
 

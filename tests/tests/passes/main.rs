@@ -23,6 +23,7 @@ mod goldens;
 mod inject;
 mod intensities;
 mod lit;
+mod many_plates;
 mod moving;
 mod numbers;
 mod occlusion;
