@@ -9,6 +9,7 @@ use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
 use super::{Camera, Intrinsics, Light};
+use crate::words::Number;
 
 /// A value that is refused, and the path of its field.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,7 +36,7 @@ impl InputError {
 #[non_exhaustive]
 pub enum FieldError {
     /// A number that is too small, too large or not a number.
-    #[error("{value} is not from {min} to {max}")]
+    #[error("{} is not from {} to {}", Number(*value), Number(*min), Number(*max))]
     Range {
         /// The number as written.
         value: f64,

@@ -6,3 +6,4 @@ mod bundled;
 mod refused;
 mod reuse;
 mod scale;
+mod warnings;

@@ -20,6 +20,7 @@ mod exposure;
 mod fill;
 mod fit;
 mod goldens;
+mod grazing;
 mod inject;
 mod intensities;
 mod lit;
