@@ -20,7 +20,9 @@ impl fmt::Display for Number {
             return write!(f, "{}", self.0);
         };
         let value: f64 = rounded.parse().map_err(|_| fmt::Error)?;
-        let is_short = exponent.parse().is_ok_and(|exponent: i32| (-4..=6).contains(&exponent));
+        let is_short = exponent
+            .parse()
+            .is_ok_and(|exponent: i32| (-4..=6).contains(&exponent));
         if is_short || value == 0.0 {
             write!(f, "{value}")
         } else {

@@ -61,10 +61,8 @@ impl Core {
 
     /// What the pictures of the latest view show.
     fn read_evidence(&self, fit: &Fit) -> Result<Option<Evidence>, CoreError> {
-        let (Some(model), Some(image)) = (
-            self.model(),
-            self.stage.as_ref().and_then(Stage::learned_image),
-        ) else {
+        let (Some(model), Some(image)) = (self.model(), self.stage.as_ref().and_then(Stage::learned_image))
+        else {
             return Ok(None);
         };
         let (Some(plate), Some(validity), Some(visibility)) = (
@@ -76,13 +74,14 @@ impl Core {
         };
         let frame = linear_colors(image, &model.region.rect());
         let n_lights = model.region.plan.lights.len();
-        let pixel = |k: usize| {
-            PixelEvidence {
-                frame: frame[k],
-                plate: plate.texels[k],
-                validity: validity.texels[k],
-                visibility: visibility.texels[k][..n_lights].iter().copied().fold(1.0, f32::min),
-            }
+        let pixel = |k: usize| PixelEvidence {
+            frame: frame[k],
+            plate: plate.texels[k],
+            validity: validity.texels[k],
+            visibility: visibility.texels[k][..n_lights]
+                .iter()
+                .copied()
+                .fold(1.0, f32::min),
         };
         Ok(Some(Evidence::of((0..frame.len()).map(pixel), &fit.gain)))
     }
@@ -104,14 +103,22 @@ impl Core {
         let n_receivers = self.model().map_or(0, |model| model.region.plan.n_receivers);
         let receivers = fit.receivers.iter().take(n_receivers as usize);
         let totals = receivers.flat_map(|receiver| {
-            let of_channel = |channel| receiver.direct_fraction.iter().map(move |light| light[channel]).sum();
+            let of_channel = |channel| {
+                receiver
+                    .direct_fraction
+                    .iter()
+                    .map(move |light| light[channel])
+                    .sum()
+            };
             (0..3).map(of_channel)
         });
         let direct_fraction = totals.fold(0.0, f32::max);
         if direct_fraction < LEAST_DIRECT_FRACTION {
             return Ok(Some(Warning::NoShadow { direct_fraction }));
         }
-        let unknown = conditioning.iter().filter(|(_, known)| *known < LEAST_CONDITIONING);
+        let unknown = conditioning
+            .iter()
+            .filter(|(_, known)| *known < LEAST_CONDITIONING);
         let lights: Vec<usize> = unknown.map(|(light, _)| *light).collect();
         Ok((!lights.is_empty()).then_some(Warning::LightsUnderConstrained { lights }))
     }

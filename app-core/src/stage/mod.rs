@@ -224,7 +224,11 @@ impl Stage {
     ) -> Result<FrameReport, ToyError> {
         self.take_image(recorder.gpu, &input.image);
         self.follow_placement(recorder.gpu, input)?;
-        let about_scene = self.receivers_warning.iter().chain(&self.lights.warnings).cloned();
+        let about_scene = self
+            .receivers_warning
+            .iter()
+            .chain(&self.lights.warnings)
+            .cloned();
         let inside = self.lights_inside().to_vec();
         let about_lights = (!inside.is_empty()).then_some(Warning::LightsInsideToy { lights: inside });
         let mut report = FrameReport {

@@ -49,7 +49,10 @@ impl Stage {
         let (anchor_from_world, bounds) = (self.layout().world_from_anchor().inverse(), self.physical_bounds);
         let mut inside = Vec::new();
         for (index, light) in self.lights.indices.iter().zip(&self.lights.used) {
-            let Light::Sphere { position_in_world, .. } = light else {
+            let Light::Sphere {
+                position_in_world, ..
+            } = light
+            else {
                 continue;
             };
             let at = anchor_from_world.transform_point3(*position_in_world);

@@ -92,7 +92,12 @@ fn swapped([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 }
 
 fn brighter([r, g, b, a]: [u8; 4]) -> [u8; 4] {
-    [r.saturating_add(25), g.saturating_add(20), b.saturating_add(12), a]
+    [
+        r.saturating_add(25),
+        g.saturating_add(20),
+        b.saturating_add(12),
+        a,
+    ]
 }
 
 const fn bulb(position_in_world: DVec3) -> Light {
@@ -160,8 +165,11 @@ fn broken_input_is_told_by_its_cause() {
             .lit_by(vec![bulb(toy_middle() + DVec3::new(0.0, 0.2, 0.0))]),
         Case::new("toy behind the camera", &["ToyOutOfPicture"]).standing_at(behind),
         Case::new("toy far behind the camera", &["OutOfPicture"]).standing_at(behind.with_y(0.0)),
-        Case::new("toy aside from where it stands", &["ToyNotSeen", "Outlier(Object)", "Outlier(Shadow)"])
-            .standing_at(DVec3::new(0.09, 0.0, 0.0)),
+        Case::new(
+            "toy aside from where it stands",
+            &["ToyNotSeen", "Outlier(Object)", "Outlier(Shadow)"],
+        )
+        .standing_at(DVec3::new(0.09, 0.0, 0.0)),
     ];
     for case in cases {
         case.check(&mut core);
@@ -175,7 +183,8 @@ fn many_of_a_kind_are_one_short_warning() {
     let (scene, lights) = (scene(), 1000);
     let below = vec![bulb(-DVec3::Y); lights];
     let many = Case::new("a thousand lights below", &["LightsBelowReceivers"]);
-    many.lit_by([scene.lights.clone(), below].concat()).check(&mut core);
+    many.lit_by([scene.lights.clone(), below].concat())
+        .check(&mut core);
 
     let aside = |index: u32| {
         let at = DVec3::new(5.0 + f64::from(index), 0.0, 0.0);

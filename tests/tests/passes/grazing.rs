@@ -49,13 +49,19 @@ fn a_faint_shadow_is_told_where_its_strength_is_assumed() {
                 let [fitted, expected] =
                     [&fit, &truth(1)].map(|solution| solution.receivers[0].direct_fractions[0]);
                 let off = (fitted - expected).abs().max_element();
-                let what = format!("{}, {elevation_deg} deg, {half_extent_m:?}: off by {off:.3}", setup.name);
+                let what = format!(
+                    "{}, {elevation_deg} deg, {half_extent_m:?}: off by {off:.3}",
+                    setup.name
+                );
                 eprintln!("{what}: {of_frame:?} {of_fit:?}");
                 assert!(of_frame.is_empty(), "{what}: {of_frame:?}");
                 let is_faint = |warning: &Warning| matches!(warning, Warning::FaintShadow { .. });
                 assert!(of_fit.iter().all(is_faint), "{what}: {of_fit:?}");
                 assert!(off > MEASURED || of_fit.is_empty(), "{what}: {of_fit:?}");
-                assert!(off < ASSUMED || half_extent_m.is_none() || !of_fit.is_empty(), "{what}: not told");
+                assert!(
+                    off < ASSUMED || half_extent_m.is_none() || !of_fit.is_empty(),
+                    "{what}: not told"
+                );
             }
         }
     }

@@ -156,7 +156,9 @@ fn is_same(frame: [f32; 3], plate: [f32; 3]) -> bool {
 /// Linear colours of a rectangle of a picture, row by row.
 pub(crate) fn linear_colors(image: &Image, rect: &PixelRect) -> Vec<[f32; 3]> {
     let (min, max) = (rect.origin_px, rect.origin_px + rect.size_px);
-    let linear_of_code: Vec<f32> = (0..=u8::MAX).map(|code| linear_from_srgb(f32::from(code) / 255.0)).collect();
+    let linear_of_code: Vec<f32> = (0..=u8::MAX)
+        .map(|code| linear_from_srgb(f32::from(code) / 255.0))
+        .collect();
     let texels = (min.y..max.y).flat_map(|y| (min.x..max.x).map(move |x| (x, y)));
     let color = |(x, y): (u32, u32)| {
         let first = 4 * (y as usize * image.width_px as usize + x as usize);
