@@ -45,6 +45,11 @@ pub enum Warning {
         /// How much of that strength is assumed, from 0 to 1: 1 less the sum of the lights' conditioning.
         assumed: f64,
     },
+    /// The real shadow is seen on hardly a pixel, and by no earlier view.
+    SmallShadow {
+        /// Pixels that show it, each as far as it is hidden from a light.
+        n_pixels: f64,
+    },
     /// Where the listed lights should cast the real shadow, the picture is as bright as the plate.
     NoShadow {
         /// What the lights give of the plate's radiance, from 0 to 1.
@@ -134,6 +139,10 @@ impl fmt::Display for Warning {
                 f,
                 "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
                 100.0 * assumed
+            ),
+            Self::SmallShadow { n_pixels } => write!(
+                f,
+                "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
             ),
             Self::NoShadow { direct_fraction } => write!(
                 f,

@@ -83,6 +83,8 @@ struct MethodState {
     image: Option<Arc<Image>>,
     /// Of the lights that were learned under, in the list that they were given in.
     light_indices: Vec<usize>,
+    /// It was learned from one view alone.
+    is_first_view: bool,
     /// Visibilities were injected after it was learned.
     is_visibility_outdated: bool,
     /// The object or the lights moved after it was learned.
@@ -169,6 +171,11 @@ impl Stage {
     /// Indices, in the list that they were given in, of the lights inside the physical toy.
     pub(crate) fn lights_inside(&self) -> &[usize] {
         self.lights_inside.as_deref().unwrap_or_default()
+    }
+
+    /// Whether no more than one view was learned from.
+    pub(crate) fn is_first_view(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| state.is_first_view)
     }
 
     /// Whether the view that was learned from last shows the real toy.

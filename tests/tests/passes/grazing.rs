@@ -11,7 +11,7 @@ use crate::run::{input, scene, solution};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
-/// Of a direct fraction: what is nearer to the truth is measured, and what is farther from it is assumed.
+/// Of a direct fraction: what is nearer to the truth is measured, and what is farther from it is not.
 const MEASURED: f64 = 0.05;
 const ASSUMED: f64 = 0.12;
 
@@ -55,13 +55,12 @@ fn a_faint_shadow_is_told_where_its_strength_is_assumed() {
                 );
                 eprintln!("{what}: {of_frame:?} {of_fit:?}");
                 assert!(of_frame.is_empty(), "{what}: {of_frame:?}");
-                let is_faint = |warning: &Warning| matches!(warning, Warning::FaintShadow { .. });
+                let is_faint = |warning: &Warning| {
+                    matches!(warning, Warning::FaintShadow { .. } | Warning::SmallShadow { .. })
+                };
                 assert!(of_fit.iter().all(is_faint), "{what}: {of_fit:?}");
                 assert!(off > MEASURED || of_fit.is_empty(), "{what}: {of_fit:?}");
-                assert!(
-                    off < ASSUMED || half_extent_m.is_none() || !of_fit.is_empty(),
-                    "{what}: not told"
-                );
+                assert!(off < ASSUMED || !of_fit.is_empty(), "{what}: not told");
             }
         }
     }

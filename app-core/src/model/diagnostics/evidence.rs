@@ -32,6 +32,10 @@ pub struct PixelEvidence {
 /// Sums over the pixels of a view.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
+    /// Pixels that each one stands for.
+    step: usize,
+    /// Sum of what is hidden of the lights.
+    hidden: f64,
     receiver: Share,
     shadow: Share,
     toy: Share,
@@ -43,23 +47,31 @@ impl Evidence {
     /// Of at most some 65,536 of the pixels; `gain` is that from plate to picture.
     #[must_use]
     pub fn of(pixels: impl ExactSizeIterator<Item = PixelEvidence>, gain: &[f32; 4]) -> Self {
-        let mut sums = Self::default();
         let step = pixels.len().div_ceil(MOST_PIXELS).max(1);
+        let mut sums = Self {
+            step,
+            ..Self::default()
+        };
         pixels.step_by(step).for_each(|pixel| sums.add(&pixel, gain));
         sums
     }
 
     fn add(&mut self, pixel: &PixelEvidence, gain: &[f32; 4]) {
+        let [seen, of_toy, _, kept] = pixel.validity;
         let [r, g, b, alpha] = pixel.plate;
+        // Also where the shadow is withheld from all but the first fit.
+        if seen > 0.0 || kept < 1.0 {
+            self.hidden += f64::from(1.0 - pixel.visibility);
+        }
         if alpha < 1.0 {
             return;
         }
         let (frame, plate) = (pixel.frame, [r, g, b]);
-        if pixel.validity[1] > 0.0 {
+        if of_toy > 0.0 {
             self.toy
                 .add(is_same(frame, [r * gain[0], g * gain[1], b * gain[2]]));
         }
-        if pixel.validity[0] == 0.0 {
+        if seen == 0.0 {
             return;
         }
         self.receiver.add(!is_readable(plate));
@@ -71,6 +83,14 @@ impl Evidence {
             self.straight.add(frame, plate);
             self.swapped.add(frame, [b, g, r]);
         }
+    }
+
+    /// Pixels of the receivers that show the real shadow, each as far as it is hidden from a light.
+    #[must_use]
+    pub fn n_shadow_pixels(&self) -> f64 {
+        #[allow(clippy::cast_precision_loss, reason = "at most the pixels of a picture")]
+        let step = self.step as f64;
+        step * self.hidden
     }
 
     /// Share of the receivers' pixels where the plate is too dark or too bright in every channel.
