@@ -93,6 +93,7 @@ mod plan;
 mod plates;
 mod readback;
 mod stage;
+mod words;
 
 pub use crate::core::{Core, CoreError};
 pub use wgpu;
@@ -119,6 +120,7 @@ pub mod internals {
     pub use crate::gpu::shader::{Part, Shader};
     pub use crate::gpu::shared::{Member, Mirror, NumberKind};
     pub use crate::model::diagnostics::conditioning::light_conditioning;
+    pub use crate::model::diagnostics::evidence::{Evidence, PixelEvidence};
     pub use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS, outliers};
     pub use crate::model::lighting::self_shadow::SelfShadow;
     pub use crate::model::plan::Plan;
@@ -129,6 +131,8 @@ pub mod internals {
     pub use crate::passes::globals::{Globals, globals};
     pub use crate::passes::plate::{PlateView, PlateViews};
     pub use crate::plan::{Change, LeftOut, SceneFacts};
+    pub use crate::plates::exposure::match_plates;
+    pub use crate::plates::overlap::compared_plates;
     pub use crate::readback::inject::InjectedVisibility;
     pub use crate::readback::{FloatMap, Map};
 

@@ -4,16 +4,29 @@ use super::inspect::Inspect;
 use super::{Core, CoreError};
 use crate::frame::warning::{Outlier, Warning};
 use crate::model::diagnostics::conditioning::light_conditioning;
+use crate::model::diagnostics::evidence::{Evidence, PixelEvidence, linear_colors};
 use crate::model::diagnostics::outliers::outliers;
 use crate::model::state::grids::MAX_CELLS;
 use crate::model::state::solution::Fit;
+use crate::readback::Map;
+use crate::stage::Stage;
 
-/// Energy of the lights' columns over that of the plate, below which too little real shadow was seen for the direct
-/// fractions: at 0.006 one was off by 0.1, at 0.024 and above by less than 0.01.
-const FAINT_CONTRAST: f32 = 0.01;
-/// Conditioning below which a light's intensity is under-constrained. Two lights in one position have 0.5, ones whose
-/// shadows differ more than 0.99.
+/// Conditioning below which a light's intensity is under-constrained, and its sum over the lights below which too little of
+/// the real shadow is seen. Two lights in one position have 0.5 each, ones whose shadows differ more than 0.99.
 const LEAST_CONDITIONING: f64 = 0.75;
+/// What the lights give of the plate's radiance, below which no real shadow is there: its edge would hardly show.
+const LEAST_DIRECT_FRACTION: f32 = 0.03;
+/// Pixels of real shadow below which its strength is uncertain: with up to 18 of them a direct fraction was off by 0.06 to
+/// 0.16, with 35 and more by at most 0.06.
+const FEWEST_PIXELS: f64 = 25.0;
+/// Share of plate or shadow from which it is unreadable: what is left is no fair sample of it.
+const UNREADABLE: f64 = 0.5;
+/// Share of the toy's pixels that show the plate, from which the toy is not there: one of the table's colour is shaded.
+const NOT_SEEN: f64 = 0.8;
+/// Spread of colours between picture and plate, as a logarithm, from which red and blue may be swapped: more than grain.
+const COLORS_DIFFER: f64 = 0.1;
+/// How much less of it is left when they are.
+const TIMES_LESS: f64 = 2.0;
 
 impl Core {
     /// Waits for the device and returns warnings about what was learned, up to the latest frame.
@@ -24,16 +37,17 @@ impl Core {
         let Some(fit) = self.read_fit()? else {
             return self.read_baseline_warnings();
         };
-        let faint = faint_shadow(&fit);
-        let lights = self.read_under_constrained_lights()?;
-        let is_any = faint.is_none() && !lights.is_empty();
-        let under_constrained = is_any.then_some(Warning::LightsUnderConstrained { lights });
+        let evidence = self.read_evidence(&fit)?;
+        let about_pictures = evidence.as_ref().and_then(unseen);
+        // It explains why the fit knows little.
+        let about_fit = match (&about_pictures, &evidence) {
+            (None, Some(evidence)) => self.about_fit(&fit, evidence)?,
+            _ => None,
+        };
+        let swapped = evidence.as_ref().and_then(swapped);
+        let warnings = about_pictures.into_iter().chain(swapped).chain(about_fit);
         let outliers = self.read_outliers()?.into_iter().map(Warning::Outlier);
-        Ok(faint
-            .into_iter()
-            .chain(under_constrained)
-            .chain(outliers)
-            .collect())
+        Ok(warnings.chain(outliers).collect())
     }
 
     fn read_baseline_warnings(&self) -> Result<Vec<Warning>, CoreError> {
@@ -48,17 +62,72 @@ impl Core {
         Ok(method.read_warnings(&self.gpu, listed)?)
     }
 
-    /// Lights whose intensity is assumed more than seen, as indices in the list that they were given in.
-    fn read_under_constrained_lights(&self) -> Result<Vec<usize>, CoreError> {
+    /// What the pictures of the latest view show.
+    fn read_evidence(&self, fit: &Fit) -> Result<Option<Evidence>, CoreError> {
+        let (Some(model), Some(image)) = (self.model(), self.stage.as_ref().and_then(Stage::learned_image))
+        else {
+            return Ok(None);
+        };
+        let (Some(plate), Some(validity), Some(visibility)) = (
+            self.read_map(Map::Plate)?,
+            self.read_map(Map::Validity)?,
+            self.read_map(Map::PhysicalVisibility)?,
+        ) else {
+            return Ok(None);
+        };
+        let frame = linear_colors(image, &model.region.rect());
+        let n_lights = model.region.plan.n_lights;
+        let pixel = |k: usize| PixelEvidence {
+            frame: frame[k],
+            plate: plate.texels[k],
+            validity: validity.texels[k],
+            visibility: visibility.texels[k][..n_lights]
+                .iter()
+                .copied()
+                .fold(1.0, f32::min),
+        };
+        Ok(Some(Evidence::of((0..frame.len()).map(pixel), &fit.gain)))
+    }
+
+    /// What the fit does not know of the shadow's strength.
+    fn about_fit(&self, fit: &Fit, evidence: &Evidence) -> Result<Option<Warning>, CoreError> {
+        let conditioning = self.read_conditioning()?;
+        let (Some(stage), Some(model), false) = (&self.stage, self.model(), conditioning.is_empty()) else {
+            return Ok(None);
+        };
+        let known: f64 = conditioning.iter().map(|(_, known)| known).sum();
+        if known < LEAST_CONDITIONING {
+            // Where the toy is out of the picture, a warning of the frame says so.
+            let faint = Warning::FaintShadow { assumed: 1.0 - known };
+            return Ok(stage.is_toy_in_picture().then_some(faint));
+        }
+        let direct_fraction = total_direct_fraction(fit, model.region.plan.n_receivers);
+        if direct_fraction < LEAST_DIRECT_FRACTION {
+            return Ok(Some(Warning::NoShadow { direct_fraction }));
+        }
+        let n_pixels = evidence.n_shadow_pixels();
+        if n_pixels < FEWEST_PIXELS && stage.is_first_view() {
+            return Ok(Some(Warning::SmallShadow { n_pixels }));
+        }
+        let unknown = conditioning
+            .iter()
+            .filter(|(_, known)| *known < LEAST_CONDITIONING);
+        let lights: Vec<usize> = unknown.map(|(light, _)| *light).collect();
+        Ok((!lights.is_empty()).then_some(Warning::LightsUnderConstrained { lights }))
+    }
+
+    /// How far each light's intensity is seen rather than assumed, with its index in the list that it was given in; without
+    /// those inside the toy, which cast no shadow.
+    fn read_conditioning(&self) -> Result<Vec<(usize, f64)>, CoreError> {
         let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
             return Ok(Vec::new());
         };
         let sums = self.gpu.read_buffer(&model.state.fit_sums)?;
         let sums: Vec<f32> = bytemuck::pod_collect_to_vec(&sums);
         let conditioning = light_conditioning(&sums, model.region.plan.n_lights);
-        let lights = stage.light_indices().iter().zip(conditioning);
+        let lights = stage.light_indices().iter().copied().zip(conditioning);
         Ok(lights
-            .filter_map(|(light, conditioning)| (conditioning < LEAST_CONDITIONING).then_some(*light))
+            .filter(|(light, _)| !stage.lights_inside().contains(light))
             .collect())
     }
 
@@ -76,8 +145,31 @@ impl Core {
     }
 }
 
-fn faint_shadow(fit: &Fit) -> Option<Warning> {
-    let contrasts = fit.receivers.iter().flat_map(|receiver| &receiver.contrast[..3]);
-    let contrast = contrasts.copied().fold(0.0, f32::max);
-    (contrast < FAINT_CONTRAST).then_some(Warning::FaintShadow { contrast })
+/// What all lights give of the plate's radiance, on the receiver and in the channel where it is most.
+fn total_direct_fraction(fit: &Fit, n_receivers: u32) -> f32 {
+    let total = |lights: &[[f32; 4]], channel: usize| lights.iter().map(|light| light[channel]).sum();
+    let receivers = fit.receivers.iter().take(n_receivers as usize);
+    receivers
+        .flat_map(|receiver| [0, 1, 2].map(|channel| total(&receiver.direct_fraction, channel)))
+        .fold(0.0, f32::max)
+}
+
+/// What the pictures do not show, the first that explains the others.
+fn unseen(evidence: &Evidence) -> Option<Warning> {
+    let at_least = |share: Option<f64>, least: f64| share.filter(|share| *share >= least);
+    let plate = at_least(evidence.unreadable_plate(), UNREADABLE);
+    let toy = at_least(evidence.toy_as_plate(), NOT_SEEN);
+    let shadow = at_least(evidence.unreadable_shadow(), UNREADABLE);
+    plate
+        .map(|fraction| Warning::PlateUnreadable { fraction })
+        .or(toy.map(|fraction| Warning::ToyNotSeen { fraction }))
+        .or(shadow.map(|fraction| Warning::ShadowUnreadable { fraction }))
+}
+
+fn swapped(evidence: &Evidence) -> Option<Warning> {
+    let [as_they_are, swapped] = evidence.color_spreads()?;
+    let is_swapped = as_they_are > COLORS_DIFFER && as_they_are > TIMES_LESS * swapped;
+    is_swapped.then(|| Warning::RedAndBlueSwapped {
+        times: as_they_are / swapped,
+    })
 }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::words::Listed;
+
 /// A degraded mode: the picture is the best that can be had, for a reason.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -28,15 +30,50 @@ pub enum Warning {
         /// How many shadows stay as photographed.
         n_lights: usize,
     },
-    /// A light does not stand above the receiver, so it casts no shadow there.
-    LightBelowReceiver {
-        /// Its index in the list of lights: the frame's own, or the scene's.
-        light: usize,
+    /// Lights do not stand above any receiver, so they cast no shadow there.
+    LightsBelowReceivers {
+        /// Their indices in the list of lights: the frame's own, or the scene's.
+        lights: Vec<usize>,
     },
-    /// Too little real shadow is seen for the intensities of the lights.
+    /// Lights stand inside the real toy, which lets none of their light out.
+    LightsInsideToy {
+        /// Their indices in the list of lights: the frame's own, or the scene's.
+        lights: Vec<usize>,
+    },
+    /// Too little real shadow is seen for the strength of the new one.
     FaintShadow {
-        /// Energy of the lights' columns over that of the plate.
-        contrast: f32,
+        /// How much of that strength is assumed, from 0 to 1: 1 less the sum of the lights' conditioning.
+        assumed: f64,
+    },
+    /// The real shadow is seen on hardly a pixel, and by no earlier view.
+    SmallShadow {
+        /// Pixels that show it, each as far as it is hidden from a light.
+        n_pixels: f64,
+    },
+    /// Where the listed lights should cast the real shadow, the picture is as bright as the plate.
+    NoShadow {
+        /// What the lights give of the plate's radiance, from 0 to 1.
+        direct_fraction: f32,
+    },
+    /// The real shadow is too dark or too bright in the picture to be measured.
+    ShadowUnreadable {
+        /// Share of it, from 0 to 1.
+        fraction: f64,
+    },
+    /// The plate is too dark or too bright to be compared with.
+    PlateUnreadable {
+        /// Share of the receivers' pixels, from 0 to 1.
+        fraction: f64,
+    },
+    /// Where the real toy should be, the picture shows what the plate does.
+    ToyNotSeen {
+        /// Share of the toy's pixels, from 0 to 1.
+        fraction: f64,
+    },
+    /// Red and blue are in another order in the picture than in the plate.
+    RedAndBlueSwapped {
+        /// How many times better the colours agree when they are swapped.
+        times: f64,
     },
     /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
     /// where the camera does not see it.
@@ -55,6 +92,8 @@ pub enum Warning {
     Outlier(Outlier),
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
+    /// The real toy is out of the picture, but what is drawn is not.
+    ToyOutOfPicture,
     /// The camera's centre is not above the receiver.
     CameraBelowReceiver,
 }
@@ -72,36 +111,67 @@ impl fmt::Display for Warning {
             Self::PlatePartial { fraction } => write!(
                 f,
                 "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
-                100.0 * fraction
+                // Not 100 % where anything is missing.
+                (100.0 * fraction).floor()
             ),
-            Self::ReceiversLeftOut { names } => {
-                write!(
-                    f,
-                    "the shadow on {} stays as photographed: the preset handles fewer receivers",
-                    names.join(", ")
-                )
-            }
+            Self::ReceiversLeftOut { names } => write!(
+                f,
+                "the shadow on {} stays as photographed: the preset handles fewer receivers",
+                listed(names, ", ")
+            ),
             Self::LightsLeftOut { n_lights } => {
                 write!(
                     f,
                     "the shadows of the last {n_lights} lights stay as photographed: the preset handles fewer"
                 )
             }
-            Self::LightBelowReceiver { light } => {
-                write!(f, "light {light} is above none of the receivers and is left out")
-            }
-            Self::FaintShadow { contrast } => write!(
+            Self::LightsBelowReceivers { lights } => write!(
                 f,
-                "little real shadow is seen (contrast {contrast:.4}): the strength of the new one is partly assumed"
+                "left out, since they stand above none of the receivers: {}",
+                lights_in_words(lights)
+            ),
+            Self::LightsInsideToy { lights } => write!(
+                f,
+                "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
+                lights_in_words(lights)
+            ),
+            Self::FaintShadow { assumed } => write!(
+                f,
+                "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
+                100.0 * assumed
+            ),
+            Self::SmallShadow { n_pixels } => write!(
+                f,
+                "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
+            ),
+            Self::NoShadow { direct_fraction } => write!(
+                f,
+                "where the real shadow should be, the picture is as bright as the plate ({:.1} % is the lights'): check lights and toy, and whether a light is on",
+                100.0 * direct_fraction
+            ),
+            Self::ShadowUnreadable { fraction } => write!(
+                f,
+                "{:.0} % of the real shadow is too dark or too bright in the picture to be measured: the strength of the new one is partly assumed; take it at another exposure",
+                100.0 * fraction
+            ),
+            Self::PlateUnreadable { fraction } => write!(
+                f,
+                "{:.0} % of the plate is too dark or too bright to compare the picture with: take it again at another exposure",
+                100.0 * fraction
+            ),
+            Self::ToyNotSeen { fraction } => write!(
+                f,
+                "the picture shows the plate where the real toy should be ({:.0} % of it): check whether it is there, and its pose",
+                100.0 * fraction
+            ),
+            Self::RedAndBlueSwapped { times } => write!(
+                f,
+                "picture and plate agree {times:.1} times better with red and blue swapped: check the order of channels in both"
             ),
             Self::LightsUnderConstrained { lights } => write!(
                 f,
                 "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
-                lights
-                    .iter()
-                    .map(|light| format!("light {light}"))
-                    .collect::<Vec<_>>()
-                    .join(" and ")
+                lights_in_words(lights)
             ),
             Self::NothingToSample => f.write_str(
                 "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",
@@ -109,19 +179,27 @@ impl fmt::Display for Warning {
             Self::ShadowsUnseen { unseen } => write!(
                 f,
                 "no real shadow is seen of {}: the new one there has the shade of others",
-                unseen
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect::<Vec<_>>()
-                    .join(", ")
+                listed(unseen, ", ")
             ),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
+            Self::ToyOutOfPicture => f.write_str(
+                "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose",
+            ),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
         }
     }
+}
+
+fn listed<'a, T>(items: &'a [T], between: &'static str) -> Listed<'a, T> {
+    Listed { items, between }
+}
+
+fn lights_in_words(lights: &[usize]) -> String {
+    let names: Vec<String> = lights.iter().map(|light| format!("light {light}")).collect();
+    listed(&names, ", ").to_string()
 }
 
 /// A place on a receiver that just some lights do not reach.

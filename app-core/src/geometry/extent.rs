@@ -34,8 +34,12 @@ impl Extent {
         self.max_px = self.max_px.max(at.truncate() / at.z);
     }
 
-    /// The rectangle around all points, within the image; none when they are out of the picture.
+    /// The rectangle around all points, within the image; none when they are out of the picture, or all behind the camera.
     pub(crate) fn rect(&self, image_px: UVec2) -> Option<PixelRect> {
+        let is_any_before = self.min_px.cmple(self.max_px).all();
+        if !is_any_before {
+            return None;
+        }
         if self.is_endless {
             return Some(PixelRect {
                 origin_px: UVec2::ZERO,

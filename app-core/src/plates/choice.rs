@@ -39,9 +39,10 @@ pub(crate) fn choose(
     }
     let direction = |view: &View| (view.camera_in(&DMat4::IDENTITY) - toy_in_world).normalize_or_zero();
     let from_here = direction(view);
-    let cosine = |index: &usize| direction(&view_of(scene, &plates[*index])).dot(from_here);
+    let cosine = |plate: &Plate| direction(&view_of(scene, plate)).dot(from_here);
+    let cosines: Vec<f64> = plates.iter().map(cosine).collect();
     let mut indices: Vec<usize> = (0..plates.len()).collect();
-    indices.sort_by(|a, b| cosine(b).total_cmp(&cosine(a)));
+    indices.sort_by(|a, b| cosines[*b].total_cmp(&cosines[*a]));
     indices.truncate(MAX_PLATES);
     // In the same order whatever the camera, so that they need not be uploaded anew.
     indices.sort_unstable();

@@ -3,18 +3,15 @@
 use glam::{DVec2, DVec3, UVec2};
 
 use crate::geometry::anchored::AnchoredReceiver;
-use crate::geometry::color::linear_from_srgb;
 use crate::geometry::rect::PixelRect;
-use crate::plates::choice::view_of;
-use crate::plates::sight::Sight;
-use crate::scene::{Image, Plate, Scene};
+use crate::plates::joint::{PairGain, joint_gains};
+use crate::plates::overlap::compared;
+use crate::plates::shot::{Shot, decoded, shots_of};
+use crate::plates::sight::PointOn;
+use crate::scene::{Plate, Scene};
 
 /// Sample points along each side of a plate, at which its exposure is compared with another's.
 const N_COMPARED: u32 = 48;
-/// Half the side of the square that is averaged at each: misaligned plates still agree.
-const COMPARED_RADIUS_PX: i64 = 3;
-/// Codes that are neither mostly quantisation nor perhaps clipped.
-const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
 /// Difference between two plates, relative, at which a sample counts half.
 const CAUCHY_SCALE: f64 = 0.05;
 /// Minimum number of samples of a gain.
@@ -22,21 +19,31 @@ const FEWEST_COMPARED: usize = 16;
 /// Steps of the reweighted least squares.
 const N_STEPS: usize = 8;
 
-/// Gain of each plate to the exposure of the first, per channel of linear light; 1 where they share no sample.
-pub(crate) fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3> {
+/// Gain of each plate to the exposure of the first that it is connected with by pairs that share enough, per channel of linear
+/// light: 1 for that one.
+#[must_use]
+pub fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3> {
     let decoded = decoded();
-    let mut gains: Vec<DVec3> = Vec::new();
-    for (index, plate) in scene.plates.iter().enumerate() {
-        let mut pairs = Vec::new();
-        for (other, gain) in scene.plates.iter().zip(&gains) {
-            pairs.extend(
-                shared_places((scene, receivers), plate, other, &decoded)
-                    .map(|shared| (shared.here, *gain * shared.there)),
-            );
+    let shots = shots_of(scene, receivers);
+    let mut pairs = Vec::new();
+    for (later, others) in compared(&shots).into_iter().enumerate() {
+        if others.is_empty() {
+            continue;
         }
-        gains.push(if index == 0 { DVec3::ONE } else { gain_of(&pairs) });
+        let seen = seen_places(&shots[later], &decoded);
+        for earlier in others {
+            let shared: Vec<_> = shared_places(&seen, &shots[earlier], &decoded)
+                .map(|shared| (shared.here, shared.there))
+                .collect();
+            pairs.extend(gain_of(&shared).map(|gain| PairGain {
+                plates: [later, earlier],
+                gain,
+                #[allow(clippy::cast_precision_loss, reason = "at most 48 x 48")]
+                n_samples: shared.len() as f64,
+            }));
+        }
     }
-    gains
+    joint_gains(scene.plates.len(), &pairs)
 }
 
 /// Gain of the scene's first plate to the exposure of a frame, per channel of linear light; 1 where they share no
@@ -50,14 +57,16 @@ pub(crate) fn match_frame(
     within: &PixelRect,
 ) -> DVec3 {
     let decoded = decoded();
+    let seen = seen_places(&Shot::new(scene, frame, receivers), &decoded);
     let shared: Vec<Shared> = chosen
         .iter()
         .flat_map(|index| {
-            let shared = shared_places((scene, receivers), frame, &scene.plates[*index], &decoded);
-            shared.map(|one| Shared {
+            let plate = Shot::new(scene, &scene.plates[*index], receivers);
+            let shared = shared_places(&seen, &plate, &decoded).map(|one| Shared {
                 there: gains[*index] * one.there,
                 ..one
-            })
+            });
+            shared.collect::<Vec<_>>()
         })
         .collect();
     let (min, max) = (
@@ -67,11 +76,17 @@ pub(crate) fn match_frame(
     let is_outside = |one: &&Shared| one.px.cmplt(min).any() || one.px.cmpge(max).any();
     let pair = |one: &Shared| (one.there, one.here);
     let outside: Vec<_> = shared.iter().filter(is_outside).map(pair).collect();
-    if outside.len() >= FEWEST_COMPARED {
-        gain_of(&outside)
-    } else {
-        gain_of(&shared.iter().map(pair).collect::<Vec<_>>())
-    }
+    gain_of(&outside)
+        .or_else(|| gain_of(&shared.iter().map(pair).collect::<Vec<_>>()))
+        .unwrap_or(DVec3::ONE)
+}
+
+/// A point that a picture shows.
+struct Seen {
+    px: DVec2,
+    point: PointOn,
+    /// Mean colour around it.
+    color: DVec3,
 }
 
 /// A point that two pictures show.
@@ -83,64 +98,44 @@ struct Shared {
     there: DVec3,
 }
 
-/// Points that both of two pictures show.
+/// Points that a picture shows, at the sample points.
+fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<Seen> {
+    let spacing = shot.size_px() / f64::from(N_COMPARED);
+    let places = (0..N_COMPARED * N_COMPARED).map(|k| UVec2::new(k % N_COMPARED, k / N_COMPARED));
+    let seen = places.filter_map(|at| {
+        let px = (at.as_dvec2() + 0.5) * spacing;
+        Some(Seen {
+            px,
+            point: shot.nearest(px)?,
+            color: shot.mean_color(px, linear_of_code)?,
+        })
+    });
+    seen.collect()
+}
+
+/// Those that another picture shows too.
 fn shared_places<'a>(
-    (scene, receivers): (&'a Scene, &'a [AnchoredReceiver]),
-    plate: &'a Plate,
-    other: &'a Plate,
+    seen: &'a [Seen],
+    other: &'a Shot<'_>,
     linear_of_code: &'a [f64; 256],
 ) -> impl Iterator<Item = Shared> + 'a {
-    let [sight, other_sight] = [plate, other].map(|plate| Sight::new(&view_of(scene, plate), receivers));
-    let spacing = DVec2::new(f64::from(scene.width_px), f64::from(scene.height_px)) / f64::from(N_COMPARED);
-    let places = (0..N_COMPARED * N_COMPARED).map(|k| UVec2::new(k % N_COMPARED, k / N_COMPARED));
-    places.filter_map(move |at| {
-        let px = (at.as_dvec2() + 0.5) * spacing;
-        let other_px = other_sight.image_px_of(sight.nearest(px)?)?;
-        let here = mean_color(&plate.image, px, linear_of_code)?;
-        let there = mean_color(&other.image, other_px, linear_of_code)?;
-        Some(Shared { px, here, there })
+    seen.iter().filter_map(move |seen| {
+        let there = other.mean_color(other.image_px_of(seen.point)?, linear_of_code)?;
+        Some(Shared {
+            px: seen.px,
+            here: seen.color,
+            there,
+        })
     })
 }
 
-/// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright.
-fn mean_color(image: &Image, px: DVec2, linear_of_code: &[f64; 256]) -> Option<DVec3> {
-    #[allow(clippy::cast_possible_truncation, reason = "a pixel of an image")]
-    let centre = [px.x.floor() as i64, px.y.floor() as i64];
-    let side = 2 * COMPARED_RADIUS_PX + 1;
-    let mut sum = DVec3::ZERO;
-    for k in 0..side * side {
-        let x = u32::try_from(centre[0] + k % side - COMPARED_RADIUS_PX).ok()?;
-        let y = u32::try_from(centre[1] + k / side - COMPARED_RADIUS_PX).ok()?;
-        if x >= image.width_px || y >= image.height_px {
-            return None;
-        }
-        let first = 4 * (y as usize * image.width_px as usize + x as usize);
-        let codes = image.rgba8.get(first..first + 3)?;
-        if codes.iter().any(|code| !USABLE_CODES.contains(code)) {
-            return None;
-        }
-        sum += DVec3::from_array([0, 1, 2].map(|channel| linear_of_code[usize::from(codes[channel])]));
-    }
-    #[allow(clippy::cast_precision_loss, reason = "49")]
-    let n_pixels = (side * side) as f64;
-    Some(sum / n_pixels)
-}
-
-/// Linear light of each code.
-fn decoded() -> [f64; 256] {
-    let mut decoded = [0.0; 256];
-    for (code, linear) in (0..=u8::MAX).zip(&mut decoded) {
-        *linear = f64::from(linear_from_srgb(f32::from(code) / 255.0));
-    }
-    decoded
-}
-
-/// The gain from the first of each pair to the second, per channel; 1 where there are too few.
-fn gain_of(pairs: &[(DVec3, DVec3)]) -> DVec3 {
+/// The gain from the first of each pair to the second, per channel; none where there are too few.
+fn gain_of(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
     if pairs.len() < FEWEST_COMPARED {
-        return DVec3::ONE;
+        return None;
     }
-    DVec3::from_array([0, 1, 2].map(|channel| robust_gain(pairs, channel)))
+    let channels = [0, 1, 2].map(|channel| robust_gain(pairs, channel));
+    Some(DVec3::from_array(channels))
 }
 
 /// The gain from the first of each pair to the second, by reweighted least squares that start from the median of the

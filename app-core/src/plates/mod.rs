@@ -2,5 +2,8 @@
 
 pub(crate) mod choice;
 pub(crate) mod exposure;
+mod joint;
+pub(crate) mod overlap;
+mod shot;
 mod sight;
 pub(crate) mod store;

@@ -9,6 +9,7 @@ use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
 use super::{Camera, Intrinsics, Light};
+use crate::words::Number;
 
 /// A value that is refused, and the path of its field.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,7 +36,7 @@ impl InputError {
 #[non_exhaustive]
 pub enum FieldError {
     /// A number that is too small, too large or not a number.
-    #[error("{value} is not from {min} to {max}")]
+    #[error("{} is not from {} to {}", Number(*value), Number(*min), Number(*max))]
     Range {
         /// The number as written.
         value: f64,
@@ -47,6 +48,14 @@ pub enum FieldError {
     /// A list that needs an entry.
     #[error("the list is empty, but needs at least one entry")]
     Empty,
+    /// A list with more entries than are handled.
+    #[error("the list has {n} entries, but at most {max} are handled")]
+    TooMany {
+        /// Its length.
+        n: usize,
+        /// Longest that is handled.
+        max: usize,
+    },
     /// A field that this kind of entry needs.
     #[error("missing, but needed for this kind")]
     Missing,
@@ -138,6 +147,15 @@ pub(crate) fn picture_size(width_px: u32, height_px: u32) -> Result<(), FieldErr
         });
     }
     Ok(())
+}
+
+/// A list of a length that is handled.
+pub(crate) fn at_most(n: usize, max: usize) -> Result<(), FieldError> {
+    if n <= max {
+        Ok(())
+    } else {
+        Err(FieldError::TooMany { n, max })
+    }
 }
 
 /// A point, in metres.

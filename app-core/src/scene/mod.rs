@@ -20,6 +20,10 @@ pub const MAX_LIGHTS: usize = 4;
 /// Receivers that shadows are moved on; on further ones they stay as photographed, with a warning.
 pub const MAX_RECEIVERS: usize = 4;
 
+/// Plates that a scene may have. Each is held in memory as it was decoded, 4 bytes a pixel, and is compared with those that
+/// overlap it when the scene is set.
+pub const MAX_SCENE_PLATES: usize = 512;
+
 /// The inputs that precede the first frame: toy, receivers, lights, plates.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -40,7 +44,7 @@ pub struct Scene {
     pub receivers: Vec<Receiver>,
     /// Known lights, unless a frame brings its own. Without any, frames pass through.
     pub lights: Vec<Light>,
-    /// Pictures of the scene without the toy. May be empty.
+    /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
     pub plates: Vec<Plate>,
     /// A light probe lying in the scene, where there is one.
     pub probe: Option<FresnelLens>,
@@ -62,6 +66,7 @@ impl Scene {
         for (index, light) in self.lights.iter().enumerate() {
             check::light(&format!("lights[{index}]"), light)?;
         }
+        InputError::at("plates", check::at_most(self.plates.len(), MAX_SCENE_PLATES))?;
         for (index, plate) in self.plates.iter().enumerate() {
             check::camera(&format!("plates[{index}].camera"), &plate.camera)?;
         }

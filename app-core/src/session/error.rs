@@ -5,6 +5,7 @@ use thiserror::Error;
 use super::files::FileError;
 use crate::scene::FieldError;
 use crate::toy::ToyError;
+use crate::words::{Message, Text};
 
 /// A session that cannot be used, or a frame of it.
 #[derive(Debug, Error)]
@@ -36,10 +37,10 @@ pub enum SessionErrorKind {
     #[error(transparent)]
     File(#[from] FileError),
     /// Not JSON, or not the JSON that the format asks for.
-    #[error("{0}")]
+    #[error("{}", Message(&.0.to_string()))]
     Json(#[from] serde_json::Error),
     /// Another format.
-    #[error("the format is {found:?}, but only {supported:?} can be read")]
+    #[error("the format is {:?}, but only {supported:?} can be read", Text(found).to_string())]
     Format {
         /// The format as written.
         found: String,

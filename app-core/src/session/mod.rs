@@ -15,6 +15,7 @@ use thiserror::Error;
 
 use crate::scene::{Camera, Image, Pose, Scene};
 use crate::toy::ToyWarning;
+use crate::words::Number;
 
 pub use crate::scene::FieldError;
 pub use capture::Capture;
@@ -86,7 +87,11 @@ pub struct Truth {
 #[non_exhaustive]
 pub enum SessionWarning {
     /// A time lay beyond the end of its clip; the clip's last moment is shown.
-    #[error("{file} ({field}): {asked_secs} s is beyond the end of the clip, {used_secs} s is used")]
+    #[error(
+        "{file} ({field}): {} s is beyond the end of the clip, {} s is used",
+        Number(*asked_secs),
+        Number(*used_secs)
+    )]
     TimeClamped {
         /// File that holds the time.
         file: String,

@@ -46,6 +46,8 @@ pub(crate) struct Stage {
     receiver_indices: Vec<usize>,
     receivers_warning: Option<Warning>,
     lights: Lights,
+    /// Those of them that stand inside the physical toy, as indices in the list that they were given in, once it is known.
+    lights_inside: Option<Vec<usize>>,
     /// Where the object stands that was learned from.
     world_from_object: DMat4,
     /// Whether the physical pose on the device is that one.
@@ -81,6 +83,8 @@ struct MethodState {
     image: Option<Arc<Image>>,
     /// Of the lights that were learned under, in the list that they were given in.
     light_indices: Vec<usize>,
+    /// It was learned from one view alone.
+    is_first_view: bool,
     /// Visibilities were injected after it was learned.
     is_visibility_outdated: bool,
     /// The object or the lights moved after it was learned.
@@ -125,6 +129,7 @@ impl Stage {
             present: present::Pass::new(gpu),
             state: None,
             reached_rects: Vec::new(),
+            lights_inside: None,
             lights: Lights::new(&scene.lights, &receivers.anchored),
             receivers: receivers.anchored,
             receiver_indices: receivers.indices,
@@ -163,6 +168,34 @@ impl Stage {
         self.state.as_ref().map_or(&[], |state| &state.light_indices)
     }
 
+    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    pub(crate) fn lights_inside(&self) -> &[usize] {
+        self.lights_inside.as_deref().unwrap_or_default()
+    }
+
+    /// Whether no more than one view was learned from.
+    pub(crate) fn is_first_view(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| state.is_first_view)
+    }
+
+    /// Whether the view that was learned from last shows the real toy.
+    pub(crate) fn is_toy_in_picture(&self) -> bool {
+        let view = self.state.as_ref().map(|state| &state.view);
+        view.is_some_and(|view| self.shows_toy(view))
+    }
+
+    /// Whether the box around the physical toy is in the picture.
+    fn shows_toy(&self, view: &View) -> bool {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let rect = view.image_rect(&world_from_anchor, &self.physical_bounds);
+        rect.is_some()
+    }
+
+    /// The picture that was learned from last.
+    pub(crate) fn learned_image(&self) -> Option<&Image> {
+        self.state.as_ref()?.image.as_deref()
+    }
+
     /// Indices, in the scene's list, of the receivers in use.
     pub(crate) fn receiver_indices(&self) -> &[usize] {
         &self.receiver_indices
@@ -198,12 +231,18 @@ impl Stage {
     ) -> Result<FrameReport, ToyError> {
         self.take_image(recorder.gpu, &input.image);
         self.follow_placement(recorder.gpu, input)?;
-        let about_scene = self.receivers_warning.iter().chain(&self.lights.warnings);
+        let about_scene = self
+            .receivers_warning
+            .iter()
+            .chain(&self.lights.warnings)
+            .cloned();
+        let inside = self.lights_inside().to_vec();
+        let about_lights = (!inside.is_empty()).then_some(Warning::LightsInsideToy { lights: inside });
         let mut report = FrameReport {
             ran: Vec::new(),
             skipped: Vec::new(),
             region: None,
-            warnings: about_scene.cloned().collect(),
+            warnings: about_scene.chain(about_lights).collect(),
         };
         let made_by = match self.footprint(input)? {
             Err(reason) => {
@@ -265,6 +304,9 @@ impl Stage {
         report.skipped.extend_from_slice(method.left_out());
         report.region = Some(method.region());
         report.warnings.extend(self.plate_warning(footprint));
+        if !self.shows_toy(&footprint.view) {
+            report.warnings.push(Warning::ToyOutOfPicture);
+        }
     }
 
     /// Lays the region over the camera frame, or passes the frame through where no method ran.

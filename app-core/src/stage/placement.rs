@@ -7,6 +7,7 @@ use super::supported::Lights;
 use crate::frame::input::FrameInput;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::displacement::between_poses;
+use crate::geometry::inside::is_inside;
 use crate::gpu::context::Gpu;
 use crate::scene::Light;
 use crate::toy::ToyError;
@@ -32,11 +33,42 @@ impl Stage {
             self.reach = None;
             self.reached_rects.clear();
             self.cached_footprint = None;
+            self.lights_inside = None;
             if let Some(state) = &mut self.state {
                 state.is_placement_outdated = true;
             }
         }
+        if self.lights_inside.is_none() {
+            self.lights_inside = Some(self.find_lights_inside()?);
+        }
         Ok(())
+    }
+
+    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    fn find_lights_inside(&mut self) -> Result<Vec<usize>, ToyError> {
+        let (anchor_from_world, bounds) = (self.layout().world_from_anchor().inverse(), self.physical_bounds);
+        let mut inside = Vec::new();
+        for (index, light) in self.lights.indices.iter().zip(&self.lights.used) {
+            let Light::Sphere {
+                position_in_world, ..
+            } = light
+            else {
+                continue;
+            };
+            let at = anchor_from_world.transform_point3(*position_in_world);
+            if at.cmpgt(bounds.min).all() && at.cmplt(bounds.max).all() {
+                inside.push((*index, at));
+            }
+        }
+        if inside.is_empty() {
+            return Ok(Vec::new());
+        }
+        let anchor_from_object = self.anchor_from_object();
+        let toy = &self.scene.toy;
+        toy.pose(&self.scene.physical_pose, &anchor_from_object, &mut self.posed)?;
+        let positions = &self.posed.positions;
+        inside.retain(|(_, at)| is_inside(positions, toy.indices(), *at));
+        Ok(inside.into_iter().map(|(index, _)| index).collect())
     }
 
     fn is_object_moved(&self, input: &FrameInput) -> bool {

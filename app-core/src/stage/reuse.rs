@@ -118,6 +118,7 @@ impl Stage {
             exposure: input.exposure,
             image: None,
             light_indices: self.lights.indices.clone(),
+            is_first_view: true,
             is_visibility_outdated: false,
             is_placement_outdated: false,
         });
@@ -142,6 +143,7 @@ impl Stage {
             _ => return,
         }
         state.view = footprint.view.clone();
+        state.is_first_view = false;
         self.state = Some(state);
     }
 
@@ -163,6 +165,7 @@ impl Stage {
                 let light_points = self.light_points(&model.region.plan);
                 model.relocate(gpu, light_points, &self.toy.physical.around);
             }
+            state.is_first_view = true;
             state.light_indices.clone_from(&self.lights.indices);
             self.state = Some(state);
         }

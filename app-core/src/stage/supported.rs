@@ -94,10 +94,10 @@ impl Lights {
         };
         let (mut indices, below): (Vec<usize>, Vec<usize>) =
             (0..listed.len()).partition(|index| is_above_any(&listed[*index]));
-        let below = below
-            .into_iter()
-            .map(|light| Warning::LightBelowReceiver { light });
-        let mut warnings: Vec<Warning> = below.collect();
+        let mut warnings = Vec::new();
+        if !below.is_empty() {
+            warnings.push(Warning::LightsBelowReceivers { lights: below });
+        }
         if indices.len() > MAX_LIGHTS {
             warnings.push(Warning::LightsLeftOut {
                 n_lights: indices.len() - MAX_LIGHTS,

@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::words::{Listed, Number, Text};
+
 /// A toy that cannot be used, or a request that it cannot meet.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -19,7 +21,7 @@ pub enum ToyError {
         problem: ToyProblem,
     },
     /// No clip has this name.
-    #[error("{file}: clip: none is called {name:?}; it has {}", Listed(known))]
+    #[error("{file}: clip: none is called {:?}; it has {}", Text(name).to_string(), Names(known))]
     UnknownClip {
         /// The file as named by the caller.
         file: String,
@@ -39,7 +41,7 @@ pub enum ToyError {
         n_clips: usize,
     },
     /// No node has this name.
-    #[error("{file}: node: none is called {name:?}; it has {}", Listed(known))]
+    #[error("{file}: node: none is called {:?}; it has {}", Text(name).to_string(), Names(known))]
     UnknownNode {
         /// The file as named by the caller.
         file: String,
@@ -69,7 +71,7 @@ pub enum ToyError {
         reason: &'static str,
     },
     /// A time before the clip, or none at all.
-    #[error("{file}: clip time: {time_secs} s is not a time from 0 on")]
+    #[error("{file}: clip time: {} s is not a time from 0 on", Number(*time_secs))]
     Time {
         /// The file as named by the caller.
         file: String,
@@ -346,14 +348,17 @@ pub enum ToyWarning {
 }
 
 /// Names in a sentence.
-struct Listed<'a>(&'a [String]);
+struct Names<'a>(&'a [String]);
 
-impl fmt::Display for Listed<'_> {
+impl fmt::Display for Names<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
-            write!(f, "no clips")
-        } else {
-            write!(f, "{}", self.0.join(", "))
+            return write!(f, "none");
         }
+        let names = Listed {
+            items: self.0,
+            between: ", ",
+        };
+        names.fmt(f)
     }
 }

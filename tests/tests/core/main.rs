@@ -10,3 +10,4 @@ mod refused;
 mod reuse;
 mod scale;
 mod still;
+mod warnings;

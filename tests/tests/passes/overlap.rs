@@ -108,7 +108,7 @@ fn lights_are_numbered_as_they_are_listed() {
     let warnings = shot.core.read_fit_warnings().unwrap();
     assert_eq!(warnings, [Warning::ShadowsUnseen { unseen }]);
     let warnings = shot.core.frame(&shot.input).unwrap().warnings;
-    assert_eq!(warnings, [Warning::LightBelowReceiver { light: 0 }]);
+    assert_eq!(warnings, [Warning::LightsBelowReceivers { lights: vec![0] }]);
 }
 
 #[test]

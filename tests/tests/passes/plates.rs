@@ -20,11 +20,11 @@ use crate::setups::{Setup, WALL};
 use crate::stand::Stand;
 
 /// Offsets of cameras from what they look at: the view's, one beside it, and one from the other side.
-const HERE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
+pub(crate) const HERE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
 const BESIDE: DVec3 = DVec3::new(0.26, 0.36, 0.34);
 const AWAY: DVec3 = DVec3::new(-0.4, 0.42, 0.12);
 
-fn setup() -> Setup {
+pub(crate) fn setup() -> Setup {
     Setup {
         image_px: UVec2::new(231, 173),
         ..WALL
@@ -166,7 +166,7 @@ fn what_no_plate_shows_is_not_there() {
 }
 
 /// A picture of one code, which tells nothing of its exposure when it is white.
-fn flat(code: u8) -> Arc<Image> {
+pub(crate) fn flat(code: u8) -> Arc<Image> {
     let UVec2 { x, y } = setup().image_px;
     Arc::new(Image {
         width_px: x,
@@ -235,7 +235,7 @@ fn exposures_of_plates_are_matched_to_the_first() {
 }
 
 /// A camera turned about its own vertical axis, to the left, by so much.
-fn turned(camera: &Camera, left_rad: f64) -> Camera {
+pub(crate) fn turned(camera: &Camera, left_rad: f64) -> Camera {
     Camera {
         world_from_camera: camera.world_from_camera * DMat4::from_rotation_y(left_rad),
         ..*camera

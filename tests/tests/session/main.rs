@@ -139,6 +139,7 @@ fn each_wrong_value_is_named() {
         matrix[at] = value;
         matrix
     };
+    let plate = &good_index()["backgrounds"][0];
     #[rustfmt::skip] // One case a line.
     let cases = [
         ("format", json!("shadow-movie"), "only \"shadow-capture\" can be read"),
@@ -173,6 +174,7 @@ fn each_wrong_value_is_named() {
         ("frames[1].intrinsics.fx", json!(-1), "-1 is not from"),
         ("frames[1].world_from_object", with(5, json!(-1)), "mirrors"),
         ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),
+        ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but at most 512"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),
         ("frames[0].animation.time", json!(-0.1), "-0.1 is not from 0"),
         ("probe.exposure_ratio", json!(0), "0 is not from"),

@@ -11,7 +11,9 @@ use super::record::{
     BackgroundRecord, IntrinsicsRecord, LightKind, LightRecord, ProbeRecord, ReceiverRecord, SurfaceRecord,
 };
 use crate::scene::check;
-use crate::scene::{Camera, FieldError, FresnelLens, Image, Intrinsics, Light, Plate, Receiver, Surface};
+use crate::scene::{
+    Camera, FieldError, FresnelLens, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
+};
 use crate::session::error::SessionError;
 
 /// Pixels of all plates together, which stay in memory: 1 GiB.
@@ -107,6 +109,7 @@ pub(super) fn plates(
     intrinsics: &Intrinsics,
     records: &[BackgroundRecord],
 ) -> Result<Vec<Plate>, SessionError> {
+    at("backgrounds", check::at_most(records.len(), MAX_SCENE_PLATES))?;
     let mut pictures: HashMap<&str, Arc<Image>> = HashMap::new();
     let mut plates = Vec::new();
     for (i, record) in records.iter().enumerate() {

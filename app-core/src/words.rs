@@ -1,0 +1,98 @@
+//! Numbers, lists and texts in messages, at a length that a person reads.
+
+use std::fmt;
+
+/// Significant digits of a number.
+const N_DIGITS: usize = 6;
+/// Names of a list before the rest is counted.
+const N_NAMES: usize = 5;
+/// Characters of a text that comes from a file.
+const N_CHARACTERS: usize = 160;
+
+/// A number with at most six significant digits, in powers of ten where it is very large or small.
+pub(crate) struct Number(pub(crate) f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = format!("{:.*e}", N_DIGITS - 1, self.0);
+        // Not a number, or an infinity.
+        let Some((_, exponent)) = rounded.split_once('e') else {
+            return write!(f, "{}", self.0);
+        };
+        let value: f64 = rounded.parse().map_err(|_| fmt::Error)?;
+        let is_short = exponent
+            .parse()
+            .is_ok_and(|exponent: i32| (-4..=6).contains(&exponent));
+        if is_short || value == 0.0 {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
+
+/// Some words of a list, and how many more there are.
+pub(crate) struct Listed<'a, T> {
+    pub(crate) items: &'a [T],
+    /// Between two of them.
+    pub(crate) between: &'static str,
+}
+
+impl<T: fmt::Display> fmt::Display for Listed<'_, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // One more than that takes no more room than to say so.
+        let n_shown = if self.items.len() <= N_NAMES + 1 {
+            self.items.len()
+        } else {
+            N_NAMES
+        };
+        for (index, item) in self.items[..n_shown].iter().enumerate() {
+            let between = if index == 0 { "" } else { self.between };
+            write!(f, "{between}{}", Text(&item.to_string()))?;
+        }
+        match self.items.len() - n_shown {
+            0 => Ok(()),
+            n_left => write!(f, " and {n_left} more"),
+        }
+    }
+}
+
+/// The beginning of a text.
+pub(crate) struct Text<'a>(pub(crate) &'a str);
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.char_indices().nth(N_CHARACTERS) {
+            None => f.write_str(self.0),
+            Some((end, _)) => write!(f, "{}…", &self.0[..end]),
+        }
+    }
+}
+
+/// A message of a parser, which spells out whatever it found: long numbers are rounded, and long texts cut.
+pub(crate) struct Message<'a>(pub(crate) &'a str);
+
+impl fmt::Display for Message<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-');
+        let words = self.0.split_inclusive(|c: char| !is_of_number(c));
+        let short: String = words
+            .map(|word| {
+                let number = word.trim_end_matches(|c: char| !is_of_number(c));
+                match number.parse() {
+                    Ok(value) if number.len() > 2 * N_DIGITS => {
+                        format!("{}{}", Number(value), &word[number.len()..])
+                    }
+                    _ => word.to_owned(),
+                }
+            })
+            .collect();
+        // What is wrong stands at the beginning, and where at the end.
+        let n_characters = short.chars().count();
+        if n_characters <= 2 * N_CHARACTERS {
+            return f.write_str(&short);
+        }
+        let end: String = short.chars().skip(n_characters - N_CHARACTERS).collect();
+        write!(f, "{} {end}", Text(&short))
+    }
+}
