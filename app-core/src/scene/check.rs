@@ -100,7 +100,9 @@ pub(crate) const COORDINATE_M: RangeInclusive<f64> = -1e6..=1e6;
 /// Lengths of things that must have an extent, in metres.
 pub(crate) const EXTENT_M: RangeInclusive<f64> = 1e-6..=1e6;
 /// Lengths of things that may be points, in metres.
-pub(crate) const RADIUS_M: RangeInclusive<f64> = 0.0..=1e6;
+pub(crate) const RADIUS_M: RangeInclusive<f64> = 0.0..=1e9;
+/// Coordinates of lights, in metres: beyond the moon.
+const LIGHT_M: RangeInclusive<f64> = -1e9..=1e9;
 /// Pixels of one picture: a still of 4096 x 3072, larger than those of the cameras that track, which give at most
 /// 4032 x 3024. Maps of the whole picture take some 140 bytes a pixel.
 pub(crate) const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
@@ -162,6 +164,14 @@ pub(crate) fn at_most(n: usize, max: usize) -> Result<(), FieldError> {
 pub(crate) fn point(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
     for value in numbers {
         number(value, &COORDINATE_M)?;
+    }
+    Ok(DVec3::from_array(numbers))
+}
+
+/// The position of a light, in metres.
+pub(crate) fn light_position(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
+    for value in numbers {
+        number(value, &LIGHT_M)?;
     }
     Ok(DVec3::from_array(numbers))
 }
@@ -254,7 +264,7 @@ pub(crate) fn light(field: &str, light: &Light) -> Result<(), InputError> {
             position_in_world,
             radius_m,
         } => {
-            let position = point(position_in_world.to_array());
+            let position = light_position(position_in_world.to_array());
             InputError::at(&format!("{field}.position_in_world"), position)?;
             InputError::at(&format!("{field}.radius_m"), number(radius_m, &RADIUS_M))?;
         }

@@ -82,7 +82,7 @@ pub(super) fn light(field: &str, record: &LightRecord) -> Result<Light, SessionE
     };
     Ok(match record.kind {
         LightKind::Sphere => Light::Sphere {
-            position_in_world: vector("position", record.position, check::point)?,
+            position_in_world: vector("position", record.position, check::light_position)?,
             radius_m: number("radius", record.radius, &check::RADIUS_M)?,
         },
         LightKind::Directional => {
