@@ -94,21 +94,12 @@ fn look(place: &Place<'_>, camera: &Camera, [u, v]: [f64; 2], pattern: usize) ->
             ..Pixel::default()
         };
     };
-    let light = place.radiance(&hit, pattern);
-    match hit.thing {
-        Thing::Body(_) => Pixel {
-            light,
-            toy: 1.0,
-            shadow: 0.0,
-        },
-        Thing::Ground(_) => {
-            let visibilities = (0..place.n_lamps()).map(|lamp| place.visibility(&hit, lamp, pattern));
-            Pixel {
-                light,
-                toy: 0.0,
-                shadow: 1.0 - visibilities.fold(1.0, f64::min),
-            }
-        }
+    let (light, visibility) = place.look(&hit, pattern);
+    let is_toy = matches!(hit.thing, Thing::Body(_));
+    Pixel {
+        light,
+        toy: if is_toy { 1.0 } else { 0.0 },
+        shadow: if is_toy { 0.0 } else { 1.0 - visibility },
     }
 }
 

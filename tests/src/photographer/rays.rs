@@ -4,7 +4,7 @@ use std::array;
 
 use glam::{DMat4, DVec2, DVec3};
 
-use super::lamp::{Cone, disc};
+use super::lamp::{Cone, Lamp, disc};
 use super::motion::stance_at;
 use super::shape::Shape;
 use super::world::{Ground, Shown, World};
@@ -97,8 +97,12 @@ impl<'a> Place<'a> {
     #[must_use]
     pub fn visibility_on(&self, ground: usize, in_plane: DVec2, lamp: usize) -> f64 {
         let hit = self.point_on(ground, in_plane);
-        self.mean(|pattern| DVec3::splat(self.visibility(&hit, lamp, pattern)))
-            .x
+        let lamp = &self.world.lamps[lamp];
+        let of_pattern = |pattern| {
+            let [reached, total] = self.cosines(&hit, lamp, pattern);
+            DVec3::splat(visibility(reached, total))
+        };
+        self.mean(of_pattern).x
     }
 
     /// Light at (x, z) of a receiver, as the radiance of a white surface there.
@@ -108,7 +112,7 @@ impl<'a> Place<'a> {
             albedo: DVec3::ONE,
             ..self.point_on(ground, in_plane)
         };
-        self.mean(|pattern| self.radiance(&hit, pattern))
+        self.mean(|pattern| self.look(&hit, pattern).0)
     }
 
     /// Distance of a point from the surface of the part that it is nearest to, along rays through that part's middle.
@@ -181,29 +185,28 @@ impl<'a> Place<'a> {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Linear radiance that leaves a point towards the camera, with the pattern of that number.
-    pub(super) fn radiance(&self, hit: &Hit, pattern: usize) -> DVec3 {
-        let lamps = 0..self.world.lamps.len();
-        let direct: DVec3 = lamps.map(|lamp| self.direct(hit, lamp, pattern)).sum();
-        hit.albedo * (direct + self.indirect(hit, pattern))
-    }
-
-    /// Light of a lamp on a white surface at a point.
-    fn direct(&self, hit: &Hit, lamp: usize, pattern: usize) -> DVec3 {
-        let [reached, _] = self.cosines(hit, lamp, pattern);
-        self.world.lamps[lamp].color * reached
-    }
-
-    /// Part of the light of the lamp that reaches a point, 0 to 1; 1 of a light that is behind it.
-    pub(super) fn visibility(&self, hit: &Hit, lamp: usize, pattern: usize) -> f64 {
-        let [reached, total] = self.cosines(hit, lamp, pattern);
-        if total > 0.0 { reached / total } else { 1.0 }
+    /// Linear radiance that leaves a point towards the camera, and the smallest visibility over all lights, with the pattern
+    /// of that number.
+    pub(super) fn look(&self, hit: &Hit, pattern: usize) -> (DVec3, f64) {
+        let mut light = self.indirect(hit, pattern);
+        let mut smallest = 1.0_f64;
+        for lamp in &self.world.lamps {
+            let [reached, total] = self.cosines(hit, lamp, pattern);
+            light += lamp.color * reached;
+            smallest = smallest.min(visibility(reached, total));
+        }
+        (hit.albedo * light, smallest)
     }
 
     /// Light of a lamp at a point, with what hides it and without.
-    fn cosines(&self, hit: &Hit, lamp: usize, pattern: usize) -> [f64; 2] {
-        let cone = self.world.lamps[lamp].cone(hit.at);
+    fn cosines(&self, hit: &Hit, lamp: &Lamp, pattern: usize) -> [f64; 2] {
+        let cone = lamp.cone(hit.at);
         let suspects = self.suspects(hit, &cone);
+        let above = hit.normal.dot(cone.axis);
+        if suspects.is_empty() && above >= cone.sine {
+            // A sphere that is wholly above the horizon lights as if from its middle.
+            return [cone.strength * above; 2];
+        }
         let centre = [DVec2::ZERO];
         let pattern = if cone.sine == 0.0 {
             &centre[..]
@@ -214,7 +217,7 @@ impl<'a> Place<'a> {
         for direction in cone.directions(pattern) {
             let cosine = hit.normal.dot(direction).max(0.0);
             total += cosine;
-            if cosine > 0.0 && !self.hides(hit, &suspects, direction, cone.distance_m) {
+            if cosine > 0.0 && !self.hides(hit.at, &suspects, direction, cone.distance_m) {
                 reached += cosine;
             }
         }
@@ -223,32 +226,40 @@ impl<'a> Place<'a> {
         [reached, total].map(|sum| weight * sum)
     }
 
-    /// Parts that may stand between a point and a light.
-    fn suspects(&self, hit: &Hit, cone: &Cone) -> Vec<usize> {
+    /// What may stand between a point and a light.
+    fn suspects(&self, hit: &Hit, cone: &Cone) -> Vec<Thing> {
         let bodies = self.bodies.iter().enumerate();
-        bodies
-            // A convex part does not hide anything from its own surface that the surface faces.
-            .filter(|(index, _)| hit.thing != Thing::Body(*index))
+        let bodies = bodies
             .filter(|(_, body)| !cone.misses(body.centre - hit.at, body.radius_m))
-            .map(|(index, _)| index)
-            .collect()
+            .map(|(index, _)| Thing::Body(index));
+        let planes = self.planes.iter().enumerate();
+        let planes = planes
+            .filter(|(_, (plane_from_world, _))| {
+                let height_m = plane_from_world.transform_point3(hit.at).y;
+                let rise = plane_from_world.transform_vector3(cone.axis).y;
+                // All directions of the cone lead away from the plane.
+                let is_left = rise.abs() >= cone.sine && rise * height_m > 0.0;
+                !is_left
+            })
+            .map(|(index, _)| Thing::Ground(index));
+        // A convex part does not hide anything from its own surface that the surface faces, nor does a plane.
+        bodies.chain(planes).filter(|thing| *thing != hit.thing).collect()
     }
 
-    fn hides(&self, hit: &Hit, suspects: &[usize], direction: DVec3, distance_m: f64) -> bool {
-        let by_body = suspects.iter().any(|index| {
-            let body = &self.bodies[*index];
-            let in_part = body.part_from_world.transform_point3(hit.at);
-            let along = body.part_from_world.transform_vector3(direction);
-            let crossing = body.shape.crossing(in_part, along);
-            crossing.is_some_and(|crossing| crossing.leave > 0.0 && crossing.enter < distance_m)
-        });
-        let mut planes = self.planes.iter().enumerate();
-        by_body
-            || planes.any(|(index, (plane_from_world, ground))| {
-                hit.thing != Thing::Ground(index)
-                    && meets(plane_from_world, ground, hit.at, direction)
-                        .is_some_and(|(at, _)| at < distance_m)
-            })
+    fn hides(&self, from: DVec3, suspects: &[Thing], direction: DVec3, distance_m: f64) -> bool {
+        suspects.iter().any(|thing| match *thing {
+            Thing::Body(index) => {
+                let body = &self.bodies[index];
+                let in_part = body.part_from_world.transform_point3(from);
+                let along = body.part_from_world.transform_vector3(direction);
+                let crossing = body.shape.crossing(in_part, along);
+                crossing.is_some_and(|crossing| crossing.leave > 0.0 && crossing.enter < distance_m)
+            }
+            Thing::Ground(index) => {
+                let (plane_from_world, ground) = &self.planes[index];
+                meets(plane_from_world, ground, from, direction).is_some_and(|(at, _)| at < distance_m)
+            }
+        })
     }
 
     /// Light of the sky and of what other things throw back, on a white surface at a point.
@@ -279,7 +290,7 @@ impl<'a> Place<'a> {
             let cone = lamp.cone(hit.at);
             let cosine = hit.normal.dot(cone.axis);
             let suspects = self.suspects(hit, &cone);
-            if cosine <= 0.0 || self.hides(hit, &suspects, cone.axis, cone.distance_m) {
+            if cosine <= 0.0 || self.hides(hit.at, &suspects, cone.axis, cone.distance_m) {
                 return DVec3::ZERO;
             }
             cosine * cone.strength * lamp.color
@@ -292,13 +303,14 @@ impl<'a> Place<'a> {
         self.world.sky
     }
 
-    pub(super) fn n_lamps(&self) -> usize {
-        self.world.lamps.len()
-    }
-
     pub(super) fn world(&self) -> &World {
         self.world
     }
+}
+
+/// Part of a light that reaches a point, 0 to 1; 1 of one that is behind it.
+fn visibility(reached: f64, total: f64) -> f64 {
+    if total > 0.0 { reached / total } else { 1.0 }
 }
 
 impl Body<'_> {
