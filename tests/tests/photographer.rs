@@ -1,7 +1,5 @@
 //! The analytic photographer against closed forms, each comparison with a planted fault that it finds.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use std::f64::consts::PI;
 use std::fs;
 

@@ -45,6 +45,7 @@ fn render(sweep: &Sweep, svg: &mut String) -> Result<(), Box<dyn std::error::Err
         .build_cartesian_2d(left..right, 0.0..1.05 * top)?;
     chart
         .configure_mesh()
+        .max_light_lines(2)
         .x_desc(sweep.along)
         .y_desc(sweep.measure)
         .draw()?;
