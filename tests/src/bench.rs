@@ -19,6 +19,7 @@ use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay};
 use crate::report::Report;
 
+pub(crate) use table::aligned;
 pub use table::{csv, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
 

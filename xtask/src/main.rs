@@ -37,6 +37,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Measure numerical stability on hard cases against bounds (`stability --help` tells more)
+    #[command(disable_help_flag = true)]
+    Stability {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Rewrite the golden pictures (`bless --help` tells more)
     #[command(disable_help_flag = true)]
     Bless {
@@ -89,6 +96,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Demo => return harness::demo(&toolchain),
         Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
+        Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,

@@ -105,7 +105,7 @@ fn shares(times: Option<&Times>) -> String {
     shares.join(" ")
 }
 
-pub(super) fn aligned(cells: &[Vec<String>]) -> String {
+pub(crate) fn aligned(cells: &[Vec<String>]) -> String {
     let n_columns = cells.first().map_or(0, Vec::len);
     let width = |column: usize| cells.iter().map(|line| line[column].chars().count()).max();
     let widths: Vec<usize> = (0..n_columns).filter_map(width).collect();

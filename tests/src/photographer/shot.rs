@@ -1,0 +1,146 @@
+//! What the core is told of a world: scene and frame, and the truth to score with.
+
+use std::sync::Arc;
+
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Plate, Pose, Receiver, Scene};
+use app_core::session::Truth;
+use app_core::toy::{Toy, ToyError};
+use glam::DVec3;
+
+use super::film::{Film, expose};
+use super::rays::Place;
+use super::toy::{CLIP, ToyFile, toy_glb};
+use super::world::{Sensor, Shown, World};
+
+/// What the camera sees of a world, before it is made codes.
+#[derive(Clone, Debug)]
+pub struct Films {
+    /// The place without the toy.
+    pub plate: Film,
+    /// The toy in its physical pose.
+    pub real: Film,
+    /// The toy in the shown pose.
+    pub moved: Film,
+}
+
+/// Pictures of a world.
+#[derive(Clone, Debug)]
+pub struct Photos {
+    /// The place without the toy.
+    pub plate: Arc<Image>,
+    /// The toy in its physical pose.
+    pub frame: Arc<Image>,
+    /// The toy in the shown pose, without noise.
+    pub truth: Truth,
+}
+
+/// A session of one frame, in memory.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// All that stays.
+    pub scene: Scene,
+    /// The frame.
+    pub input: FrameInput,
+    /// What the core is not told.
+    pub truth: Truth,
+    /// The toy's file.
+    pub glb: Vec<u8>,
+}
+
+impl Films {
+    /// Looks at a world: its place, its toy as it stands, its toy in the shown pose.
+    #[must_use]
+    pub fn of(world: &World) -> Self {
+        Self {
+            plate: expose(&Place::empty(world), &world.camera),
+            real: expose(&Place::new(world, Shown::Rest), &world.camera),
+            moved: expose(&Place::new(world, world.shown), &world.camera),
+        }
+    }
+
+    /// The pictures that a sensor makes of it.
+    #[must_use]
+    pub fn develop(&self, sensor: &Sensor) -> Photos {
+        // Plate and frame have noise of their own.
+        let picture =
+            |film: &Film, gain: DVec3, seed: u64| Arc::new(film.develop(gain, sensor.noise_codes, seed));
+        Photos {
+            plate: picture(&self.plate, sensor.plate_gain, sensor.seed),
+            frame: picture(&self.real, sensor.frame_gain, !sensor.seed),
+            truth: Truth {
+                image: self.moved.develop(sensor.frame_gain, 0.0, 0),
+                mask: self.moved.mask(&self.real),
+            },
+        }
+    }
+}
+
+impl Photos {
+    /// Photographs a world.
+    #[must_use]
+    pub fn of(world: &World) -> Self {
+        Films::of(world).develop(&world.sensor)
+    }
+}
+
+impl Shot {
+    /// Photographs a world and tells of it.
+    ///
+    /// # Errors
+    /// When the core does not take the toy's file.
+    pub fn of(world: &World) -> Result<Self, ToyError> {
+        Self::told(world, &Photos::of(world), &ToyFile::default())
+    }
+
+    /// Tells of a world with pictures that were taken before, and with the toy's file written in some way.
+    ///
+    /// # Errors
+    /// When the core does not take the toy's file.
+    pub fn told(world: &World, photos: &Photos, file: &ToyFile) -> Result<Self, ToyError> {
+        let glb = toy_glb(world, file);
+        let toy = Toy::from_glb("toy.glb", &glb)?;
+        let shown_pose = match world.shown {
+            Shown::Rest => Pose::Authored,
+            Shown::At { time_secs } => Pose::Clip {
+                clip: toy.find_clip(CLIP)?,
+                time_secs,
+            },
+        };
+        let [width_px, height_px] = world.size_px;
+        let grounds = world.grounds.iter().enumerate();
+        let receivers = grounds.map(|(index, ground)| Receiver {
+            name: format!("ground {index}"),
+            world_from_plane: ground.world_from_plane,
+            half_extent_m: ground.half_extent_m,
+            surface: ground.paint.surface(),
+        });
+        Ok(Self {
+            scene: Scene {
+                name: world.name.clone(),
+                width_px,
+                height_px,
+                toy: Arc::new(toy),
+                world_from_object: world.world_from_object,
+                physical_pose: Pose::Authored,
+                receivers: receivers.collect(),
+                lights: world.lights(),
+                plates: vec![Plate {
+                    camera: world.camera,
+                    image: Arc::clone(&photos.plate),
+                }],
+                probe: None,
+            },
+            input: FrameInput {
+                image: Arc::clone(&photos.frame),
+                camera: world.camera,
+                exposure: 1.0,
+                world_from_object: world.world_from_object,
+                lights: None,
+                shown_pose,
+            },
+            truth: photos.truth.clone(),
+            glb,
+        })
+    }
+}

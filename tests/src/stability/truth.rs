@@ -1,0 +1,141 @@
+//! Lights all round a box, against the truth.
+
+use glam::{DQuat, DVec3};
+
+use super::case::{Case, Run, Scope};
+use super::lab::{Lab, Label, score};
+use super::row::{Bound, Findings, Sweep};
+use crate::photographer::world::toward;
+use crate::photographer::{Key, Lamp, Photos, Shot, Shown, Stance, ToyFile, World};
+
+const TOY: Bound = Bound {
+    limit: 10.0,
+    unit: "codes",
+    meaning: "toy's RMSE against the truth",
+};
+const SHADOW: Bound = Bound {
+    limit: 1.8,
+    unit: "codes",
+    meaning: "shadow's RMSE against the truth",
+};
+const BLACK: Bound = Bound {
+    limit: 0.0,
+    unit: "pixels",
+    meaning: "black pixels on the toy that the truth does not have",
+};
+const SPIKE: Bound = Bound {
+    limit: 5.0,
+    unit: "%",
+    meaning: "change of the toy's RMSE by a clip that goes on for a minute",
+};
+/// Codes up to this one are black.
+const BLACK_CODE: u8 = 2;
+const ELEVATIONS_DEG: [f64; 4] = [20.0, 40.0, 60.0, 80.0];
+const GROUP: &str = "truth";
+
+/// The group's cases.
+pub(super) const CASES: &[Case] = &[
+    case("round-quick", Scope::Quick, round_quick),
+    case("round", Scope::Whole, round),
+    case("long-clip", Scope::Quick, long_clip),
+];
+
+const fn case(name: &'static str, scope: Scope, run: Run) -> Case {
+    Case {
+        label: Label {
+            group: GROUP,
+            case: name,
+        },
+        scope,
+        run,
+    }
+}
+
+fn round_quick(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
+    sweep(lab, label, &[50.0], 180)
+}
+
+fn round(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
+    sweep(lab, label, &ELEVATIONS_DEG, 10)
+}
+
+fn sweep(lab: &mut Lab, label: Label, elevations_deg: &[f64], step_deg: usize) -> anyhow::Result<Findings> {
+    let mut findings = Findings::default();
+    for &elevation_deg in elevations_deg {
+        let (mut toys, mut shadows) = (Vec::new(), Vec::new());
+        for azimuth_deg in (0..360u16).step_by(step_deg).map(f64::from) {
+            let bulb = Lamp::bulb(toward(elevation_deg, azimuth_deg), 0.01, 0.75);
+            let shot = Shot::of(&World::boxes().lit_by(vec![bulb]))?;
+            let picture = lab.picture(&shot)?;
+            let scores = score(&picture, &shot.truth)?;
+            toys.push([azimuth_deg, scores.toy.rmse]);
+            shadows.push([azimuth_deg, scores.shadow.rmse]);
+            let parameter = format!("elevation {elevation_deg}, azimuth {azimuth_deg} deg");
+            findings.rows.extend([
+                label.row(parameter.clone(), TOY, scores.toy.rmse),
+                label.row(parameter.clone(), SHADOW, scores.shadow.rmse),
+                label.row(parameter, BLACK, n_black(&picture, &shot)),
+            ]);
+        }
+        findings.sweeps.push(Sweep {
+            name: format!("{}-{elevation_deg}", label.case),
+            along: "azimuth, degrees",
+            measure: "RMSE, codes",
+            lines: vec![("toy", toys), ("shadow", shadows)],
+        });
+    }
+    Ok(findings)
+}
+
+fn n_black(picture: &app_core::scene::Image, shot: &Shot) -> f64 {
+    let is_black = |pixel: &[u8]| pixel[..3].iter().all(|code| *code <= BLACK_CODE);
+    let pixels = picture.rgba8.chunks_exact(4);
+    let truth = shot.truth.image.rgba8.chunks_exact(4);
+    let mask = shot.truth.mask.rgba8.chunks_exact(4);
+    let black = pixels
+        .zip(truth)
+        .zip(mask)
+        .filter(|((pixel, truth), mask)| mask[0] > 0 && is_black(pixel) && !is_black(truth));
+    #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
+    let n = black.count() as f64;
+    n
+}
+
+/// A toy that jumps aside for less than a second of a minute.
+fn jumping(end_secs: &[f64]) -> World {
+    let mut world = World::boxes();
+    let aside = DVec3::new(0.18, 0.0, 0.0);
+    for part in &mut world.parts {
+        let far = Stance {
+            place_m: part.rest.place_m + aside,
+            turn: DQuat::IDENTITY,
+        };
+        let stances = [part.rest, far, part.rest, part.rest, part.rest];
+        let keys = end_secs.iter().zip(stances);
+        part.keys = keys
+            .map(|(&time_secs, stance)| Key { time_secs, stance })
+            .collect();
+    }
+    world
+}
+
+/// Shown while nothing moves, in the minute and in a clip that holds nothing but a second of rest.
+fn long_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
+    let mut plain = jumping(&[0.0]);
+    plain.shown = Shown::At { time_secs: 0.0 };
+    let mut long = jumping(&[0.0, 0.4, 0.8, 30.0, 60.0]);
+    let photos = Photos::of(&plain);
+    let shot = Shot::told(&plain, &photos, &ToyFile::default())?;
+    let before = score(&lab.reference(&shot)?, &shot.truth)?;
+    let mut rows = Vec::new();
+    for time_secs in lab.some_of([0.0, 1.0, 59.0, 30.0], 1) {
+        long.shown = Shown::At { time_secs };
+        let shot = Shot::told(&long, &photos, &ToyFile::default())?;
+        let after = score(&lab.picture(&shot)?, &shot.truth)?;
+        let change = 100.0 * (after.toy.rmse / before.toy.rmse - 1.0).abs();
+        let mut row = label.row(format!("at {time_secs} s"), SPIKE, change);
+        row.note = format!("{:.2} after {:.2}", after.toy.rmse, before.toy.rmse);
+        rows.push(row);
+    }
+    Ok(rows.into())
+}
