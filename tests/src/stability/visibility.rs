@@ -9,7 +9,7 @@ use super::lab::{Lab, Label};
 use super::row::{Bound, Findings};
 use crate::photographer::world::toward;
 use crate::photographer::{Lamp, Place, Shot, Shown, ToyFile, World};
-use crate::reference::occlusion::{Occluder, SAMPLE_POSITIONS};
+use crate::reference::occlusion::{Occluder, sample_position};
 use crate::reference::real::Real;
 use crate::reference::visibility::exact_visibility;
 
@@ -21,6 +21,8 @@ const MEAN_ERROR: Bound = Bound {
 };
 /// Pixels that are compared along each side of the region.
 const N_ACROSS: u32 = 24;
+/// Positions in a pixel that rays start from.
+const N_POSITIONS: usize = 16;
 /// Rays of each position in a pixel.
 const N_RAYS: usize = 64;
 const GROUP: &str = "visibility";
@@ -131,11 +133,11 @@ fn pixels(world: &World, region: &PixelRect, map: &FloatMap) -> Vec<Pixel> {
     let pixel = |(x, y): (u32, u32)| {
         let (x, y) = (x * size.x / N_ACROSS, y * size.y / N_ACROSS);
         let corner = region.origin_px.as_dvec2() + DVec2::new(f64::from(x), f64::from(y));
-        let seen = SAMPLE_POSITIONS.map(|position| table_point(world, corner + position));
+        let seen = (0..N_POSITIONS).map(|i| table_point(world, corner + sample_position(i, N_POSITIONS)));
         let texel = map.texels.get((y * map.width + x) as usize)?;
         Some(Pixel {
             of_core: f64::from(texel[0]),
-            in_plane: seen.into_iter().collect::<Option<Vec<_>>>()?,
+            in_plane: seen.collect::<Option<Vec<_>>>()?,
         })
     };
     grid.filter_map(pixel).collect()
