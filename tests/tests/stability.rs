@@ -20,7 +20,7 @@ const BROKEN: &[(&str, &str)] = &[
 /// The cheapest case of each group that the quick subset holds, to plant a fault in.
 const PLANTED: &[&str] = &[
     "run-again",
-    "lights-permuted",
+    "uniform-scale",
     "light-radius-small",
     "long-clip",
     "visibility-bulb",
@@ -40,9 +40,12 @@ fn is_known_broken(case: &Case) -> bool {
 #[test]
 fn quick_cases_keep_their_bounds() {
     let mut lab = lab(false);
-    let quick = cases().filter(|case| case.scope == Scope::Quick && !is_known_broken(case));
-    let rows: Vec<Row> = quick.flat_map(|case| run(&mut lab, case).unwrap().rows).collect();
-    assert!(rows.len() > 25, "only {} rows", rows.len());
+    let mut rows: Vec<Row> = Vec::new();
+    for case in cases().filter(|case| case.scope == Scope::Quick && !is_known_broken(case)) {
+        let found = run(&mut lab, case).unwrap().rows;
+        assert!(!found.is_empty(), "{} measures nothing", case.label.case);
+        rows.extend(found);
+    }
     let broken: Vec<Row> = rows.into_iter().filter(Row::is_broken).collect();
     assert!(broken.is_empty(), "{}", table(&broken, &lab.adapter()));
 }

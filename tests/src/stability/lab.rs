@@ -22,6 +22,7 @@ pub struct Lab {
     is_planted: bool,
     n_pictures: usize,
     latest_warnings: Vec<Warning>,
+    is_retargeted: bool,
     latest_reference: Option<(Shot, Image)>,
 }
 
@@ -39,6 +40,7 @@ impl Lab {
             is_planted,
             n_pictures: 0,
             latest_warnings: Vec::new(),
+            is_retargeted: false,
             latest_reference: None,
         }
     }
@@ -82,6 +84,12 @@ impl Lab {
         self.core.gpu().adapter_name()
     }
 
+    /// Whether the latest picture is not the camera frame as it was.
+    #[must_use]
+    pub fn is_retargeted(&self) -> bool {
+        self.is_retargeted
+    }
+
     /// Whether a fault is planted.
     #[must_use]
     pub fn is_planted(&self) -> bool {
@@ -102,7 +110,9 @@ impl Lab {
     /// # Errors
     /// When the core refuses the frame, or the device is lost.
     pub fn next(&mut self, input: &FrameInput) -> Made {
-        self.latest_warnings = self.core.frame(input)?.warnings;
+        let report = self.core.frame(input)?;
+        self.latest_warnings = report.warnings;
+        self.is_retargeted = report.region.is_some();
         let mut picture = self.core.read_picture()?;
         if self.is_planted && self.n_pictures % 8 != 1 {
             spoil(&mut picture);
