@@ -68,31 +68,3 @@ impl fmt::Display for Text<'_> {
         }
     }
 }
-
-/// A message of a parser, which spells out whatever it found: long numbers are rounded, and long texts cut.
-pub(crate) struct Message<'a>(pub(crate) &'a str);
-
-impl fmt::Display for Message<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-');
-        let words = self.0.split_inclusive(|c: char| !is_of_number(c));
-        let short: String = words
-            .map(|word| {
-                let number = word.trim_end_matches(|c: char| !is_of_number(c));
-                match number.parse() {
-                    Ok(value) if number.len() > 2 * N_DIGITS => {
-                        format!("{}{}", Number(value), &word[number.len()..])
-                    }
-                    _ => word.to_owned(),
-                }
-            })
-            .collect();
-        // What is wrong stands at the beginning, and where at the end.
-        let n_characters = short.chars().count();
-        if n_characters <= 2 * N_CHARACTERS {
-            return f.write_str(&short);
-        }
-        let end: String = short.chars().skip(n_characters - N_CHARACTERS).collect();
-        write!(f, "{} {end}", Text(&short))
-    }
-}

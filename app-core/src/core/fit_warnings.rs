@@ -2,6 +2,7 @@
 
 use super::inspect::Inspect;
 use super::{Core, CoreError};
+use crate::frame::mismatch::Mismatch;
 use crate::frame::warning::{Outlier, Warning};
 use crate::model::diagnostics::conditioning::light_conditioning;
 use crate::model::diagnostics::evidence::{Evidence, PixelEvidence, linear_colors};
@@ -45,7 +46,11 @@ impl Core {
             _ => None,
         };
         let swapped = evidence.as_ref().and_then(swapped);
-        let warnings = about_pictures.into_iter().chain(swapped).chain(about_fit);
+        let warnings = about_pictures
+            .into_iter()
+            .chain(swapped)
+            .map(Warning::Mismatch)
+            .chain(about_fit);
         let outliers = self.read_outliers()?.into_iter().map(Warning::Outlier);
         Ok(warnings.chain(outliers).collect())
     }
@@ -103,7 +108,7 @@ impl Core {
         }
         let direct_fraction = total_direct_fraction(fit, model.region.plan.n_receivers);
         if direct_fraction < LEAST_DIRECT_FRACTION {
-            return Ok(Some(Warning::NoShadow { direct_fraction }));
+            return Ok(Some(Warning::Mismatch(Mismatch::NoShadow { direct_fraction })));
         }
         let n_pixels = evidence.n_shadow_pixels();
         if n_pixels < FEWEST_PIXELS && stage.is_first_view() {
@@ -155,21 +160,21 @@ fn total_direct_fraction(fit: &Fit, n_receivers: u32) -> f32 {
 }
 
 /// What the pictures do not show, the first that explains the others.
-fn unseen(evidence: &Evidence) -> Option<Warning> {
+fn unseen(evidence: &Evidence) -> Option<Mismatch> {
     let at_least = |share: Option<f64>, least: f64| share.filter(|share| *share >= least);
     let plate = at_least(evidence.unreadable_plate(), UNREADABLE);
     let toy = at_least(evidence.toy_as_plate(), NOT_SEEN);
     let shadow = at_least(evidence.unreadable_shadow(), UNREADABLE);
     plate
-        .map(|fraction| Warning::PlateUnreadable { fraction })
-        .or(toy.map(|fraction| Warning::ToyNotSeen { fraction }))
-        .or(shadow.map(|fraction| Warning::ShadowUnreadable { fraction }))
+        .map(|fraction| Mismatch::PlateUnreadable { fraction })
+        .or(toy.map(|fraction| Mismatch::ToyNotSeen { fraction }))
+        .or(shadow.map(|fraction| Mismatch::ShadowUnreadable { fraction }))
 }
 
-fn swapped(evidence: &Evidence) -> Option<Warning> {
+fn swapped(evidence: &Evidence) -> Option<Mismatch> {
     let [as_they_are, swapped] = evidence.color_spreads()?;
     let is_swapped = as_they_are > COLORS_DIFFER && as_they_are > TIMES_LESS * swapped;
-    is_swapped.then(|| Warning::RedAndBlueSwapped {
+    is_swapped.then(|| Mismatch::RedAndBlueSwapped {
         times: as_they_are / swapped,
     })
 }

@@ -1,6 +1,7 @@
 //! One frame in, one report out.
 
 pub(crate) mod input;
+pub(crate) mod mismatch;
 pub(crate) mod report;
 pub(crate) mod warning;
 
@@ -8,5 +9,6 @@ pub use crate::geometry::rect::PixelRect;
 pub use crate::gpu::pass_run::{PassRun, PassTime, Path};
 pub use crate::plan::LeftOut;
 pub use input::FrameInput;
+pub use mismatch::Mismatch;
 pub use report::FrameReport;
 pub use warning::{Outlier, UnseenShadow, Warning};

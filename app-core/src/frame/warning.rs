@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::frame::mismatch::Mismatch;
 use crate::words::Listed;
 
 /// A degraded mode: the picture is the best that can be had, for a reason.
@@ -50,31 +51,8 @@ pub enum Warning {
         /// Pixels that show it, each as far as it is hidden from a light.
         n_pixels: f64,
     },
-    /// Where the listed lights should cast the real shadow, the picture is as bright as the plate.
-    NoShadow {
-        /// What the lights give of the plate's radiance, from 0 to 1.
-        direct_fraction: f32,
-    },
-    /// The real shadow is too dark or too bright in the picture to be measured.
-    ShadowUnreadable {
-        /// Share of it, from 0 to 1.
-        fraction: f64,
-    },
-    /// The plate is too dark or too bright to be compared with.
-    PlateUnreadable {
-        /// Share of the receivers' pixels, from 0 to 1.
-        fraction: f64,
-    },
-    /// Where the real toy should be, the picture shows what the plate does.
-    ToyNotSeen {
-        /// Share of the toy's pixels, from 0 to 1.
-        fraction: f64,
-    },
-    /// Red and blue are in another order in the picture than in the plate.
-    RedAndBlueSwapped {
-        /// How many times better the colours agree when they are swapped.
-        times: f64,
-    },
+    /// The pictures do not show what they should.
+    Mismatch(Mismatch),
     /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
     /// where the camera does not see it.
     LightsUnderConstrained {
@@ -144,30 +122,6 @@ impl fmt::Display for Warning {
                 f,
                 "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
             ),
-            Self::NoShadow { direct_fraction } => write!(
-                f,
-                "where the real shadow should be, the picture is as bright as the plate ({:.1} % is the lights'): check lights and toy, and whether a light is on",
-                100.0 * direct_fraction
-            ),
-            Self::ShadowUnreadable { fraction } => write!(
-                f,
-                "{:.0} % of the real shadow is too dark or too bright in the picture to be measured: the strength of the new one is partly assumed; take it at another exposure",
-                100.0 * fraction
-            ),
-            Self::PlateUnreadable { fraction } => write!(
-                f,
-                "{:.0} % of the plate is too dark or too bright to compare the picture with: take it again at another exposure",
-                100.0 * fraction
-            ),
-            Self::ToyNotSeen { fraction } => write!(
-                f,
-                "the picture shows the plate where the real toy should be ({:.0} % of it): check whether it is there, and its pose",
-                100.0 * fraction
-            ),
-            Self::RedAndBlueSwapped { times } => write!(
-                f,
-                "picture and plate agree {times:.1} times better with red and blue swapped: check the order of channels in both"
-            ),
             Self::LightsUnderConstrained { lights } => write!(
                 f,
                 "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
@@ -181,6 +135,7 @@ impl fmt::Display for Warning {
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
             ),
+            Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
             Self::ToyOutOfPicture => f.write_str(

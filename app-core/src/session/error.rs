@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::files::FileError;
 use crate::scene::FieldError;
 use crate::toy::ToyError;
-use crate::words::{Message, Text};
+use crate::words::Text;
 
 /// A session that cannot be used, or a frame of it.
 #[derive(Debug, Error)]
@@ -37,7 +37,7 @@ pub enum SessionErrorKind {
     #[error(transparent)]
     File(#[from] FileError),
     /// Not JSON, or not the JSON that the format asks for.
-    #[error("{}", Message(&.0.to_string()))]
+    #[error("{0}")]
     Json(#[from] serde_json::Error),
     /// Another format.
     #[error("the format is {:?}, but only {supported:?} can be read", Text(found).to_string())]

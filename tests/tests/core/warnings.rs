@@ -71,9 +71,10 @@ impl Case {
     }
 }
 
-/// The name of a warning, with what is in it where that is a name again.
+/// The name of a warning, and of an outlier.
 fn name(warning: &Warning) -> String {
     let text = format!("{warning:?}");
+    let text = text.trim_start_matches("Mismatch(");
     let end = text.find([' ', '{']).unwrap_or(text.len());
     text[..end].to_owned()
 }

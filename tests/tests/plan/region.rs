@@ -155,12 +155,20 @@ fn without_a_bound_the_region_is_the_image() {
         whole,
         "the camera is inside the toy"
     );
+    // Its shadow goes on below and before the camera.
     rig.place_camera(DVec3::new(0.0, 0.3, -0.2), DVec3::new(0.0, 0.3, -1.0));
     assert_eq!(
-        rig.region(&TOY, &[rig.bulb(BULB_AT, 0.0)]),
+        rig.region(&TOY, &[rig.bulb(DVec3::new(0.0, 0.3, 0.6), 0.0)]),
         whole,
         "the toy is behind the camera"
     );
+}
+
+#[test]
+fn what_is_all_behind_the_camera_has_no_region() {
+    let mut rig = Rig::new(DVec3::ZERO);
+    rig.place_camera(DVec3::new(0.0, 0.3, -0.2), DVec3::new(0.0, 0.3, -1.0));
+    assert_eq!(rig.region(&TOY, &[rig.bulb(BULB_AT, 0.0)]), None);
 }
 
 #[test]

@@ -147,6 +147,7 @@ fn each_wrong_value_is_named() {
         ("encoding", json!("linear"), "expected `srgb`"),
         ("width", json!(0), "0 is not from 1 to 16384"),
         ("width", json!(-2), "expected u32"),
+        ("height", json!(1.5e308), "`1.5e+308`, expected u32"),
         ("height", json!(16385), "16385 is not from 1 to 16384"),
         ("intrinsics.fx", json!(0), "0 is not from"),
         ("intrinsics.cy", json!(null), "expected f64"),

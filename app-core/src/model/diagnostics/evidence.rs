@@ -5,7 +5,7 @@ use crate::geometry::rect::PixelRect;
 use crate::scene::Image;
 
 /// Codes that tell a brightness, as in `common/pixel`, in linear light.
-const USABLE: std::ops::RangeInclusive<f32> = 0.003_035_27..=0.955_973_35;
+const USABLE: std::ops::RangeInclusive<f32> = 0.003_035_27..=0.955_973_4;
 /// Visibility below which a pixel lies in the shadow of a light, and above which it does not.
 const SHADOW: f32 = 0.5;
 const LIT: f32 = 0.99;
