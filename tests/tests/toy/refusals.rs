@@ -32,6 +32,7 @@ pub(crate) fn refusals() -> Vec<Refusal> {
     [
         containers(),
         references(),
+        counts(),
         numbers(),
         ranges(),
         skins(),
@@ -79,13 +80,6 @@ fn containers() -> Vec<Refusal> {
 fn references() -> Vec<Refusal> {
     let position = "meshes[0].primitives[0].attributes.POSITION";
     vec![
-        changed(
-            "many materials",
-            &["materials", "4097 materials are more than the 4096 allowed"],
-            |glb| {
-                glb.json["materials"] = vec![json!({}); 4097].into();
-            },
-        ),
         changed("no such accessor", &[position, "refers to accessor 99"], |glb| {
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99.into();
         }),
@@ -105,30 +99,6 @@ fn references() -> Vec<Refusal> {
             let indices = glb.u16s("SCALAR", &[0, 1, 1]);
             glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
         }),
-        changed(
-            "many triangles",
-            &[
-                "meshes[0].primitives[0]",
-                "250001 triangles are more than the 250000 allowed",
-            ],
-            |glb| {
-                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(250_001));
-                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-            },
-        ),
-        changed(
-            "many triangles together",
-            &[
-                "meshes[0].primitives[0]",
-                "250002 triangles are more than the 250000 allowed",
-            ],
-            |glb| {
-                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
-                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-                glb.push("nodes", json!({ "mesh": 0 }));
-                glb.json["scenes"][0]["nodes"] = json!([0, 1]);
-            },
-        ),
         changed("no area", &["meshes", "no triangles"], |glb| {
             let positions = glb.floats("VEC3", &[1.0; 9]);
             glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
@@ -172,6 +142,42 @@ fn references() -> Vec<Refusal> {
         changed("overlapping elements", &[position, "stride of 8"], |glb| {
             glb.json["bufferViews"][0]["byteStride"] = 8.into();
         }),
+    ]
+}
+
+fn counts() -> Vec<Refusal> {
+    vec![
+        changed(
+            "many materials",
+            &["materials", "4097 materials are more than the 4096 allowed"],
+            |glb| {
+                glb.json["materials"] = vec![json!({}); 4097].into();
+            },
+        ),
+        changed(
+            "many triangles",
+            &[
+                "meshes[0].primitives[0]",
+                "250001 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(250_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+            },
+        ),
+        changed(
+            "many triangles together",
+            &[
+                "meshes[0].primitives[0]",
+                "250002 triangles are more than the 250000 allowed",
+            ],
+            |glb| {
+                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
+                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+                glb.push("nodes", json!({ "mesh": 0 }));
+                glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+            },
+        ),
     ]
 }
 
