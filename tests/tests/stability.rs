@@ -9,14 +9,6 @@ use app_core::gpu::AdapterChoice;
 use app_core::wgpu;
 use harness::stability::{Bound, Case, Lab, Label, Measured, Row, Scope, cases, csv, run, table};
 
-/// Cases whose bound is broken today, each with why it is left out here; the command shows them as broken.
-const BROKEN: &[(&str, &str)] = &[
-    ("time-at-keys", "11 codes within 1e-6 s of a clip's start"),
-    (
-        "round-quick",
-        "the toy's unseen side is black: RMSE 13.8 at azimuth 0",
-    ),
-];
 /// The cheapest case of each group that the quick subset holds, to plant a fault in.
 const PLANTED: &[&str] = &[
     "run-again",
@@ -33,15 +25,11 @@ fn lab(is_planted: bool) -> Lab {
     Lab::new(pollster::block_on(core).unwrap(), Scope::Quick, is_planted)
 }
 
-fn is_known_broken(case: &Case) -> bool {
-    BROKEN.iter().any(|(name, _)| *name == case.label.case)
-}
-
 #[test]
 fn quick_cases_keep_their_bounds() {
     let mut lab = lab(false);
     let mut rows: Vec<Row> = Vec::new();
-    for case in cases().filter(|case| case.scope == Scope::Quick && !is_known_broken(case)) {
+    for case in cases().filter(|case| case.scope == Scope::Quick) {
         let found = run(&mut lab, case).unwrap().rows;
         assert!(!found.is_empty(), "{} measures nothing", case.label.case);
         rows.extend(found);
@@ -78,9 +66,6 @@ fn every_group_has_its_planted_fault() {
     );
     let names: BTreeSet<&str> = cases().map(|case| case.label.case).collect();
     assert_eq!(names.len(), cases().count(), "two cases of one name");
-    for (name, reason) in BROKEN {
-        assert!(names.contains(name) && !reason.is_empty(), "{name}");
-    }
 }
 
 #[test]
