@@ -28,8 +28,6 @@ const MAX_FRAMES: f32 = 8.0;
 const WHITE_WEIGHT: f32 = 0.003;
 // Weight of what the receiver tells of the light on the toy, against the toy's energy.
 const RECEIVER_LIGHT_WEIGHT: f32 = 0.01;
-// Part of the light from above that a receiver throws back: middle grey and somewhat less, since the toy shades it.
-const PRIOR_REFLECTANCE: f32 = 0.25;
 // Bounce of a toy of middle grey: the mean over channels in sessions of the bundled toy.
 const PRIOR_BOUNCE: f32 = 0.27;
 // Direct fraction of all lights together, half of the plate's radiance; each as if of equal intensity at one metre.
@@ -182,47 +180,13 @@ fn add_relation(weight: f32, coefficients: array<f32, N_COLUMNS>) {
   }
 }
 
-// Cosine of light `i` to a receiver, at its reference point; 0 where it is behind it.
-fn reference_cosine(receiver: u32, i: u32) -> f32 {
-  let light = globals.receivers[receiver].lights[i];
-  let reference = globals.receivers[receiver].reference_in_plane;
-  let to_light = light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
-  let distance_m = length(to_light);
-  if distance_m == 0.0 { return 1.0; }
-  return max(to_light.y / distance_m, 0.0);
-}
-
-// The first receiver that light `i` shines on, or the first of all.
-fn receiver_in_light(i: u32) -> u32 {
-  for (var k = 0u; k < globals.n_receivers; k++) {
-    if reference_cosine(k, i) > 0.0 { return k; }
-  }
-  return 0u;
-}
-
 // Adds what the receivers tell of the light on the toy; `channels` are those whose mean is taken.
 fn add_receiver_light(weight: f32, channels: vec3f) {
-  var from_below: array<f32, N_COLUMNS>;
-  from_below[0] = -PRIOR_REFLECTANCE;
-  from_below[1] = 1.0;
-  for (var i = 0u; i < step.n_columns - 2u; i++) {
-    let k = receiver_in_light(i);
-    let cosine = reference_cosine(k, i);
-    var ambient_fraction = 1.0;
-    for (var j = 0u; j < step.n_columns - 2u; j++) {
-      ambient_fraction -= dot(solution.receivers[k].direct_fraction[j].rgb, channels);
-    }
-    let fraction = dot(solution.receivers[k].direct_fraction[i].rgb, channels);
-    let normal = transpose(globals.receivers[k].plane_from_anchor)[1].xyz;
-    let part = hemispheres(normal);
-    var relation: array<f32, N_COLUMNS>;
-    relation[0] = -fraction * part.x;
-    relation[1] = -fraction * part.y;
-    relation[2u + i] = ambient_fraction * cosine;
-    add_relation(weight, relation);
-    from_below[2u + i] = -PRIOR_REFLECTANCE * reference_cosine(0u, i);
+  let n_lights = step.n_columns - 2u;
+  for (var i = 0u; i < n_lights; i++) {
+    add_relation(weight * relation_weight(i, n_lights, channels), light_relation(i, n_lights, channels));
   }
-  add_relation(weight, from_below);
+  add_relation(weight, reflection_relation(n_lights));
 }
 
 // Takes unknown `column` out of the equations: it is 0.

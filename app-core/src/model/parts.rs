@@ -12,5 +12,7 @@ pub(crate) const ACCUMULATED: Part = part!("common/accumulated");
 pub(crate) const MODEL: Part = part!("common/model");
 /// Ambient light of two colours, from above and from below.
 pub(crate) const HEMISPHERES: Part = part!("common/hemispheres");
+/// What the receivers tell of the light on the toy.
+pub(crate) const RECEIVER_LIGHT: Part = part!("common/receiver_light");
 /// The fitted light on the toy.
 pub(crate) const TOY_RADIANCE: Part = part!("common/toy_radiance");

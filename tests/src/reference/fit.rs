@@ -20,6 +20,8 @@ const WHITE_WEIGHT: f64 = 0.003;
 const RECEIVER_LIGHT_WEIGHT: f64 = 0.01;
 /// Part of what falls on a receiver that comes back up to the toy, as far as nothing else tells.
 const PRIOR_REFLECTANCE: f64 = 0.25;
+/// Share of all lights below which what the receivers tell of a light has no more weight.
+const LEAST_SHARE: f64 = 0.05;
 /// Weight by which further receivers keep the first one's gain, as a fraction of the first column's energy.
 const SAME_GAIN_WEIGHT: f64 = 10.0;
 /// Bounce that is expected, as a fraction of the ambient light that the toy takes: that of a toy of middle grey.
@@ -335,11 +337,21 @@ fn receiver_light<R: Real>(region: &Region, solution: &Solution, channels: DVec3
         let ambient_part = 1.0 - parts.iter().map(|part| part.dot(channels)).sum::<f64>();
         // How far up the receiver faces, in anchor space.
         let upward = plane.plane_from_anchor.inverse().y_axis.y;
+        let total = 1.0 - ambient_part;
+        // A light that is listed twice, with half of it each, weighs as it does once.
+        let weight = if total > 0.0 {
+            1.0 / (parts[i].dot(channels) / total).max(LEAST_SHARE)
+        } else {
+            1.0
+        };
         let mut relation = vec![0.0; 2 + n_lights];
         relation[0] = -parts[i].dot(channels) * (1.0 + upward) / 2.0;
         relation[1] = -parts[i].dot(channels) * (1.0 - upward) / 2.0;
         relation[2 + i] = ambient_part * cosine(plane, i);
         relation
+            .iter()
+            .map(|coefficient| weight.sqrt() * coefficient)
+            .collect()
     };
     let mut from_below = vec![-PRIOR_REFLECTANCE, 1.0];
     from_below.extend((0..n_lights).map(|i| -PRIOR_REFLECTANCE * cosine(&region.receivers[0], i)));

@@ -6,7 +6,7 @@ use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::model::capture::fit::{FIT_STEP, FitStep};
-use crate::model::parts::HEMISPHERES;
+use crate::model::parts::{HEMISPHERES, RECEIVER_LIGHT};
 use crate::model::state::SceneState;
 use crate::model::state::solution::{FIT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
@@ -17,6 +17,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &FIT,
     &FIT_STEP,
     &HEMISPHERES,
+    &RECEIVER_LIGHT,
     &part!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION]),
 ]);
 const SLOTS: &[Slot] = &[
