@@ -39,33 +39,16 @@ const GROUP: &str = "bounded";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("uniform-scale", uniform_scale),
-    case("receiver-origin", receiver_origin),
-    case("triangles-permuted", triangles_permuted),
-    case("lights-permuted", lights_permuted),
-    Case {
-        scope: Scope::Whole,
-        ..case("plates-permuted", plates_permuted)
-    },
-    Case {
-        scope: Scope::Whole,
-        ..case("mirrored", mirrored)
-    },
-    case("exposure", exposure),
-    case("light-twice", light_twice),
-    case("far-sphere", far_sphere),
+    Case::new(GROUP, "uniform-scale", Scope::Quick, uniform_scale),
+    Case::new(GROUP, "receiver-origin", Scope::Quick, receiver_origin),
+    Case::new(GROUP, "triangles-permuted", Scope::Quick, triangles_permuted),
+    Case::new(GROUP, "lights-permuted", Scope::Quick, lights_permuted),
+    Case::new(GROUP, "plates-permuted", Scope::Whole, plates_permuted),
+    Case::new(GROUP, "mirrored", Scope::Whole, mirrored),
+    Case::new(GROUP, "exposure", Scope::Quick, exposure),
+    Case::new(GROUP, "light-twice", Scope::Quick, light_twice),
+    Case::new(GROUP, "far-sphere", Scope::Quick, far_sphere),
 ];
-
-const fn case(name: &'static str, run: super::case::Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope: Scope::Quick,
-        run,
-    }
-}
 
 fn most(gap: &Gap) -> f64 {
     gap.max

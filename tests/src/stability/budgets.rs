@@ -3,7 +3,7 @@
 use app_core::scene::Plate;
 use glam::{DQuat, DVec3};
 
-use super::case::{Case, Run, Scope};
+use super::case::{Case, Scope};
 use super::exact::{small, small_photos};
 use super::lab::{Lab, Label};
 use super::process::{cpu_secs, held_mib, peak_mib, reset_peak};
@@ -27,22 +27,11 @@ const GROUP: &str = "budgets";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("plates", plates),
-    case("materials", materials),
-    case("large-triangles", large_triangles),
-    case("large-pictures", large_pictures),
+    Case::new(GROUP, "plates", Scope::Whole, plates),
+    Case::new(GROUP, "materials", Scope::Whole, materials),
+    Case::new(GROUP, "large-triangles", Scope::Whole, large_triangles),
+    Case::new(GROUP, "large-pictures", Scope::Whole, large_pictures),
 ];
-
-const fn case(name: &'static str, run: Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope: Scope::Whole,
-        run,
-    }
-}
 
 fn cost(lab: &mut Lab, label: Label, parameter: String, shot: &Shot) -> anyhow::Result<Findings> {
     let planted = if lab.is_planted() { 1e6 } else { 0.0 };

@@ -17,6 +17,18 @@ pub struct Case {
     pub run: Run,
 }
 
+impl Case {
+    /// A case of a group.
+    #[must_use]
+    pub const fn new(group: &'static str, name: &'static str, scope: Scope, run: Run) -> Self {
+        Self {
+            label: Label { group, case: name },
+            scope,
+            run,
+        }
+    }
+}
+
 /// When a case is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {

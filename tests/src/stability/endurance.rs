@@ -25,14 +25,7 @@ const N_FRAMES: usize = 1800;
 const N_ROUND: usize = 60;
 
 /// The group's cases.
-pub(super) const CASES: &[Case] = &[Case {
-    label: Label {
-        group: "endurance",
-        case: "orbit",
-    },
-    scope: Scope::Whole,
-    run: orbit,
-}];
+pub(super) const CASES: &[Case] = &[Case::new("endurance", "orbit", Scope::Whole, orbit)];
 
 /// A camera that goes to and fro, seen at a place of its round.
 fn world_at(place: usize) -> World {

@@ -20,24 +20,13 @@ const GROUP: &str = "exact";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("run-again", run_again),
-    case("rigid-motion", rigid_motion),
-    case("still-clip", still_clip),
-    case("receiver-order", receiver_order),
-    case("unused-parts", unused_parts),
-    case("weight-scale", weight_scale),
+    Case::new(GROUP, "run-again", Scope::Quick, run_again),
+    Case::new(GROUP, "rigid-motion", Scope::Quick, rigid_motion),
+    Case::new(GROUP, "still-clip", Scope::Quick, still_clip),
+    Case::new(GROUP, "receiver-order", Scope::Quick, receiver_order),
+    Case::new(GROUP, "unused-parts", Scope::Quick, unused_parts),
+    Case::new(GROUP, "weight-scale", Scope::Quick, weight_scale),
 ];
-
-const fn case(name: &'static str, run: super::case::Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope: Scope::Quick,
-        run,
-    }
-}
 
 /// A small picture of boxes on a table of slow waves.
 pub(super) fn small() -> World {

@@ -4,7 +4,7 @@ use app_core::frame::Warning;
 use bytemuck::cast_slice;
 use glam::DVec3;
 
-use super::case::{Case, Run, Scope};
+use super::case::{Case, Scope};
 use super::exact::small;
 use super::lab::{Lab, Label, score};
 use super::row::{Bound, Findings};
@@ -35,30 +35,23 @@ const GROUP: &str = "ill-posed";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("well-posed", Scope::Whole, well_posed),
-    case("two-near-parallel", Scope::Whole, |lab, label| {
+    Case::new(GROUP, "well-posed", Scope::Whole, well_posed),
+    Case::new(GROUP, "two-near-parallel", Scope::Whole, |lab, label| {
         near_parallel(lab, label, 2)
     }),
-    case("four-near-parallel", Scope::Whole, |lab, label| {
+    Case::new(GROUP, "four-near-parallel", Scope::Whole, |lab, label| {
         near_parallel(lab, label, 4)
     }),
-    case("two-at-one-place", Scope::Quick, two_at_one_place),
-    case("shadow-hidden", Scope::Whole, shadow_hidden),
-    case("shadow-out-of-frame", Scope::Whole, shadow_out_of_frame),
-    case("saturated", Scope::Whole, |lab, label| exposed(lab, label, 12.0)),
-    case("dark", Scope::Whole, |lab, label| exposed(lab, label, 0.004)),
+    Case::new(GROUP, "two-at-one-place", Scope::Quick, two_at_one_place),
+    Case::new(GROUP, "shadow-hidden", Scope::Whole, shadow_hidden),
+    Case::new(GROUP, "shadow-out-of-frame", Scope::Whole, shadow_out_of_frame),
+    Case::new(GROUP, "saturated", Scope::Whole, |lab, label| {
+        exposed(lab, label, 12.0)
+    }),
+    Case::new(GROUP, "dark", Scope::Whole, |lab, label| {
+        exposed(lab, label, 0.004)
+    }),
 ];
-
-const fn case(name: &'static str, scope: Scope, run: Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope,
-        run,
-    }
-}
 
 /// Whether a warning says that the fit is not determined by what is seen.
 fn is_of_the_fit(warning: &Warning) -> bool {

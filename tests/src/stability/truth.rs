@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::case::{Case, Run, Scope};
+use super::case::{Case, Scope};
 use super::lab::{Lab, Label, score};
 use super::row::{Bound, Findings, Sweep};
 use crate::photographer::world::toward;
@@ -37,21 +37,10 @@ const GROUP: &str = "truth";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("round-quick", Scope::Quick, round_quick),
-    case("round", Scope::Whole, round),
-    case("long-clip", Scope::Quick, long_clip),
+    Case::new(GROUP, "round-quick", Scope::Quick, round_quick),
+    Case::new(GROUP, "round", Scope::Whole, round),
+    Case::new(GROUP, "long-clip", Scope::Quick, long_clip),
 ];
-
-const fn case(name: &'static str, scope: Scope, run: Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope,
-        run,
-    }
-}
 
 fn round_quick(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     sweep(lab, label, &[50.0], 180)

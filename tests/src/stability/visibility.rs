@@ -3,7 +3,7 @@
 use app_core::internals::{FloatMap, PixelRect};
 use glam::{DMat4, DVec2, DVec3};
 
-use super::case::{Case, Run, Scope};
+use super::case::{Case, Scope};
 use super::exact::{small, small_photos};
 use super::lab::{Lab, Label};
 use super::row::{Bound, Findings};
@@ -29,23 +29,12 @@ const GROUP: &str = "visibility";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("visibility-bulb", Scope::Quick, bulb),
-    case("visibility-elevation", Scope::Whole, elevation),
-    case("visibility-distance", Scope::Whole, distance),
-    case("visibility-radius", Scope::Whole, radius),
-    case("visibility-scale", Scope::Whole, scale),
+    Case::new(GROUP, "visibility-bulb", Scope::Quick, bulb),
+    Case::new(GROUP, "visibility-elevation", Scope::Whole, elevation),
+    Case::new(GROUP, "visibility-distance", Scope::Whole, distance),
+    Case::new(GROUP, "visibility-radius", Scope::Whole, radius),
+    Case::new(GROUP, "visibility-scale", Scope::Whole, scale),
 ];
-
-const fn case(name: &'static str, scope: Scope, run: Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope,
-        run,
-    }
-}
 
 fn bulb(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     compare(lab, label, [("bulb at 1 m".to_owned(), small())])

@@ -11,7 +11,7 @@ mod toy;
 
 use app_core::scene::Image;
 
-use super::case::{Case, Run, Scope};
+use super::case::{Case, Scope};
 use super::gap::Gap;
 use super::lab::{Lab, Label, Made, score};
 use super::row::{Bound, Findings, Row, Sweep};
@@ -35,29 +35,18 @@ const GROUP: &str = "continuous";
 
 /// The group's cases.
 pub(super) const CASES: &[Case] = &[
-    case("time", Scope::Whole, time::through_a_clip),
-    case("time-at-keys", Scope::Quick, time::at_keys),
-    case("light-elevation", Scope::Whole, light::elevation),
-    case("light-distance", Scope::Whole, light::distance),
-    case("light-radius-small", Scope::Quick, light::small_radius),
-    case("light-radius-large", Scope::Whole, light::large_radius),
-    case("light-radius-told", Scope::Whole, light::told_radius),
-    case("camera-edge-on", Scope::Whole, camera::edge_on),
-    case("toy-height", Scope::Whole, toy::height),
-    case("brightness", Scope::Whole, pixels::brightness),
-    case("noise", Scope::Whole, pixels::noise),
+    Case::new(GROUP, "time", Scope::Whole, time::through_a_clip),
+    Case::new(GROUP, "time-at-keys", Scope::Quick, time::at_keys),
+    Case::new(GROUP, "light-elevation", Scope::Whole, light::elevation),
+    Case::new(GROUP, "light-distance", Scope::Whole, light::distance),
+    Case::new(GROUP, "light-radius-small", Scope::Quick, light::small_radius),
+    Case::new(GROUP, "light-radius-large", Scope::Whole, light::large_radius),
+    Case::new(GROUP, "light-radius-told", Scope::Whole, light::told_radius),
+    Case::new(GROUP, "camera-edge-on", Scope::Whole, camera::edge_on),
+    Case::new(GROUP, "toy-height", Scope::Whole, toy::height),
+    Case::new(GROUP, "brightness", Scope::Whole, pixels::brightness),
+    Case::new(GROUP, "noise", Scope::Whole, pixels::noise),
 ];
-
-const fn case(name: &'static str, scope: Scope, run: Run) -> Case {
-    Case {
-        label: Label {
-            group: GROUP,
-            case: name,
-        },
-        scope,
-        run,
-    }
-}
 
 /// One moment of a sweep.
 struct Moment {
