@@ -7,7 +7,6 @@ use glam::{DMat4, DVec3};
 
 use super::case::{Case, Scope};
 use super::exact::{small, small_photos, walled};
-use super::gap::Gap;
 use super::lab::{Lab, Label, score};
 use super::row::{Bound, Findings, Row};
 use crate::photographer::world::{camera, toward};
@@ -50,10 +49,6 @@ pub(super) const CASES: &[Case] = &[
     Case::new(GROUP, "far-sphere", Scope::Quick, far_sphere),
 ];
 
-fn most(gap: &Gap) -> f64 {
-    gap.max
-}
-
 /// Rows of shots that must have the first one's picture, within a code.
 fn within_a_code(
     lab: &mut Lab,
@@ -61,13 +56,7 @@ fn within_a_code(
     shot: &Shot,
     others: impl IntoIterator<Item = (String, Shot)>,
 ) -> anyhow::Result<Findings> {
-    let expected = lab.reference(shot)?;
-    let mut rows = Vec::new();
-    for (parameter, other) in lab.some_of(others, 1) {
-        let made = lab.picture(&other);
-        rows.push(label.against(parameter, ONE_CODE, (&expected, made), most)?);
-    }
-    Ok(rows.into())
+    lab.compare(label, (ONE_CODE, |gap| gap.max), shot, others)
 }
 
 fn uniform_scale(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {

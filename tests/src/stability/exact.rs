@@ -46,25 +46,19 @@ pub(super) fn small_photos() -> &'static Photos {
 }
 
 /// Rows of variations of a shot, all of which must have its picture to the last byte.
-fn compare(
+fn equal(
     lab: &mut Lab,
     label: Label,
     shot: &Shot,
     others: impl IntoIterator<Item = (String, Shot)>,
 ) -> anyhow::Result<Findings> {
-    let expected = lab.reference(shot)?;
-    let mut rows = Vec::new();
-    for (parameter, other) in lab.some_of(others, 1) {
-        let made = lab.picture(&other);
-        rows.push(label.against(parameter, EQUAL, (&expected, made), |gap| gap.n_bytes)?);
-    }
-    Ok(rows.into())
+    lab.compare(label, (EQUAL, |gap| gap.n_bytes), shot, others)
 }
 
 fn run_again(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let shot = Shot::told(&small(), small_photos(), &ToyFile::default())?;
     let again = (1..=2).map(|run| (format!("run {run}"), shot.clone()));
-    compare(lab, label, &shot, again)
+    equal(lab, label, &shot, again)
 }
 
 fn rigid_motion(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
@@ -90,7 +84,7 @@ fn rigid_motion(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
         .into_iter()
         .map(|(name, motion)| Ok((name.to_owned(), told(&world.clone().moved(&motion))?)));
     let moved: Vec<_> = moved.collect::<Result<_, ToyError>>()?;
-    compare(lab, label, &told(&world)?, moved)
+    equal(lab, label, &told(&world)?, moved)
 }
 
 fn still_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
@@ -106,7 +100,7 @@ fn still_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
         other.scene.physical_pose = Pose::Clip { clip, time_secs };
         (format!("at {time_secs} s"), other)
     });
-    compare(lab, label, &shot, others)
+    equal(lab, label, &shot, others)
 }
 
 /// A wall behind the toy.
@@ -126,7 +120,7 @@ fn receiver_order(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let shot = Shot::of(&walled(small()))?;
     let mut other = shot.clone();
     other.scene.receivers.reverse();
-    compare(lab, label, &shot, [("wall before table".to_owned(), other)])
+    equal(lab, label, &shot, [("wall before table".to_owned(), other)])
 }
 
 fn told_as(
@@ -141,7 +135,7 @@ fn told_as(
         .iter()
         .map(|(name, file)| Ok(((*name).to_owned(), Shot::told(&world, photos, file)?)));
     let others: Vec<_> = others.collect::<Result<_, ToyError>>()?;
-    compare(lab, label, &Shot::told(&world, photos, base)?, others)
+    equal(lab, label, &Shot::told(&world, photos, base)?, others)
 }
 
 fn unused_parts(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {

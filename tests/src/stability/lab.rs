@@ -11,7 +11,7 @@ use app_core::session::Truth;
 
 use super::case::Scope;
 use super::gap::Gap;
-use super::row::{Bound, Measured, Row};
+use super::row::{Bound, Findings, Measured, Row};
 use crate::metrics::{Regions, Scores, SizeError, measure};
 use crate::photographer::Shot;
 
@@ -71,6 +71,26 @@ impl Lab {
         let picture = self.core.read_picture()?;
         self.latest_reference = Some((shot.clone(), picture.clone()));
         Ok(picture)
+    }
+
+    /// Rows of variations of a shot, of how far each one's picture is from that of the shot: a bound, and what it is on.
+    ///
+    /// # Errors
+    /// When the core fails otherwise than by refusing a variation.
+    pub fn compare(
+        &mut self,
+        label: Label,
+        (bound, number_of): (Bound, fn(&Gap) -> f64),
+        shot: &Shot,
+        others: impl IntoIterator<Item = (String, Shot)>,
+    ) -> anyhow::Result<Findings> {
+        let expected = self.reference(shot)?;
+        let mut rows = Vec::new();
+        for (parameter, other) in self.some_of(others, 1) {
+            let made = self.picture(&other);
+            rows.push(label.against(parameter, bound, (&expected, made), number_of)?);
+        }
+        Ok(rows.into())
     }
 
     /// Begins a case.
