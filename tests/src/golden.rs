@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use crate::compare::{Check, CompareError, Difference, Pair};
 use crate::files::{BUNDLED_SESSION, Folder, FolderError};
-use crate::metrics::{Regions, Scores, SizeError, measure};
+use crate::metrics::{Scores, SizeError, score};
 use crate::output::{WriteError, make_folder, write_png};
 
 /// What makes or remakes a golden.
@@ -210,7 +210,7 @@ pub fn render(core: &mut Core, preset: Preset) -> Result<Rendered, RenderError> 
     let truth = session.truth(FRAME)?.ok_or(RenderError::NoTruth)?;
     Ok(Rendered {
         golden: CROP.of(&picture),
-        scores: measure(&picture, &truth.image, &Regions::from_mask(&truth.mask))?,
+        scores: score(&picture, &truth)?,
     })
 }
 

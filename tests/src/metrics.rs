@@ -5,6 +5,7 @@
 mod ssim;
 
 use app_core::scene::Image;
+use app_core::session::Truth;
 use thiserror::Error;
 
 /// Luma of encoded RGB, with the weights of ITU-R BT.709.
@@ -131,6 +132,14 @@ impl Regions {
             mask_height_px: self.height_px,
         })
     }
+}
+
+/// Compares a picture with the truth over the regions of its mask. Alpha is not looked at.
+///
+/// # Errors
+/// When picture or truth is not of the mask's size.
+pub fn score(picture: &Image, truth: &Truth) -> Result<Scores, SizeError> {
+    measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
 }
 
 /// Compares a picture with the truth, region by region. Alpha is not looked at.

@@ -10,11 +10,11 @@ use app_core::internals::PixelRect;
 use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Image;
-use app_core::session::{GroundTruth, Session, SessionError, Truth};
+use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
 use crate::false_color::{self, ERROR, describe};
-use crate::metrics::{Regions, Scores, SizeError, measure};
+use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
 use crate::page::pictures::Pictures;
 use crate::page::{self, MAPS_FOLDER, PAGE_FILE};
@@ -212,7 +212,8 @@ impl Run<'_> {
             None => None,
         };
         if let Some(truth) = &truth {
-            entry.scores = Some(score(truth, index, &picture)?);
+            let scores = score(&picture, truth).map_err(|reason| ReplayError::Score { index, reason });
+            entry.scores = Some(scores?);
         }
         if let Some(out) = &mut self.out {
             let name = picture_file(index);
@@ -315,11 +316,6 @@ fn run_frame(
         scores: None,
     };
     Ok((entry, report.region, picture))
-}
-
-fn score(truth: &Truth, index: usize, picture: &Image) -> Result<Scores, ReplayError> {
-    measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
-        .map_err(|reason| ReplayError::Score { index, reason })
 }
 
 fn write_report(folder: &Path, report: &Report) -> Result<(), WriteError> {

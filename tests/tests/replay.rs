@@ -15,7 +15,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::wgpu;
 use harness::files::{BUNDLED_SESSION, Folder};
-use harness::metrics::{Regions, Score, Scores, measure};
+use harness::metrics::{Score, Scores, score};
 use harness::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
 use harness::progress::Quiet;
 use harness::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
@@ -223,11 +223,11 @@ fn scores_agree_with_an_independent_scorer() {
 }
 
 fn mean_over_truths(session: &Capture, picture: impl Fn(usize) -> Image) -> Scores {
-    let score = |index| {
+    let score_of = |index| {
         let truth = session.truth(index).unwrap().unwrap();
-        measure(&picture(index), &truth.image, &Regions::from_mask(&truth.mask)).unwrap()
+        score(&picture(index), &truth).unwrap()
     };
-    mean_scores(&(0..session.n_frames()).map(score).collect::<Vec<_>>()).unwrap()
+    mean_scores(&(0..session.n_frames()).map(score_of).collect::<Vec<_>>()).unwrap()
 }
 
 fn check_recorded(actual: &Scores, recorded: &[[f64; 2]; 4]) {

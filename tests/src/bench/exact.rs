@@ -16,7 +16,7 @@ use app_core::session::{Capture, GroundTruth, Session};
 use app_core::toy::{PosedMesh, ToyError};
 use glam::{DMat4, DVec3, UVec2};
 
-use crate::metrics::{self, Regions};
+use crate::metrics::score;
 use crate::reference::model::Region;
 use crate::reference::occlusion::{Occluder, sample_position};
 use crate::reference::visibility::exact_visibility;
@@ -66,8 +66,8 @@ pub(super) fn measure(
         }
         if let Some(truth) = session.truth(index)? {
             let picture = core.read_picture().map_err(failed)?;
-            let score = metrics::measure(&picture, &truth.image, &Regions::from_mask(&truth.mask));
-            scores.push(score.map_err(|reason| ReplayError::Score { index, reason })?);
+            let scored = score(&picture, &truth);
+            scores.push(scored.map_err(|reason| ReplayError::Score { index, reason })?);
         }
     }
     Ok(Row {

@@ -7,8 +7,9 @@ use glam::{DMat4, DVec3};
 
 use super::case::{Case, Scope};
 use super::exact::{small, small_photos, walled};
-use super::lab::{Lab, Label, score};
+use super::lab::{Lab, Label};
 use super::row::{Bound, Findings, Row};
+use crate::metrics::score;
 use crate::photographer::world::{camera, toward};
 use crate::photographer::{Films, Lamp, Photos, Sensor, Shot, ToyFile, World, flipped};
 
@@ -198,9 +199,8 @@ fn same_errors(
         ];
         for (bound, before, after) in pairs {
             let expected = before.rmse * gain.powf(1.0 / SRGB_POWER);
-            let mut row = label.row(parameter.clone(), bound, (after.rmse - expected).abs());
-            row.note = format!("{:.2} after {:.2}", after.rmse, before.rmse);
-            rows.push(row);
+            let row = label.row(parameter.clone(), bound, (after.rmse - expected).abs());
+            rows.push(row.noting(before.rmse, after.rmse));
         }
     }
     Ok(rows.into())
@@ -275,9 +275,8 @@ fn far_sphere(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
             Ok(picture) => {
                 let after = score(&picture, &other.truth)?;
                 let number = (after.toy.rmse - before.toy.rmse).abs();
-                let mut row = label.row(parameter, FAR_IS_DIRECTIONAL, number);
-                row.note = format!("{:.2} after {:.2}", after.toy.rmse, before.toy.rmse);
-                row
+                let row = label.row(parameter, FAR_IS_DIRECTIONAL, number);
+                row.noting(before.toy.rmse, after.toy.rmse)
             }
         };
         rows.push(row);

@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::case::{Case, Scope};
 use super::exact::small;
-use super::lab::{Lab, Label, score};
+use super::lab::{Lab, Label};
 use super::row::{Bound, Findings};
+use crate::metrics::score;
 use crate::photographer::world::{camera, toward};
 use crate::photographer::{Lamp, Sensor, Shot, World};
 

@@ -7,12 +7,10 @@ use app_core::frame::{FrameInput, Warning};
 use app_core::internals::{Fit, FloatMap, Inspect, Map, PixelRect};
 use app_core::preset::Preset;
 use app_core::scene::Image;
-use app_core::session::Truth;
 
 use super::case::Scope;
 use super::gap::Gap;
 use super::row::{Bound, Findings, Measured, Row};
-use crate::metrics::{Regions, Scores, SizeError, measure};
 use crate::photographer::Shot;
 
 /// One core, how much is asked of it, and the fault that is planted in what it makes, if any.
@@ -212,14 +210,6 @@ fn spoil(picture: &mut Image) {
                 .for_each(|code| *code ^= 0x40);
         }
     }
-}
-
-/// Errors of a picture against the truth.
-///
-/// # Errors
-/// When the sizes differ.
-pub fn score(picture: &Image, truth: &Truth) -> Result<Scores, SizeError> {
-    measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
 }
 
 /// Group and name of a case, to make its rows.

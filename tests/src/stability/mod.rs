@@ -18,7 +18,7 @@ mod visibility;
 
 pub use case::{Case, Run, Scope};
 pub use gap::Gap;
-pub use lab::{Lab, Label, Made, score};
+pub use lab::{Lab, Label, Made};
 pub use plot::draw;
 pub use row::{Bound, Findings, Measured, Row, Sweep};
 pub use table::{csv, table};

@@ -42,6 +42,13 @@ pub enum Measured {
 }
 
 impl Row {
+    /// The row, with a note of a number before a change and after it.
+    #[must_use]
+    pub fn noting(mut self, before: f64, after: f64) -> Self {
+        self.note = format!("{after:.2} after {before:.2}");
+        self
+    }
+
     /// Whether the bound is not kept. A refused input keeps none, and neither does what is not a number.
     #[must_use]
     pub fn is_broken(&self) -> bool {

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::case::{Case, Scope};
-use super::lab::{Lab, Label, score};
+use super::lab::{Lab, Label};
 use super::row::{Bound, Findings, Sweep};
+use crate::metrics::score;
 use crate::photographer::world::toward;
 use crate::photographer::{Key, Lamp, Photos, Shot, Shown, Stance, ToyFile, World};
 
@@ -136,9 +137,8 @@ fn long_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
         ];
         for (region, before, after) in regions {
             let change = 100.0 * (after.rmse / before.rmse - 1.0).abs();
-            let mut row = label.row(format!("{minutes} min, {region}"), SPIKE, change);
-            row.note = format!("{:.2} after {:.2}", after.rmse, before.rmse);
-            rows.push(row);
+            let row = label.row(format!("{minutes} min, {region}"), SPIKE, change);
+            rows.push(row.noting(before.rmse, after.rmse));
         }
     }
     Ok(rows.into())

@@ -13,8 +13,9 @@ use app_core::scene::Image;
 
 use super::case::{Case, Scope};
 use super::gap::Gap;
-use super::lab::{Lab, Label, Made, score};
+use super::lab::{Lab, Label, Made};
 use super::row::{Bound, Findings, Row, Sweep};
+use crate::metrics::score;
 use crate::photographer::{Shot, World};
 
 /// Against the truth's step of the same place, or against the median one of the sweep where that is larger.
