@@ -86,6 +86,7 @@ pub mod session;
 pub mod toy;
 
 mod baseline;
+mod disjoint;
 mod geometry;
 mod model;
 mod passes;

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::disjoint::DisjointSets;
+
 /// The gain between two plates.
 pub(crate) struct PairGain {
     /// Indices, of the first of which this is the gain to the second.
@@ -55,18 +57,11 @@ pub(crate) fn joint_gains(n_plates: usize, pairs: &[PairGain]) -> Vec<DVec3> {
 
 /// The first of the plates that each is connected with, perhaps itself.
 fn firsts(n_plates: usize, pairs: &[PairGain]) -> Vec<usize> {
-    let mut firsts: Vec<usize> = (0..n_plates).collect();
-    let mut is_settled = false;
-    while !is_settled {
-        is_settled = true;
-        for PairGain { plates: [a, b], .. } in pairs {
-            let first = firsts[*a].min(firsts[*b]);
-            is_settled &= firsts[*a] == firsts[*b];
-            firsts[*a] = first;
-            firsts[*b] = first;
-        }
+    let mut connected = DisjointSets::new(n_plates);
+    for PairGain { plates: [a, b], .. } in pairs {
+        connected.join(*a, *b);
     }
-    firsts
+    (0..n_plates).map(|plate| connected.first(plate)).collect()
 }
 
 /// Gaussian elimination without pivoting: the matrix is symmetric and positive definite.

@@ -2,6 +2,7 @@
 
 use glam::UVec2;
 
+use crate::disjoint::DisjointSets;
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::plates::shot::{Shot, shots_of};
 use crate::plates::sight::PointOn;
@@ -37,15 +38,16 @@ pub(crate) fn compared(shots: &[Shot<'_>]) -> Vec<Vec<usize>> {
     });
     let mut earlier_of = vec![Vec::new(); shots.len()];
     let mut n_neighbours = vec![0; shots.len()];
-    let mut groups: Vec<usize> = (0..shots.len()).collect();
+    let mut connected = DisjointSets::new(shots.len());
     for Pair { plates, .. } in pairs {
-        let [a, b] = plates.map(|plate| group_of(&mut groups, plate));
-        if a == b && plates.iter().all(|plate| n_neighbours[*plate] >= N_NEIGHBOURS) {
+        let [a, b] = plates;
+        let is_connected = connected.first(a) == connected.first(b);
+        if is_connected && plates.iter().all(|plate| n_neighbours[*plate] >= N_NEIGHBOURS) {
             continue;
         }
-        groups[a.max(b)] = a.min(b);
+        connected.join(a, b);
         plates.iter().for_each(|plate| n_neighbours[*plate] += 1);
-        earlier_of[plates[0]].push(plates[1]);
+        earlier_of[a].push(b);
     }
     earlier_of.iter_mut().for_each(|earlier| earlier.sort_unstable());
     earlier_of
@@ -55,17 +57,6 @@ pub(crate) fn compared(shots: &[Shot<'_>]) -> Vec<Vec<usize>> {
 #[must_use]
 pub fn compared_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<Vec<usize>> {
     compared(&shots_of(scene, receivers))
-}
-
-/// The first of the plates that are connected with this one.
-fn group_of(groups: &mut [usize], plate: usize) -> usize {
-    let mut at = plate;
-    while groups[at] != at {
-        // Halves the way for the next time.
-        groups[at] = groups[groups[at]];
-        at = groups[at];
-    }
-    at
 }
 
 fn overlapping_pairs(shots: &[Shot<'_>]) -> Vec<Pair> {

@@ -74,7 +74,7 @@ struct Shape {
 /// Triangles that are judged together: a closed piece by its root, or all of a primitive that is open.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Group {
-    Closed { root: u32, is_inside_out: bool },
+    Closed { root: usize, is_inside_out: bool },
     Open,
 }
 

@@ -4,14 +4,16 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
+use crate::disjoint::DisjointSets;
+
 /// Connected components of triangles.
 pub(super) struct Pieces {
-    /// Union-find parent of each vertex; the root of a piece is its own.
-    parents: Vec<u32>,
+    /// Vertices that edges connect.
+    connected: DisjointSets,
     /// For each root, whether its piece has an edge that is not met from both sides alike.
     is_open: Vec<bool>,
     /// Of each piece, by its root.
-    volumes: HashMap<u32, Volume>,
+    volumes: HashMap<usize, Volume>,
 }
 
 /// Six times a volume: negative where faces look inwards.
@@ -26,7 +28,7 @@ impl Pieces {
     /// `places` are the positions of all vertices, each in its node.
     pub(super) fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
         let mut pieces = Self {
-            parents: (0..).take(places.len()).collect(),
+            connected: DisjointSets::new(places.len()),
             is_open: vec![false; places.len()],
             volumes: HashMap::new(),
         };
@@ -35,12 +37,12 @@ impl Pieces {
         for &[a, b, c] in triangles {
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 *passes.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-                pieces.join(from, to);
+                pieces.connected.join(from as usize, to as usize);
             }
         }
         for ([corner, _], _) in passes.into_iter().filter(|(_, n)| *n != 0) {
             let root = pieces.root(corner);
-            pieces.is_open[root as usize] = true;
+            pieces.is_open[root] = true;
         }
         for corners in triangles {
             let root = pieces.root(corners[0]);
@@ -62,26 +64,15 @@ impl Pieces {
             .is_some_and(|volume| volume.signed < -volume.rounding)
     }
 
-    /// The vertex that stands for the whole piece of another one.
-    pub(super) fn root(&mut self, mut corner: u32) -> u32 {
-        while self.parents[corner as usize] != corner {
-            // Path halving, for later lookups.
-            let parent = self.parents[corner as usize];
-            self.parents[corner as usize] = self.parents[parent as usize];
-            corner = parent;
-        }
-        corner
+    /// The vertex that stands for the whole piece of another one: its first.
+    pub(super) fn root(&mut self, corner: u32) -> usize {
+        self.connected.first(corner as usize)
     }
 
     fn closed_volume(&mut self, corner: u32) -> Option<Volume> {
         let root = self.root(corner);
         let volume = self.volumes.get(&root).copied();
-        volume.filter(|_| !self.is_open[root as usize])
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
+        volume.filter(|_| !self.is_open[root])
     }
 }
 

@@ -31,6 +31,7 @@ const ROOMS: &[&str] = &[
     "session",
     "scene",
     "toy",
+    "disjoint",
     "words",
 ];
 /// Rooms that never meet, though one stands after the other.
