@@ -19,3 +19,13 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
         ((encoded + 0.055) / 1.055).powf(2.4)
     }
 }
+
+/// Linear light of each code of 8 bits.
+#[must_use]
+pub(crate) fn linear_of_codes() -> [f32; 256] {
+    let mut linear = [0.0; 256];
+    for (code, linear) in (0..=u8::MAX).zip(&mut linear) {
+        *linear = linear_from_srgb(f32::from(code) / 255.0);
+    }
+    linear
+}

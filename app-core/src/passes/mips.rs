@@ -2,14 +2,14 @@
 
 use glam::UVec2;
 
-use crate::geometry::color::{linear_from_srgb, srgb_from_linear};
+use crate::geometry::color::{linear_of_codes, srgb_from_linear};
 
 /// The levels below a picture of sRGB-encoded RGBA, each half the size of the one before, down to one texel.
 ///
 /// Texels are averages over the area that they cover of the level before, in linear light; a size that cannot be halved is
 /// rounded down. Source: Guthe and Heckbert 2005 (non-power-of-two mipmap creation).
 pub(crate) fn mips(size_px: UVec2, rgba8_srgb: &[u8]) -> Vec<Vec<u8>> {
-    let of_code: [f32; 256] = std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0));
+    let of_code = linear_of_codes();
     let (texels, _) = rgba8_srgb.as_chunks::<4>();
     // The picture itself is decoded texel by texel: as floats it would take four times its size.
     let mut half_px = half(size_px);

@@ -3,10 +3,11 @@
 use glam::{DVec2, DVec3, UVec2};
 
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::color::linear_of_codes;
 use crate::geometry::rect::PixelRect;
 use crate::plates::joint::{PairGain, joint_gains};
 use crate::plates::overlap::compared;
-use crate::plates::shot::{Shot, decoded, shots_of};
+use crate::plates::shot::{Shot, shots_of};
 use crate::plates::sight::PointOn;
 use crate::scene::{Plate, Scene};
 
@@ -23,7 +24,7 @@ const N_STEPS: usize = 8;
 /// light: 1 for that one.
 #[must_use]
 pub fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3> {
-    let decoded = decoded();
+    let decoded = linear_of_codes().map(f64::from);
     let shots = shots_of(scene, receivers);
     let mut pairs = Vec::new();
     for (later, others) in compared(&shots).into_iter().enumerate() {
@@ -56,7 +57,7 @@ pub(crate) fn match_frame(
     (chosen, gains): (&[usize], &[DVec3]),
     within: &PixelRect,
 ) -> DVec3 {
-    let decoded = decoded();
+    let decoded = linear_of_codes().map(f64::from);
     let seen = seen_places(&Shot::new(scene, frame, receivers), &decoded);
     let shared: Vec<Shared> = chosen
         .iter()

@@ -3,7 +3,6 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use crate::geometry::anchored::AnchoredReceiver;
-use crate::geometry::color::linear_from_srgb;
 use crate::plates::choice::view_of;
 use crate::plates::sight::{PointOn, Sight};
 use crate::scene::{Image, Plate, Scene};
@@ -95,13 +94,4 @@ pub(crate) fn shots_of<'a>(scene: &'a Scene, receivers: &'a [AnchoredReceiver]) 
 fn pixel(px: DVec2) -> [i64; 2] {
     // What is infinitely far saturates, and stays beyond the picture.
     [px.x.floor() as i64, px.y.floor() as i64].map(|at| at.clamp(-1 << 32, 1 << 32))
-}
-
-/// Linear light of each code.
-pub(crate) fn decoded() -> [f64; 256] {
-    let mut decoded = [0.0; 256];
-    for (code, linear) in (0..=u8::MAX).zip(&mut decoded) {
-        *linear = f64::from(linear_from_srgb(f32::from(code) / 255.0));
-    }
-    decoded
 }

@@ -1,6 +1,6 @@
 //! Whether the pictures of the latest view show what the session says: the real toy, its shadow, colours in their order.
 
-use crate::geometry::color::linear_from_srgb;
+use crate::geometry::color::linear_of_codes;
 use crate::geometry::rect::PixelRect;
 use crate::scene::Image;
 
@@ -176,9 +176,7 @@ fn is_same(frame: [f32; 3], plate: [f32; 3]) -> bool {
 /// Linear colours of a rectangle of a picture, row by row.
 pub(crate) fn linear_colors(image: &Image, rect: &PixelRect) -> Vec<[f32; 3]> {
     let (min, max) = (rect.origin_px, rect.origin_px + rect.size_px);
-    let linear_of_code: Vec<f32> = (0..=u8::MAX)
-        .map(|code| linear_from_srgb(f32::from(code) / 255.0))
-        .collect();
+    let linear_of_code = linear_of_codes();
     let texels = (min.y..max.y).flat_map(|y| (min.x..max.x).map(move |x| (x, y)));
     let color = |(x, y): (u32, u32)| {
         let first = 4 * (y as usize * image.width_px as usize + x as usize);
