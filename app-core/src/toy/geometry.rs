@@ -35,6 +35,11 @@ pub(super) struct MorphTarget {
     normals: Option<Vec<Vec3>>,
 }
 
+/// What points of one place share: their coordinates bit by bit, where adding zero gives both zeros the same bits.
+pub(super) fn place_bits(point: Vec3) -> [u32; 3] {
+    (point + 0.0).to_array().map(f32::to_bits)
+}
+
 impl MorphTarget {
     /// Whether it moves any vertex.
     pub(super) fn moves(&self) -> bool {

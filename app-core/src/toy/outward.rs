@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 
 use super::error::ToyWarning;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, place_bits};
 use super::pieces::Pieces;
 
 /// Repairs the primitives of one mesh, at rest; `fields` are their paths.
@@ -96,9 +96,7 @@ impl Shape {
         let mut places = Vec::new();
         let mut known = HashMap::new();
         let mut weld = |position: &Vec3| {
-            // Adding zero gives both zeros the same bits.
-            let key = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-            *known.entry(key).or_insert_with(|| {
+            *known.entry(place_bits(*position)).or_insert_with(|| {
                 places.push(*position);
                 // Vertices are counted when they are read.
                 u32::try_from(places.len() - 1).unwrap_or(u32::MAX)

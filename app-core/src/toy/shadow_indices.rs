@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::geometry::{Geometry, MorphTarget};
+use super::geometry::{Geometry, MorphTarget, place_bits};
 use super::pieces::Pieces;
 use super::surface::Surface;
 
@@ -120,14 +120,12 @@ fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
 
 /// All that determines a vertex's position in its node, bit by bit.
 fn movement(geometry: &Geometry, moving: &[(u32, &MorphTarget)], vertex: usize) -> Vec<u32> {
-    // Adding zero gives both zeros the same bits.
-    let bits = |point: Vec3| point.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-    let mut key = bits(geometry.positions[vertex]).to_vec();
+    let mut key = place_bits(geometry.positions[vertex]).to_vec();
     for (index, target) in moving {
         let offset = target.offset(vertex);
         if offset != Vec3::ZERO {
             key.push(*index);
-            key.extend(bits(offset));
+            key.extend(place_bits(offset));
         }
     }
     key.push(u32::MAX);
