@@ -8,6 +8,8 @@ use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_p
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
 
+use crate::glb::container;
+
 /// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
 pub const INDEX: &[u8] = include_bytes!("../fuzz/seeds/capture/good.json");
 /// A triangle with a clip, a skin and a morph target.
@@ -136,17 +138,7 @@ fn glb_from_chunks(bytes: &[u8]) -> Vec<u8> {
     let (length, chunks) = bytes.split_first_chunk().unwrap_or((&[0; 2], &[]));
     let n_json = usize::from(u16::from_le_bytes(*length)).min(chunks.len());
     let (json, bin) = chunks.split_at(n_json);
-    let padded = |chunk: &[u8], padding: u8| {
-        let mut chunk = chunk.to_vec();
-        chunk.resize(chunk.len().next_multiple_of(4), padding);
-        chunk
-    };
-    let (json, bin) = (padded(json, b' '), padded(bin, 0));
-    let length = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
-    let header = [*b"glTF", length(2), length(28 + json.len() + bin.len())].concat();
-    let json_head = [length(json.len()), *b"JSON"].concat();
-    let bin_head = [length(bin.len()), *b"BIN\0"].concat();
-    [header, json_head, json, bin_head, bin].concat()
+    container(json, bin)
 }
 
 /// A session of three files.

@@ -96,7 +96,7 @@ impl Glb {
         );
     }
 
-    /// The file: a header and two chunks. Source: glTF 2.0, section 4.4.
+    /// The file.
     ///
     /// # Panics
     /// When it takes more than 4 GiB.
@@ -106,15 +106,39 @@ impl Glb {
         if json["buffers"].is_null() {
             json["buffers"] = json!([{ "byteLength": self.bin.len() }]);
         }
-        let mut text = json.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let n_bytes = 12 + 8 + text.len() + 8 + self.bin.len();
-        let word = |value: usize| u32::try_from(value).expect("it is small").to_le_bytes();
-        let header = [*b"glTF", word(2), word(n_bytes)].concat();
-        let json_head = [word(text.len()), *b"JSON"].concat();
-        let bin_head = [word(self.bin.len()), *b"BIN\0"].concat();
-        [header, json_head, text, bin_head, self.bin.clone()].concat()
+        container(json.to_string().as_bytes(), &self.bin)
     }
+}
+
+/// A file: a header and two chunks. Source: glTF 2.0, section 4.4.
+///
+/// # Panics
+/// When it takes more than 4 GiB.
+#[must_use]
+pub fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
+    let padded = |chunk: &[u8], padding: u8| {
+        let mut chunk = chunk.to_vec();
+        chunk.resize(chunk.len().next_multiple_of(4), padding);
+        chunk
+    };
+    let (json, bin) = (padded(json, b' '), padded(bin, 0));
+    let word = |value: usize| u32::try_from(value).expect("it is small").to_le_bytes();
+    let header = [*b"glTF", word(2), word(28 + json.len() + bin.len())].concat();
+    let json_head = [word(json.len()), *b"JSON"].concat();
+    let bin_head = [word(bin.len()), *b"BIN\0"].concat();
+    [header, json_head, json, bin_head, bin].concat()
+}
+
+/// Tree and binary chunk of a file that [`container`] has put together, or one like it.
+///
+/// # Panics
+/// When it is none.
+#[must_use]
+pub fn chunks(file: &[u8]) -> (Value, &[u8]) {
+    let (length, chunks) = file[12..].split_first_chunk().expect("a file has a chunk");
+    let (json, bin) = chunks[4..].split_at(u32::from_le_bytes(*length) as usize);
+    let json = serde_json::from_slice(json).expect("the first chunk is JSON");
+    (json, &bin[8..])
 }
 
 fn width(shape: &str) -> usize {

@@ -11,6 +11,7 @@ pub mod metrics;
 pub mod output;
 pub mod page;
 pub mod photographer;
+pub mod process;
 pub mod program;
 pub mod progress;
 pub mod reference;

@@ -14,12 +14,14 @@ use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_core::toy::Toy;
 use harness::files::BUNDLED_SESSION;
+use harness::glb::{chunks, container};
+use harness::process::peak_mib;
 use serde_json::{Value, json};
 
 use bundled::{core, first_input, picture_of, scene};
 
 /// Largest growth by a material beside its textures.
-const MAX_MATERIAL_BYTES: usize = 64 << 10;
+const MAX_MATERIAL_KIB: f64 = 64.0;
 
 fn number(value: &Value) -> usize {
     usize::try_from(value.as_u64().unwrap_or(0)).unwrap()
@@ -28,8 +30,7 @@ fn number(value: &Value) -> usize {
 /// The bundled toy with a copy of its material for every `n_triangles` of each primitive.
 fn with_materials(n_triangles: usize) -> Toy {
     let bytes = fs::read(format!("{BUNDLED_SESSION}/toy.glb")).unwrap();
-    let n_json_bytes = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-    let mut json: Value = serde_json::from_slice(&bytes[20..20 + n_json_bytes]).unwrap();
+    let (mut json, bin) = chunks(&bytes);
     let (mut primitives, mut materials, mut accessors) = (Vec::new(), Vec::new(), json["accessors"].clone());
     for whole in json["meshes"][0]["primitives"].as_array().unwrap() {
         let indices = &json["accessors"][number(&whole["indices"])];
@@ -52,35 +53,11 @@ fn with_materials(n_triangles: usize) -> Toy {
     json["meshes"][0]["primitives"] = primitives.into();
     json["materials"] = materials.into();
     json["accessors"] = accessors;
-    Toy::from_glb("toy.glb", &packed(&json, &bytes[20 + n_json_bytes..])).unwrap()
+    Toy::from_glb("toy.glb", &container(json.to_string().as_bytes(), bin)).unwrap()
 }
 
-/// A file of another tree and the same binary chunk.
-fn packed(json: &Value, bin_chunk: &[u8]) -> Vec<u8> {
-    let mut text = serde_json::to_vec(json).unwrap();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let u32_bytes = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
-    let n_bytes = 20 + text.len() + bin_chunk.len();
-    let head = [
-        *b"glTF",
-        u32_bytes(2),
-        u32_bytes(n_bytes),
-        u32_bytes(text.len()),
-        *b"JSON",
-    ];
-    [head.as_flattened(), &text, bin_chunk].concat()
-}
-
-/// The most memory that this process has held so far.
-fn peak_bytes() -> usize {
-    let status = fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
-    let kib: usize = line.split_whitespace().nth(1).unwrap().parse().unwrap();
-    kib << 10
-}
-
-/// What a picture of the toy takes, and its objects on the device.
-fn shown(toy: Toy) -> (usize, u64) {
+/// The most memory in MiB that this process has held so far with a picture of the toy, and its objects on the device.
+fn shown(toy: Toy) -> (f64, u64) {
     let mut core = core();
     let objects = |core: &app_core::Core| core.n_created().iter().map(|(_, n)| n).sum::<u64>();
     let before = objects(&core);
@@ -90,20 +67,21 @@ fn shown(toy: Toy) -> (usize, u64) {
     };
     core.set_scene(scene, Preset::Balanced).unwrap();
     picture_of(&mut core, &first_input());
-    (peak_bytes(), objects(&core) - before)
+    (peak_mib().unwrap(), objects(&core) - before)
 }
 
 #[test]
 fn a_material_takes_little_beside_its_textures() {
     // Once for what every scene takes, pipelines among it.
     shown(with_materials(usize::MAX / 3));
-    let (few_bytes, n_few_objects) = shown(with_materials(usize::MAX / 3));
+    let (few_mib, n_few_objects) = shown(with_materials(usize::MAX / 3));
     let many = with_materials(1);
     let n_materials = many.materials().len();
     assert!(n_materials > 1000, "{n_materials}");
-    let (many_bytes, n_many_objects) = shown(many);
-    let bytes = (many_bytes - few_bytes) / n_materials;
-    println!("{bytes} bytes a material");
-    assert!(bytes <= MAX_MATERIAL_BYTES, "{bytes} bytes a material");
+    let (many_mib, n_many_objects) = shown(many);
+    #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
+    let kib = 1024.0 * (many_mib - few_mib) / n_materials as f64;
+    println!("{kib:.1} KiB a material");
+    assert!(kib <= MAX_MATERIAL_KIB, "{kib} KiB a material");
     assert_eq!(n_many_objects, n_few_objects);
 }

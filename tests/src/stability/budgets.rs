@@ -6,10 +6,10 @@ use glam::{DQuat, DVec3};
 use super::case::{Case, Scope};
 use super::exact::{small, small_photos};
 use super::lab::{Lab, Label};
-use super::process::{cpu_secs, held_mib, peak_mib, reset_peak};
 use super::row::{Bound, Findings};
 use crate::photographer::world::{camera, toward};
 use crate::photographer::{Key, Part, Photos, Shape, Shot, Stance, ToyFile, World};
+use crate::process::{cpu_secs, held_mib, peak_mib, reset_peak};
 
 /// Of scene and first frame together, on a processor that also plays the graphics card.
 const CPU_SECS: Bound = Bound {

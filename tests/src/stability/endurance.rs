@@ -5,11 +5,11 @@ use glam::DVec3;
 use super::case::{Case, Scope};
 use super::exact::small;
 use super::lab::{Lab, Label};
-use super::process::held_mib;
 use super::row::{Bound, Findings, Sweep};
 use crate::metrics::score;
 use crate::photographer::world::{camera, toward};
 use crate::photographer::{Films, Sensor, Shot, ToyFile, World};
+use crate::process::held_mib;
 
 const DRIFT: Bound = Bound {
     limit: 0.25,

@@ -10,7 +10,6 @@ mod gap;
 mod ill_posed;
 mod lab;
 mod plot;
-mod process;
 mod row;
 mod table;
 mod truth;

@@ -4,25 +4,22 @@ use std::fs;
 
 use app_core::toy::Toy;
 use harness::files::BUNDLED_SESSION;
+use harness::glb::{chunks, container};
 use serde_json::{Value, json};
 
 /// The bundled toy's file, whose accessors are packed.
 pub(crate) struct File {
     json: Value,
-    bytes: Vec<u8>,
-    /// First byte of the binary chunk's contents.
-    bin: usize,
+    bin: Vec<u8>,
 }
 
 impl File {
     pub(crate) fn open() -> Self {
         let bytes = fs::read(format!("{BUNDLED_SESSION}/toy.glb")).unwrap();
-        let n_json_bytes = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-        let json = serde_json::from_slice(&bytes[20..20 + n_json_bytes]).unwrap();
+        let (json, bin) = chunks(&bytes);
         Self {
             json,
-            bin: 20 + n_json_bytes + 8,
-            bytes,
+            bin: bin.to_vec(),
         }
     }
 
@@ -38,9 +35,9 @@ impl File {
         let number = |value: &Value| usize::try_from(value.as_u64().unwrap_or(0)).unwrap();
         let accessor = &self.json["accessors"][accessor];
         let view = &self.json["bufferViews"][number(&accessor["bufferView"])];
-        let first = self.bin + number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
+        let first = number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
         let n_bytes = size * number(&accessor["count"]);
-        &mut self.bytes[first..first + n_bytes]
+        &mut self.bin[first..first + n_bytes]
     }
 
     /// Changes each normal of the first `n` primitives.
@@ -85,8 +82,8 @@ impl File {
         ];
         let triangles = [0, 1, 2, 0, 2, 3].map(|k: usize| corners[k]);
         let numbers = triangles.as_flattened().iter();
-        self.bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
-        let first = self.bytes.len() - 72 - self.bin;
+        self.bin.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        let first = self.bin.len() - 72;
         let n_views = push(
             &mut self.json["bufferViews"],
             json!({ "buffer": 0, "byteOffset": first, "byteLength": 72 }),
@@ -99,36 +96,11 @@ impl File {
         let mesh = push(&mut self.json["meshes"], json!({ "primitives": [primitive] }));
         let node = push(&mut self.json["nodes"], json!({ "mesh": mesh }));
         push(&mut self.json["scenes"][0]["nodes"], json!(node));
-        self.packed()
-    }
-
-    /// The same with the tree and the binary chunk as they are now.
-    fn packed(self) -> Self {
-        let mut text = serde_json::to_vec(&self.json).unwrap();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let bin = &self.bytes[self.bin..];
-        let u32_bytes = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
-        let head = [*b"glTF", u32_bytes(2), u32_bytes(28 + text.len() + bin.len())];
-        let (json_head, bin_head) = (
-            [u32_bytes(text.len()), *b"JSON"],
-            [u32_bytes(bin.len()), *b"BIN\0"],
-        );
-        Self {
-            bytes: [
-                head.as_flattened(),
-                json_head.as_flattened(),
-                &text,
-                bin_head.as_flattened(),
-                bin,
-            ]
-            .concat(),
-            bin: 28 + text.len(),
-            ..self
-        }
+        self
     }
 
     pub(crate) fn toy(&self) -> Toy {
-        Toy::from_glb("toy.glb", &self.bytes).unwrap()
+        Toy::from_glb("toy.glb", &container(self.json.to_string().as_bytes(), &self.bin)).unwrap()
     }
 }
 

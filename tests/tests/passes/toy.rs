@@ -1,5 +1,6 @@
 //! A toy of four boxes, as a binary glTF file: two legs, a body, and a head that moves.
 
+use harness::glb::container;
 use serde_json::{Value, json};
 
 /// Name of the clip, which lasts one second.
@@ -82,7 +83,7 @@ pub(crate) fn glb() -> Vec<u8> {
         "bufferViews": bin.views,
         "accessors": bin.accessors,
     });
-    container(&json, &bin.bytes)
+    container(json.to_string().as_bytes(), &bin.bytes)
 }
 
 #[derive(Default)]
@@ -144,14 +145,4 @@ fn box_mesh(half_m: [f32; 3]) -> (Vec<f32>, Vec<f32>, Vec<u32>) {
         }
     }
     (positions, normals, indices)
-}
-
-/// A header and two chunks. Source: glTF 2.0, section 4.4.
-fn container(json: &Value, bin: &[u8]) -> Vec<u8> {
-    let mut text = serde_json::to_vec(json).unwrap();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let word = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
-    let n_bytes = 12 + 8 + text.len() + 8 + bin.len();
-    let head = [*b"glTF", word(2), word(n_bytes), word(text.len()), *b"JSON"].concat();
-    [head, text, [word(bin.len()), *b"BIN\0"].concat(), bin.to_vec()].concat()
 }

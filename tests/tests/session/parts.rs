@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use app_core::session::{Capture, FileError, Files, GroundTruth, Session, SessionError, check_path};
+use harness::glb::container;
 use image::{DynamicImage, ImageFormat};
 use serde_json::{Value, json};
 
@@ -157,22 +158,7 @@ pub(crate) fn toy_glb(has_mesh: bool) -> Vec<u8> {
         gltf["nodes"] = json!([{}]);
         gltf.as_object_mut().unwrap().remove("meshes");
     }
-    let mut text = gltf.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let length = |n: usize| u32::try_from(n).unwrap().to_le_bytes();
-    let total = 12 + 8 + text.len() + 8 + bin.len();
-    [
-        b"glTF".as_slice(),
-        &length(2),
-        &length(total),
-        &length(text.len()),
-        b"JSON",
-        &text,
-        &length(bin.len()),
-        b"BIN\0",
-        &bin,
-    ]
-    .concat()
+    container(gltf.to_string().as_bytes(), &bin)
 }
 
 /// Checksum of a PNG chunk. Source: PNG specification (W3C, third edition), annex D.

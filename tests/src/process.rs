@@ -13,7 +13,7 @@ const RESET_PEAK: &str = "5";
 ///
 /// # Errors
 /// Where there is no `/proc`.
-pub(super) fn cpu_secs() -> anyhow::Result<f64> {
+pub fn cpu_secs() -> anyhow::Result<f64> {
     let stat = fs::read_to_string("/proc/self/stat")?;
     // The name may hold anything; what follows its bracket is numbers.
     let (_, fields) = stat.rsplit_once(')').context("no name in /proc/self/stat")?;
@@ -26,7 +26,7 @@ pub(super) fn cpu_secs() -> anyhow::Result<f64> {
 ///
 /// # Errors
 /// Where there is no `/proc`.
-pub(super) fn held_mib() -> anyhow::Result<f64> {
+pub fn held_mib() -> anyhow::Result<f64> {
     status_mib("VmRSS:")
 }
 
@@ -34,7 +34,7 @@ pub(super) fn held_mib() -> anyhow::Result<f64> {
 ///
 /// # Errors
 /// Where there is no `/proc`.
-pub(super) fn peak_mib() -> anyhow::Result<f64> {
+pub fn peak_mib() -> anyhow::Result<f64> {
     status_mib("VmHWM:")
 }
 
@@ -42,7 +42,7 @@ pub(super) fn peak_mib() -> anyhow::Result<f64> {
 ///
 /// # Errors
 /// Where there is no `/proc`.
-pub(super) fn reset_peak() -> anyhow::Result<()> {
+pub fn reset_peak() -> anyhow::Result<()> {
     Ok(fs::write("/proc/self/clear_refs", RESET_PEAK)?)
 }
 
