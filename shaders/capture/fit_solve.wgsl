@@ -42,12 +42,11 @@ var<private> unknowns: array<f32, N_COLUMNS>;
 
 // Irradiance of a light on a receiver's reference point, up to a factor that is the light's own.
 fn irradiance(receiver: u32, i: u32) -> f32 {
-  let light = globals.receivers[receiver].lights[i];
-  if light.y <= 0.0 { return 0.0; }
-  if light.w == 0.0 { return light.y; }
-  let reference = globals.receivers[receiver].reference_in_plane;
-  let distance_m = distance(light.xyz, vec3f(reference.x, 0.0, reference.y));
-  return light.y / (distance_m * distance_m * distance_m);
+  let to_light = reference_to_light(receiver, i);
+  if to_light.y <= 0.0 { return 0.0; }
+  if globals.receivers[receiver].lights[i].w == 0.0 { return to_light.y; }
+  let distance_m = length(to_light);
+  return to_light.y / (distance_m * distance_m * distance_m);
 }
 
 // A light's irradiance on the fitted receiver, over that on the first.

@@ -9,11 +9,16 @@ const PRIOR_REFLECTANCE: f32 = 0.25;
 // Share of all lights below which a light's relation has no more weight.
 const LEAST_SHARE: f32 = 0.05;
 
-// Cosine of light `i` to a receiver, at its reference point; 0 where it is behind it.
-fn reference_cosine(receiver: u32, i: u32) -> f32 {
+// From a receiver's reference point to light `i`, in its plane space: metres, or a unit direction.
+fn reference_to_light(receiver: u32, i: u32) -> vec3f {
   let light = globals.receivers[receiver].lights[i];
   let reference = globals.receivers[receiver].reference_in_plane;
-  let to_light = light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
+  return light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
+}
+
+// Cosine of light `i` to a receiver, at its reference point; 0 where it is behind it.
+fn reference_cosine(receiver: u32, i: u32) -> f32 {
+  let to_light = reference_to_light(receiver, i);
   let distance_m = length(to_light);
   if distance_m == 0.0 { return 1.0; }
   return max(to_light.y / distance_m, 0.0);
