@@ -7,6 +7,7 @@ pub mod files;
 pub mod fuzz;
 pub mod glb;
 pub mod golden;
+pub mod heap;
 pub mod metrics;
 pub mod output;
 pub mod page;

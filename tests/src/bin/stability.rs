@@ -48,7 +48,12 @@ struct Args {
 impl Args {
     fn asks_for(&self, case: &Case) -> bool {
         let is_named = |only: &String| *only == case.label.group || *only == case.label.case;
-        self.only.as_ref().is_none_or(is_named) && (!self.quick || case.scope == Scope::Quick)
+        let is_of_scope = match case.scope {
+            Scope::Quick => true,
+            Scope::Whole => !self.quick,
+            Scope::Named => self.only.as_deref() == Some(case.label.case),
+        };
+        self.only.as_ref().is_none_or(is_named) && is_of_scope
     }
 }
 

@@ -36,4 +36,6 @@ pub enum Scope {
     Quick,
     /// Only by the command.
     Whole,
+    /// Only by the command, and only when it is named: it takes as long as all others together.
+    Named,
 }

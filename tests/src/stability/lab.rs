@@ -13,6 +13,9 @@ use super::gap::Gap;
 use super::row::{Bound, Findings, Measured, Row};
 use crate::photographer::Shot;
 
+/// What a planted fault leaks for each picture, in sizes of it.
+const LEAKED_PICTURES: usize = 4;
+
 /// One core, how much is asked of it, and the fault that is planted in what it makes, if any.
 pub struct Lab {
     core: Core,
@@ -22,6 +25,7 @@ pub struct Lab {
     latest_warnings: Vec<Warning>,
     is_retargeted: bool,
     latest_reference: Option<(Shot, Image)>,
+    leaked: Vec<Vec<u8>>,
 }
 
 /// A picture, or why the core refused to make it.
@@ -29,7 +33,8 @@ pub type Made = Result<Image, CoreError>;
 
 impl Lab {
     /// A lab on a core. With a planted fault pictures of a case have a wrong part, all but the second of each eight; no warning
-    /// is given, and what is learned is no number: each group must then find a broken bound.
+    /// is given, and what is learned is no number; each picture is read twice and leaks memory. Each group must then find a
+    /// broken bound.
     #[must_use]
     pub fn new(core: Core, scope: Scope, is_planted: bool) -> Self {
         Self {
@@ -40,6 +45,7 @@ impl Lab {
             latest_warnings: Vec::new(),
             is_retargeted: false,
             latest_reference: None,
+            leaked: Vec::new(),
         }
     }
 
@@ -48,7 +54,7 @@ impl Lab {
     pub fn some_of<T>(&self, all: impl IntoIterator<Item = T>, n_quick: usize) -> Vec<T> {
         let mut all: Vec<T> = all.into_iter().collect();
         match self.scope {
-            Scope::Whole => all,
+            Scope::Whole | Scope::Named => all,
             Scope::Quick => all.split_off(all.len().saturating_sub(n_quick)),
         }
     }
@@ -94,12 +100,25 @@ impl Lab {
     /// Begins a case.
     pub fn begin(&mut self) {
         self.n_pictures = 0;
+        self.leaked.clear();
     }
 
     /// Name of the device.
     #[must_use]
     pub fn adapter(&self) -> String {
         self.core.gpu().adapter_name()
+    }
+
+    /// Whether the device is a processor.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.core.gpu().is_software()
+    }
+
+    /// Objects made on the device so far.
+    #[must_use]
+    pub fn n_made(&self) -> u64 {
+        self.core.n_created().iter().map(|(_, n)| n).sum()
     }
 
     /// Whether the latest picture is not the camera frame as it was.
@@ -119,7 +138,15 @@ impl Lab {
     /// # Errors
     /// When the core refuses the shot, or the device is lost.
     pub fn picture(&mut self, shot: &Shot) -> Made {
-        self.core.set_scene(shot.scene.clone(), Preset::Balanced)?;
+        self.picture_by(Preset::Balanced, shot)
+    }
+
+    /// The same of another preset.
+    ///
+    /// # Errors
+    /// As for [`Lab::picture`].
+    pub fn picture_by(&mut self, preset: Preset, shot: &Shot) -> Made {
+        self.core.set_scene(shot.scene.clone(), preset)?;
         self.next(&shot.input)
     }
 
@@ -132,6 +159,10 @@ impl Lab {
         self.latest_warnings = report.warnings;
         self.is_retargeted = report.region.is_some();
         let mut picture = self.core.read_picture()?;
+        if self.is_planted {
+            self.core.read_picture()?;
+            self.leaked.push(vec![1; LEAKED_PICTURES * picture.rgba8.len()]);
+        }
         if self.is_planted && self.n_pictures % 8 != 1 {
             spoil(&mut picture);
         }
