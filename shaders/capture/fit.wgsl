@@ -34,6 +34,9 @@ const N_PART: u32 = 9u;
 const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
+// Weight of an estimated plate in the fit of the intensities: it tells where no photographed one does. Its errors would else
+// pass for another gain, and what follows of it makes the next view's estimate.
+const ESTIMATED_INTENSITIES: f32 = 1e-3;
 // As above for the toy, whose interreflections and curved faces are not modelled.
 const TOY_CAUCHY_SCALE: f32 = 0.12;
 
@@ -118,7 +121,7 @@ fn intensity_equation(seen: Observation, channel: u32) -> Equation {
   // An estimated plate constrains the gain alone.
   if seen.is_estimated { eq.columns[0] = predicted; }
   let gain = fit.gain[channel];
-  eq.weight = seen.weight[channel];
+  eq.weight = seen.weight[channel] * select(1.0, ESTIMATED_INTENSITIES, seen.is_estimated);
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
   return eq;
 }

@@ -17,6 +17,7 @@ const PLANTED: &[&str] = &[
     "long-clip",
     "visibility-bulb",
     "two-at-one-place",
+    "one-plate",
 ];
 
 fn lab(is_planted: bool) -> Lab {

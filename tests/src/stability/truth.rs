@@ -48,7 +48,7 @@ fn round_quick(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
 }
 
 fn round(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
-    sweep(lab, label, &ELEVATIONS_DEG, 20)
+    sweep(lab, label, &ELEVATIONS_DEG, 30)
 }
 
 fn sweep(lab: &mut Lab, label: Label, elevations_deg: &[f64], step_deg: usize) -> anyhow::Result<Findings> {
