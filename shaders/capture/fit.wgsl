@@ -34,11 +34,11 @@ const N_PART: u32 = 9u;
 const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
+// As above for the toy, whose interreflections and curved faces are not modelled.
+const TOY_CAUCHY_SCALE: f32 = 0.12;
 // Weight of an estimated plate in the fit of the intensities: it tells where no photographed one does. Its errors would else
 // pass for another gain, and what follows of it makes the next view's estimate.
 const ESTIMATED_INTENSITIES: f32 = 1e-3;
-// As above for the toy, whose interreflections and curved faces are not modelled.
-const TOY_CAUCHY_SCALE: f32 = 0.12;
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
 

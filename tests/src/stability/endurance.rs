@@ -1,8 +1,8 @@
 //! Many frames: errors and memory do not grow.
 //!
-//! What the process holds is judged with `paper`, and with the model only on a graphics card: lavapipe of Mesa 22.3 writes the
-//! values of uniforms into a shader whose loops end by them, compiles that anew for each frame, and keeps all of these until
-//! the pipeline goes. `toy` is such a shader.
+//! What the process holds is judged with `paper`, and with the model only on a graphics card: lavapipe of Mesa 22.3 writes
+//! values of uniforms into a shader whose loops end by them, compiles that for each frame, and keeps all of these until the
+//! pipeline goes. `toy` is such a shader; those of `paper` are none.
 
 use std::f64::consts::TAU;
 
