@@ -77,6 +77,7 @@
 #![doc = include_str!("../doc/glossary.md")]
 #![forbid(unsafe_code)]
 
+pub mod alignment;
 pub mod core;
 pub mod frame;
 pub mod gpu;

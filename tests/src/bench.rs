@@ -14,6 +14,7 @@ use app_core::internals::{InjectedVisibility, Inspect};
 use app_core::preset::Preset;
 use app_core::session::Capture;
 
+use crate::alignment::Alignments;
 use crate::metrics::Scores;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay};
@@ -37,6 +38,8 @@ pub struct Options {
     pub frames: Option<Range<usize>>,
     /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
     pub with_exact: bool,
+    /// Whether toy and lights are first aligned by the pictures; with exact visibility they never are.
+    pub is_aligned: bool,
 }
 
 /// One preset on one session.
@@ -50,6 +53,8 @@ pub struct Row {
     pub n_frames: usize,
     /// Mean scores over those frames that have a truth.
     pub scores: Option<Scores>,
+    /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
+    pub align_ms: Option<f64>,
     /// Times; none where visibility is the reference's.
     pub times: Option<Times>,
     /// Candidates of the ring search for a texel that needed it, on average; none without a search.
@@ -110,29 +115,39 @@ fn measure(
         presets: vec![preset],
         frames: options.frames.clone(),
         out: None,
+        is_aligned: options.is_aligned,
     };
     // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
     let mut reports = replay(session, Some(session), core, &asked, &mut Quiet)?;
     // One preset, one report.
     let report = reports.swap_remove(0);
-    let inputs = inputs(session, &report)?;
+    let inputs = inputs(session, &report, options.is_aligned)?;
     Ok(Row {
         session: report.session,
         preset: preset.name().to_owned(),
         n_frames: report.frames.len(),
         scores: report.mean.scores,
+        align_ms: report.mean.align_ms,
         times: Some(times(core, &inputs, options.n_repeats)?),
         n_taps: mean_taps(core, &inputs)?,
         ratio_to_paper: None,
     })
 }
 
-/// The replayed frames on which something was worked on.
-fn inputs(session: &Capture, report: &Report) -> Result<Vec<FrameInput>, ReplayError> {
+/// The replayed frames on which something was worked on, as the core was given them.
+fn inputs(session: &Capture, report: &Report, is_aligned: bool) -> Result<Vec<FrameInput>, ReplayError> {
     use app_core::session::Session;
-    let worked = report.frames.iter().filter(|frame| frame.region.is_some());
+    let frames = &report.frames;
+    let range =
+        frames.first().map_or(0, |frame| frame.index)..frames.last().map_or(0, |frame| frame.index + 1);
+    let alignments = if is_aligned {
+        Alignments::find(session, range)?
+    } else {
+        Alignments::none()
+    };
+    let worked = frames.iter().filter(|frame| frame.region.is_some());
     worked
-        .map(|frame| Ok(FrameInput::from(&session.frame(frame.index)?)))
+        .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?)))
         .collect()
 }
 

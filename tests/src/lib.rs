@@ -1,5 +1,6 @@
 //! Replay harness: runs the core over recorded sessions on a desktop, scores what it makes and reports what it took.
 
+pub mod alignment;
 pub mod bench;
 pub mod compare;
 pub mod false_color;

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use app_core::alignment::AlignError;
 use app_core::core::{Core, CoreError};
-use app_core::frame::FrameInput;
 use app_core::internals::PixelRect;
 use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
@@ -13,12 +13,14 @@ use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
+use crate::alignment::Alignments;
 use crate::false_color::{self, ERROR, describe};
 use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
 use crate::page::pictures::Pictures;
 use crate::page::{self, MAPS_FOLDER, PAGE_FILE};
 use crate::progress::Progress;
+use crate::report::alignment::AlignmentEntry;
 use crate::report::{FitEntry, FrameEntry, MapEntry, Mean, Report, pass_entries};
 
 /// File name of the report in the output folder.
@@ -37,6 +39,8 @@ pub struct Options {
     ///
     /// One preset writes its pictures and report right there, several each into a folder of its name.
     pub out: Option<PathBuf>,
+    /// Whether toy and lights are first aligned by the pictures.
+    pub is_aligned: bool,
 }
 
 impl Default for Options {
@@ -45,6 +49,7 @@ impl Default for Options {
             presets: vec![Preset::default()],
             frames: None,
             out: None,
+            is_aligned: true,
         }
     }
 }
@@ -66,6 +71,14 @@ pub enum ReplayError {
         index: usize,
         /// What the core said.
         reason: CoreError,
+    },
+    /// A frame cannot be aligned.
+    #[error("aligning frame {index}: {reason}")]
+    Align {
+        /// The frame, from 0.
+        index: usize,
+        /// What is wrong with it.
+        reason: Box<AlignError>,
     },
     /// A picture does not fit its truth.
     #[error("scoring frame {index}: {reason}")]
@@ -128,12 +141,18 @@ pub fn replay(
     for folder in folders.iter().map(String::as_str).chain([""]) {
         out.map(|out| prepare(&out.join(folder))).transpose()?;
     }
+    let alignments = if options.is_aligned {
+        Alignments::find(session, frames.clone())?
+    } else {
+        Alignments::none()
+    };
     let mut reports = Vec::with_capacity(folders.len());
     for (preset, folder) in options.presets.iter().zip(folders) {
         let mut run = Run {
             session,
             truth,
             core,
+            alignments: &alignments,
             out: out.map(|out| Out::new(out.join(&folder))),
         };
         let report = run.replay(*preset, frames.clone(), progress)?;
@@ -165,6 +184,7 @@ struct Run<'a> {
     session: &'a dyn Session,
     truth: Option<&'a dyn GroundTruth>,
     core: &'a mut Core,
+    alignments: &'a Alignments,
     out: Option<Out>,
 }
 
@@ -206,7 +226,7 @@ impl Run<'_> {
     }
 
     fn frame(&mut self, index: usize) -> Result<FrameEntry, ReplayError> {
-        let (mut entry, region, picture) = run_frame(self.session, self.core, index)?;
+        let (mut entry, region, picture) = run_frame(self.session, self.alignments, self.core, index)?;
         let truth = match self.truth {
             Some(truth) => truth.truth(index)?,
             None => None,
@@ -285,12 +305,14 @@ fn prepare(folder: &Path) -> Result<(), ReplayError> {
 /// Makes one picture and what can be told of it without a truth.
 fn run_frame(
     session: &dyn Session,
+    alignments: &Alignments,
     core: &mut Core,
     index: usize,
 ) -> Result<(FrameEntry, Option<PixelRect>, Image), ReplayError> {
     let failed = |reason| ReplayError::Frame { index, reason };
     let frame = session.frame(index)?;
-    let input = FrameInput::from(&frame);
+    let input = alignments.input(index, &frame);
+    let aligned = alignments.of(index);
     let start = Instant::now();
     let report = core.frame(&input).map_err(failed)?;
     let cpu = start.elapsed();
@@ -311,8 +333,15 @@ fn run_frame(
         passes: pass_entries(&report, &times),
         skipped: report.skipped.iter().map(Into::into).collect(),
         warnings: warnings
+            .chain(
+                aligned
+                    .iter()
+                    .flat_map(|aligned| &aligned.alignment.warnings)
+                    .map(ToString::to_string),
+            )
             .chain(report.warnings.iter().map(ToString::to_string))
             .collect(),
+        alignment: aligned.map(AlignmentEntry::from),
         scores: None,
     };
     Ok((entry, report.region, picture))

@@ -7,6 +7,9 @@ use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use crate::metrics::{Score, Scores};
+use crate::report::alignment::AlignmentEntry;
+
+pub mod alignment;
 
 /// A replay of one session.
 #[derive(Clone, Debug, Serialize)]
@@ -46,6 +49,8 @@ pub struct Mean {
     pub cpu_ms: Option<f64>,
     /// Mean of their time until the picture was read back.
     pub wall_ms: Option<f64>,
+    /// Mean time that alignment took on the processor, over all frames; none where nothing was aligned.
+    pub align_ms: Option<f64>,
 }
 
 /// One frame.
@@ -75,6 +80,8 @@ pub struct FrameEntry {
     pub skipped: Vec<SkippedEntry>,
     /// What was odd about the frame, and how it is degraded.
     pub warnings: Vec<String>,
+    /// What alignment found; none where the session is replayed as recorded.
+    pub alignment: Option<AlignmentEntry>,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
 }
@@ -146,6 +153,8 @@ impl Mean {
     pub fn of(frames: &[FrameEntry]) -> Self {
         let scores: Vec<Scores> = frames.iter().filter_map(|frame| frame.scores).collect();
         let steady: Vec<&FrameEntry> = frames.iter().filter(|frame| frame.is_steady()).collect();
+        let aligned = frames.iter().filter_map(|frame| frame.alignment.as_ref());
+        let align_ms: Vec<f64> = aligned.map(|alignment| alignment.cpu_ms).collect();
         let gpu_ms: Option<Vec<f64>> = steady.iter().map(|frame| frame.gpu_ms).collect();
         Self {
             n_scored: scores.len(),
@@ -154,6 +163,7 @@ impl Mean {
             gpu_ms: gpu_ms.and_then(|times| mean(times.into_iter())),
             cpu_ms: mean(steady.iter().map(|frame| frame.cpu_ms)),
             wall_ms: mean(steady.iter().map(|frame| frame.wall_ms)),
+            align_ms: mean(align_ms.into_iter()),
         }
     }
 }

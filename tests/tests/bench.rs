@@ -18,6 +18,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         n_repeats: 1,
         frames: Some(0..1),
         with_exact: false,
+        is_aligned: true,
     };
     let text = csv(&bench(&session, &mut core, &options).unwrap());
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();

@@ -130,6 +130,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
         presets: vec![Preset::Flat, Preset::Balanced],
         frames: Some(1..2),
         out: Some(out.to_owned()),
+        ..Options::default()
     };
     run_all(&session, &options).unwrap();
 

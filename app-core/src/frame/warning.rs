@@ -74,6 +74,11 @@ pub enum Warning {
     ToyOutOfPicture,
     /// The camera's centre is not above the receiver.
     CameraBelowReceiver,
+    /// The toy's outline is not where the picture has it, and no pose was found that brings it there.
+    Misaligned {
+        /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
+        outline_px: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -144,6 +149,10 @@ impl fmt::Display for Warning {
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
+            Self::Misaligned { outline_px } => write!(
+                f,
+                "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+            ),
         }
     }
 }

@@ -75,6 +75,7 @@ pub(super) fn measure(
         preset: format!("{preset}+exact"),
         n_frames,
         scores: mean_scores(&scores),
+        align_ms: None,
         times: None,
         n_taps: None,
         ratio_to_paper: None,

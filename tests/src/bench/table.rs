@@ -5,7 +5,7 @@ use crate::metrics::{Score, Scores};
 use super::{Row, Times};
 
 const CSV_HEADER: &str = "session,preset,n_frames,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,\
-frame_rmse,frame_ssim,cpu_ms,gpu_ms,capture_ms,ratio_to_paper,taps_per_missing_texel,pass_shares";
+frame_rmse,frame_ssim,align_ms,cpu_ms,gpu_ms,capture_ms,ratio_to_paper,taps_per_missing_texel,pass_shares";
 
 /// One line a row under a header. What was not measured is empty; shares of passes are `name=share`, apart by spaces.
 #[must_use]
@@ -18,6 +18,7 @@ pub fn csv(rows: &[Row]) -> String {
             }));
             let times = row.times.as_ref();
             let measured = [
+                row.align_ms,
                 times.and_then(|times| times.cpu_ms),
                 times.and_then(|times| times.gpu_ms),
                 times.and_then(|times| times.capture_ms),
@@ -44,6 +45,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         "toy",
         "edge",
         "frame",
+        "align ms",
         "CPU ms",
         "GPU ms",
         "capture ms",
@@ -61,6 +63,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         let mut line = vec![row.session.clone(), row.preset.clone()];
         line.extend(regions(row).map(score));
         line.extend([
+            short(row.align_ms, 1),
             short(times.and_then(|times| times.cpu_ms), 2),
             short(times.and_then(|times| times.gpu_ms), 2),
             short(times.and_then(|times| times.capture_ms), 2),
@@ -70,7 +73,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         cells.push(line);
     }
     let mut text = aligned(&cells);
-    text.push_str("Scores are RMSE in 8-bit codes (SSIM); times are medians of frames that learn nothing.\n");
+    text.push_str("Scores are RMSE in 8-bit codes (SSIM); times are medians of frames that learn nothing, but that of alignment, a mean over all frames.\n");
     for row in rows.iter().filter(|row| row.n_taps.is_some()) {
         let shares = shares(row.times.as_ref());
         text.push_str(&format!(

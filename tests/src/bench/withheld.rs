@@ -12,6 +12,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use glam::Vec4;
 
+use crate::alignment::Alignments;
 use crate::false_color::srgb_from_linear;
 use crate::replay::ReplayError;
 
@@ -38,17 +39,32 @@ pub struct Rebuilt {
 ///
 /// # Errors
 /// When a frame cannot be read or made.
-pub fn rebuild(session: &Capture, core: &mut Core, presets: &[Preset]) -> Result<Vec<Rebuilt>, ReplayError> {
+pub fn rebuild(
+    session: &Capture,
+    core: &mut Core,
+    presets: &[Preset],
+    is_aligned: bool,
+) -> Result<Vec<Rebuilt>, ReplayError> {
+    let alignments = if is_aligned {
+        Alignments::find(session, 0..session.n_frames())?
+    } else {
+        Alignments::none()
+    };
     let mut rebuilt = Vec::new();
     for &preset in presets {
         if matches!(preset.settings(), Settings::Model(_)) {
-            rebuilt.extend(rebuild_with(session, core, preset)?);
+            rebuilt.extend(rebuild_with(session, &alignments, core, preset)?);
         }
     }
     Ok(rebuilt)
 }
 
-fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Vec<Rebuilt>, ReplayError> {
+fn rebuild_with(
+    session: &Capture,
+    alignments: &Alignments,
+    core: &mut Core,
+    preset: Preset,
+) -> Result<Vec<Rebuilt>, ReplayError> {
     let scene = session.scene();
     core.set_scene(scene.clone(), preset)?;
     core.withhold_shadow()?;
@@ -57,7 +73,7 @@ fn rebuild_with(session: &Capture, core: &mut Core, preset: Preset) -> Result<Ve
     for frame in 0..session.n_frames() {
         let input = FrameInput {
             shown_pose: scene.physical_pose.clone(),
-            ..FrameInput::from(&session.frame(frame)?)
+            ..alignments.input(frame, &session.frame(frame)?)
         };
         if latest
             .as_ref()

@@ -46,6 +46,9 @@ struct Args {
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
     #[arg(long, conflicts_with_all = ["exact", "repeats", "first"])]
     withheld: bool,
+    /// Take poses and lights as recorded, without aligning them by the pictures
+    #[arg(long)]
+    as_given: bool,
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -97,7 +100,7 @@ fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) ->
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());
         let capture = Capture::open(Folder::open(folder)?)?;
-        let rebuilt = rebuild(&capture, core, &presets(args));
+        let rebuilt = rebuild(&capture, core, &presets(args), !args.as_given);
         all.extend(rebuilt.with_context(|| folder.display().to_string())?);
     }
     for one in &all {
@@ -127,6 +130,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
             end: usize::from(n_frames),
         }),
         with_exact: args.exact,
+        is_aligned: !args.as_given,
     };
     Ok(bench(&capture, core, &options)?)
 }

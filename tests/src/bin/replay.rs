@@ -41,6 +41,9 @@ struct Args {
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    /// Take poses and lights as recorded, without aligning them by the pictures
+    #[arg(long)]
+    as_given: bool,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -66,6 +69,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         presets: without_repeats(&args.presets),
         frames: args.frames.clone(),
         out: Some(out.clone()),
+        is_aligned: !args.as_given,
     };
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
     let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;

@@ -22,6 +22,7 @@ const ROOMS: &[&str] = &[
     "baseline",
     "plates",
     "passes",
+    "alignment",
     "frame",
     "plan",
     "preset",

@@ -1,0 +1,155 @@
+//! Shadows in the picture: the toy flattened onto each receiver from points over a light.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
+
+use super::floor::FloorPixel;
+use super::lamp::{Lamp, disc};
+use crate::alignment::raster::{Coverage, Rasterizer, project};
+use crate::alignment::receivers::SeenReceiver;
+use crate::alignment::shape::Shape;
+use crate::scene::Intrinsics;
+
+/// No direction of ambient light is lower, as a sine: its shadow would have no end.
+const LOWEST: f64 = 0.1;
+
+/// A toy that casts shadows, and the picture that they are seen in.
+pub(super) struct Caster<'a> {
+    pub(super) shape: &'a Shape,
+    pub(super) receivers: &'a [SeenReceiver],
+    /// The toy in each receiver's plane space.
+    in_planes: Vec<Vec<DVec3>>,
+    intrinsics: Intrinsics,
+    size_px: IVec2,
+}
+
+impl<'a> Caster<'a> {
+    pub(super) fn new(
+        shape: &'a Shape,
+        receivers: &'a [SeenReceiver],
+        intrinsics: Intrinsics,
+        size_px: IVec2,
+    ) -> Self {
+        let in_plane = |receiver: &SeenReceiver| {
+            let points = shape.points.iter();
+            points
+                .map(|point| receiver.plane_from_camera.transform_point3(*point))
+                .collect()
+        };
+        Self {
+            in_planes: receivers.iter().map(in_plane).collect(),
+            shape,
+            receivers,
+            intrinsics,
+            size_px,
+        }
+    }
+
+    /// The part of a lamp's light that the toy takes from each pixel.
+    pub(super) fn lamp(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        lamp: &Lamp,
+        disc: &[DVec2],
+    ) -> Vec<f32> {
+        let mut taken = vec![0.0; pixels.len()];
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            let plane_from_camera = &receiver.plane_from_camera;
+            let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
+            let points = lamp.points(plane_from_camera, self.shape.centre, disc);
+            let weighted = points.into_iter().map(|point| (point, irradiance(point, foot)));
+            self.add(raster, pixels, index, weighted.collect(), &mut taken);
+        }
+        taken
+    }
+
+    /// Rectangles of pixels around the hard shadows from each point of a lamp, as the first and the last.
+    pub(super) fn rects(&self, raster: &mut Rasterizer, lamp: &Lamp, disc: &[DVec2]) -> Vec<[IVec2; 2]> {
+        let mut rects = Vec::new();
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            for point in lamp.points(&receiver.plane_from_camera, self.shape.centre, disc) {
+                let coverage = self.flattened(raster, index, point);
+                if coverage.size_px != IVec2::ZERO {
+                    let first = coverage.origin_px;
+                    rects.push([first, first + coverage.size_px - 1]);
+                }
+            }
+        }
+        rects
+    }
+
+    /// The part of the light from all around that the toy takes from each pixel.
+    pub(super) fn ambient(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        n_directions: u32,
+    ) -> Vec<f32> {
+        // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
+        let lifted = |at: DVec2| {
+            let sine = (1.0 - at.length_squared()).max(0.0).sqrt().max(LOWEST);
+            (DVec4::new(at.x, sine, at.y, 0.0), 1.0)
+        };
+        let mut taken = vec![0.0; pixels.len()];
+        for index in 0..self.receivers.len() {
+            let directions = disc(n_directions).into_iter().map(lifted);
+            self.add(raster, pixels, index, directions.collect(), &mut taken);
+        }
+        taken
+    }
+
+    fn add(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        receiver: usize,
+        points: Vec<(DVec4, f64)>,
+        taken: &mut [f32],
+    ) {
+        let total: f64 = points.iter().map(|(_, weight)| weight).sum();
+        for (point, weight) in points.into_iter().filter(|(_, weight)| *weight > 0.0) {
+            let coverage = self.flattened(raster, receiver, point);
+            #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
+            let weight = (weight / total) as f32;
+            let [first, end] = [coverage.origin_px.y, coverage.origin_px.y + coverage.size_px.y]
+                .map(|row| pixels.partition_point(|pixel| pixel.at.y < row));
+            let rows = taken[first..end].iter_mut().zip(&pixels[first..end]);
+            for (taken, pixel) in rows.filter(|(_, pixel)| pixel.receiver == receiver) {
+                *taken += weight * coverage.at(pixel.at);
+            }
+        }
+    }
+
+    /// The hard shadow from one point.
+    fn flattened(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
+        let camera_from_plane = self.receivers[receiver].plane_from_camera.inverse();
+        let points = self.in_planes[receiver].iter();
+        let flat: Vec<DVec3> = points
+            .map(|point| flattened(*point, light, &camera_from_plane))
+            .collect();
+        let corners = project(&flat, &self.intrinsics);
+        raster.coverage(&corners, &self.shape.triangles, self.size_px)
+    }
+}
+
+/// Where the ray from a light through a point meets the plane, in camera space; behind the camera where it does not.
+fn flattened(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
+    const BEHIND: DVec3 = DVec3::Z;
+    let to_light = light.truncate() - light.w * point;
+    if to_light.y > 0.0 {
+        camera_from_plane.transform_point3(point - to_light * (point.y / to_light.y))
+    } else {
+        BEHIND
+    }
+}
+
+/// Irradiance of the plane from a point of a light, up to a factor.
+fn irradiance(point: DVec4, at: DVec3) -> f64 {
+    let to = point.truncate() - point.w * at;
+    let falloff = if point.w == 0.0 {
+        to.length()
+    } else {
+        to.length().powi(3)
+    };
+    if to.y > 0.0 { to.y / falloff } else { 0.0 }
+}

@@ -1,0 +1,73 @@
+//! Pixels of the receivers beside the toy, which the shadow is read from.
+
+use glam::IVec2;
+
+use crate::alignment::picture::{Color, Level, deviation_of_codes};
+use crate::alignment::raster::Coverage;
+use crate::alignment::receivers::{SeenReceiver, receiver_at};
+
+/// Pixels as near to the toy may mix with it.
+const CLEAR_PX: i32 = 2;
+/// Noise of a photograph, in 8-bit codes.
+const NOISE_CODES: f32 = 2.0;
+/// What the model of light leaves unexplained, over the plate.
+const UNEXPLAINED: f32 = 0.02;
+/// Linear light of the codes 4 and 250: beyond, a pixel says little.
+const DARKEST: f32 = 0.0012;
+const BRIGHTEST: f32 = 0.956;
+
+/// A pixel that shows a receiver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FloorPixel {
+    /// Where, in pixels of the level.
+    pub(super) at: IVec2,
+    /// Index of the receiver.
+    pub(super) receiver: usize,
+    /// Of the photograph.
+    pub(super) frame: Color,
+    /// Of the plate.
+    pub(super) plate: Color,
+    /// One over the expected variance of each channel; 0 where it says nothing.
+    pub(super) precision: Color,
+}
+
+/// Pixels clear of the toy that show a receiver, row by row.
+pub(super) fn floor_pixels(
+    level: &Level,
+    coverage: &Coverage,
+    receivers: &[SeenReceiver],
+    is_wanted: impl Fn(IVec2) -> bool,
+) -> Vec<FloorPixel> {
+    let size_px = level.frame.size_px;
+    let all = (0..size_px.y).flat_map(|y| (0..size_px.x).map(move |x| IVec2::new(x, y)));
+    let clear = all.filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
+    let pixels = clear.filter_map(|at| {
+        let (receiver, _) = receiver_at(receivers, &level.intrinsics, at)?;
+        let (frame, plate) = (level.frame.get(at)?, level.plate.as_ref()?.get(at)?);
+        let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel]));
+        Some(FloorPixel {
+            at,
+            receiver,
+            frame,
+            plate,
+            precision,
+        })
+    });
+    pixels.collect()
+}
+
+fn precision(frame: f32, plate: f32) -> f32 {
+    let is_useful = |value: f32| value > DARKEST && value < BRIGHTEST;
+    if is_useful(frame) && is_useful(plate) {
+        let deviation = deviation_of_codes(frame, NOISE_CODES).hypot(UNEXPLAINED * plate);
+        1.0 / (deviation * deviation)
+    } else {
+        0.0
+    }
+}
+
+fn is_near_toy(coverage: &Coverage, at: IVec2) -> bool {
+    let mut around =
+        (-CLEAR_PX..=CLEAR_PX).flat_map(|y| (-CLEAR_PX..=CLEAR_PX).map(move |x| IVec2::new(x, y)));
+    around.any(|step| coverage.at(at + step) > 0.0)
+}

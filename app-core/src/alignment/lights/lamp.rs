@@ -1,0 +1,126 @@
+//! A light by numbers that can be moved a little.
+
+use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
+
+use crate::scene::Light;
+
+/// Numbers of a lamp: two angles, the logarithm of its distance, and its spread.
+pub(super) const N_PARTS: usize = 4;
+/// Index of the distance among them.
+pub(super) const DISTANCE: usize = 2;
+/// Index of the spread.
+pub(super) const SPREAD: usize = 3;
+
+/// A light seen from the toy, in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lamp {
+    /// Unit vector from the toy.
+    pub(super) direction: DVec3,
+    /// None for a light too far away for it to matter.
+    pub(super) distance_m: Option<f64>,
+    /// Radius over distance.
+    pub(super) spread: f64,
+}
+
+impl Lamp {
+    /// None for a light in the middle of the toy.
+    pub(super) fn new(light: &Light, camera_from_world: &DMat4, toy: DVec3) -> Option<Self> {
+        let (to, radius_m) = match *light {
+            Light::Sphere {
+                position_in_world,
+                radius_m,
+            } => (
+                camera_from_world.transform_point3(position_in_world) - toy,
+                Some(radius_m),
+            ),
+            Light::Directional {
+                direction_to_light_in_world,
+                ..
+            } => (
+                camera_from_world.transform_vector3(direction_to_light_in_world),
+                None,
+            ),
+        };
+        let distance_m = to.length();
+        let spread = match *light {
+            Light::Directional {
+                angular_radius_rad, ..
+            } => angular_radius_rad.tan(),
+            Light::Sphere { radius_m, .. } => radius_m / distance_m,
+        };
+        Some(Self {
+            direction: to.try_normalize()?,
+            distance_m: radius_m.map(|_| distance_m),
+            spread,
+        })
+    }
+
+    /// Back in the world.
+    pub(super) fn light(&self, world_from_camera: &DMat4, toy: DVec3) -> Light {
+        match self.distance_m {
+            Some(distance_m) => Light::Sphere {
+                position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
+                radius_m: self.spread * distance_m,
+            },
+            None => Light::Directional {
+                direction_to_light_in_world: world_from_camera.transform_vector3(self.direction).normalize(),
+                angular_radius_rad: self.spread.atan(),
+            },
+        }
+    }
+
+    /// Turned by two angles in radians about axes across its direction, its distance times the power of the third number, its
+    /// spread more by the fourth.
+    pub(super) fn moved(&self, step: &[f64; N_PARTS]) -> Self {
+        let (across, along) = self.direction.any_orthonormal_pair();
+        let turn = DQuat::from_scaled_axis(step[0] * across + step[1] * along);
+        Self {
+            direction: (turn * self.direction).normalize(),
+            distance_m: self
+                .distance_m
+                .map(|distance_m| distance_m * step[DISTANCE].exp()),
+            spread: (self.spread + step[SPREAD]).max(0.0),
+        }
+    }
+
+    /// Points over its disc in a space, homogeneous.
+    pub(super) fn points(&self, space_from_camera: &DMat4, toy: DVec3, disc: &[DVec2]) -> Vec<DVec4> {
+        let (across, along) = self.direction.any_orthonormal_pair();
+        let point = |at: &DVec2| {
+            let to = self.direction + self.spread * (at.x * across + at.y * along);
+            match self.distance_m {
+                Some(distance_m) => space_from_camera
+                    .transform_point3(toy + distance_m * to)
+                    .extend(1.0),
+                None => space_from_camera.transform_vector3(to).extend(0.0),
+            }
+        };
+        disc.iter().map(point).collect()
+    }
+}
+
+/// Points over the unit disc, of equal areas, with the disc's own mean and variance.
+///
+/// Source: Vogel 1979 (sunflower spiral), which by itself is a little off both.
+pub(super) fn disc(n_points: u32) -> Vec<DVec2> {
+    let n = f64::from(n_points);
+    let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let mut points: Vec<DVec2> = (0..n_points)
+        .map(f64::from)
+        .map(|i| ((i + 0.5) / n).sqrt() * DVec2::from_angle(i * golden_angle_rad))
+        .collect();
+    let mean = points.iter().sum::<DVec2>() / n;
+    let variance = points
+        .iter()
+        .map(|point| (*point - mean) * (*point - mean))
+        .sum::<DVec2>()
+        / n;
+    // Along each axis a disc has a variance of 1/4; a single point has none.
+    if variance.cmpgt(DVec2::ZERO).all() {
+        let scale = 0.5 / DVec2::new(variance.x.sqrt(), variance.y.sqrt());
+        points
+            .iter_mut()
+            .for_each(|point| *point = (*point - mean) * scale);
+    }
+    points
+}

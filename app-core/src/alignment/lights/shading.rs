@@ -1,0 +1,144 @@
+//! The light on the receivers for given shadows: linear in what each lamp and the ambient light give.
+//!
+//! Frame over plate = gain - ambient factor x (1 - A) - sum over lamps of factor x (1 - V), for each receiver and channel:
+//! the additive model of `fit`, without the toy's bounce, which the ambient factor takes up.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::floor::FloorPixel;
+use crate::scene::MAX_LIGHTS;
+
+/// Gain, ambient factor, and one factor a lamp.
+pub(super) const N_FACTORS: usize = 2 + MAX_LIGHTS;
+/// Index of the first lamp's.
+pub(super) const FIRST_LAMP: usize = 2;
+
+pub(super) type Factors = SVector<f64, N_FACTORS>;
+type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
+
+/// Keeps factors of what no pixel shows at 0.
+const PRIOR: f64 = 1e-3;
+/// Rounds of reweighting.
+const N_ROUNDS: usize = 3;
+
+/// The pixels that a shading explains, with what the toy takes of each light there.
+pub(super) struct Shaded<'a> {
+    pub(super) pixels: &'a [FloorPixel],
+    pub(super) ambient: &'a [f32],
+    pub(super) lamps: &'a [Vec<f32>],
+}
+
+/// Factors of each receiver and channel.
+pub(super) struct Shading {
+    pub(super) factors: Vec<[Factors; 3]>,
+    /// Mean robust loss of a channel of a pixel, in variances.
+    pub(super) loss: f64,
+}
+
+/// One channel of one pixel against a shading.
+pub(super) struct Residual {
+    /// Frame less model, in linear light.
+    pub(super) residual: f64,
+    /// Robust weight: one over a variance, or less.
+    pub(super) weight: f64,
+    /// Derivatives by the factors.
+    pub(super) row: Factors,
+    loss: f64,
+}
+
+impl Shaded<'_> {
+    /// Of one pixel: 1, then less what is taken.
+    pub(super) fn columns(&self, index: usize) -> Factors {
+        let mut columns = Factors::zeros();
+        columns[0] = 1.0;
+        columns[1] = -f64::from(self.ambient[index]);
+        for (lamp, taken) in self.lamps.iter().enumerate() {
+            columns[FIRST_LAMP + lamp] = -f64::from(taken[index]);
+        }
+        columns
+    }
+
+    /// One channel of a pixel; none where it says nothing. `robust` is the scale of the weights, in deviations.
+    pub(super) fn residual(
+        &self,
+        (index, channel): (usize, usize),
+        columns: &Factors,
+        factors: &Factors,
+        robust: f64,
+    ) -> Option<Residual> {
+        let pixel = &self.pixels[index];
+        let precision = f64::from(pixel.precision[channel]);
+        if precision <= 0.0 {
+            return None;
+        }
+        let row = columns * f64::from(pixel.plate[channel]);
+        let residual = f64::from(pixel.frame[channel]) - row.dot(factors);
+        // Geman and McClure 1987.
+        let square = residual * residual * precision;
+        let excess = square / (robust * robust);
+        Some(Residual {
+            residual,
+            weight: precision / (1.0 + excess).powi(2),
+            row,
+            loss: square / (1.0 + excess),
+        })
+    }
+
+    /// Fits all factors by iteratively reweighted least squares, at first as if a receiver were as the plate shows it.
+    pub(super) fn fit(&self, n_receivers: usize, robust: f64) -> Shading {
+        let mut lit = Factors::zeros();
+        lit[0] = 1.0;
+        let mut shading = Shading {
+            factors: vec![[lit; 3]; n_receivers],
+            loss: f64::INFINITY,
+        };
+        for round in 0..N_ROUNDS {
+            // The first round knows no factors to judge by.
+            let scale = if round == 0 { f64::INFINITY } else { robust };
+            shading = self.refit(&shading, scale);
+        }
+        shading
+    }
+
+    fn refit(&self, from: &Shading, robust: f64) -> Shading {
+        let mut normals = vec![[Normal::identity() * PRIOR; 3]; from.factors.len()];
+        let mut sides = vec![[Factors::zeros(); 3]; from.factors.len()];
+        let (mut loss, mut n) = (0.0, 0.0);
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let columns = self.columns(index);
+            for channel in 0..3 {
+                let factors = &from.factors[pixel.receiver][channel];
+                let Some(one) = self.residual((index, channel), &columns, factors, robust) else {
+                    continue;
+                };
+                loss += one.loss;
+                n += 1.0;
+                let normal = &mut normals[pixel.receiver][channel];
+                add_outer(normal, &one.row, one.weight, FIRST_LAMP + self.lamps.len());
+                let seen = f64::from(pixel.frame[channel]);
+                sides[pixel.receiver][channel] += one.row * (one.weight * seen);
+            }
+        }
+        let solved = normals.iter().zip(&sides).zip(&from.factors);
+        let solved = solved.map(|((normals, sides), before)| {
+            [0, 1, 2].map(|channel| {
+                let factor = normals[channel].cholesky();
+                factor.map_or(before[channel], |factor| factor.solve(&sides[channel]))
+            })
+        });
+        Shading {
+            factors: solved.collect(),
+            loss: if n > 0.0 { loss / n } else { 0.0 },
+        }
+    }
+}
+
+/// Adds `weight` times the outer product of the first `n` entries.
+fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
+    for i in 0..n {
+        let scaled = weight * row[i];
+        for j in 0..n {
+            normal[(i, j)] += scaled * row[j];
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Gauss-Newton steps of all lamps at once.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Scene;
+use super::lamp::{DISTANCE, Lamp, N_PARTS, SPREAD};
+use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Shaded, Shading};
+use crate::alignment::raster::Rasterizer;
+
+/// Differences are taken over this part of the penumbra: less stalls on wide ones, where single samples would count.
+const OF_PENUMBRA: f64 = 0.3;
+/// And over no less, in pixels.
+const LEAST_PX: f64 = 0.5;
+/// Difference of a logarithm of distance.
+const DISTANCE_STEP: f64 = 0.05;
+/// A penumbra narrower than that tells no size, in pixels.
+const LEAST_PENUMBRA_PX: f64 = 0.6;
+/// Deviations of what is given: directions in radians, the logarithm of distance, and the spread over the given one.
+const GIVEN_RAD: f64 = 0.2;
+const GIVEN_DISTANCE: f64 = 0.3;
+const GIVEN_SPREAD: f64 = 0.7;
+/// Of the spread of a point light, so that it can grow.
+const GIVEN_POINT: f64 = 0.003;
+/// The longest step of each part; of the spread as a fraction of it.
+const LONGEST_RAD: f64 = 0.06;
+const LONGEST_DISTANCE: f64 = 0.2;
+const LONGEST_GROWTH: f64 = 1.0;
+const LONGEST_SHRINKING: f64 = 0.5;
+
+/// How what a lamp takes changes with one of its parts, at each pixel.
+type Slope = Option<Vec<f32>>;
+
+impl Scene<'_> {
+    /// Moves all lamps by one step; returns one deviation of each direction. None where there is nothing to go by.
+    pub(super) fn step(
+        &self,
+        raster: &mut Rasterizer,
+        lamps: &mut [Lamp],
+        given: &[Lamp],
+        robust: f64,
+    ) -> Option<Vec<f64>> {
+        let taken: Vec<Vec<f32>> = lamps
+            .iter()
+            .map(|lamp| self.taken(raster, lamp, &self.disc(lamp)))
+            .collect();
+        let slopes: Vec<Slope> = lamps.iter().flat_map(|lamp| self.slopes(raster, lamp)).collect();
+        let shaded = self.shaded(&taken);
+        let shading = shaded.fit(self.caster.receivers.len(), robust);
+        let mut system = System::new(slopes.len(), shading.factors.len());
+        self.gather(&mut system, &shaded, &shading, &slopes, robust);
+        let (mut normal, mut side) = system.without_factors();
+        for (index, (lamp, given)) in lamps.iter().zip(given).enumerate() {
+            for (part, (away, deviation)) in prior(lamp, given).into_iter().enumerate() {
+                let place = N_PARTS * index + part;
+                let information = 1.0 / (deviation * deviation);
+                normal[(place, place)] += information;
+                side[place] -= information * away;
+            }
+        }
+        let factor = normal.cholesky()?;
+        let step = factor.solve(&side);
+        let covariance = factor.inverse();
+        for (index, lamp) in lamps.iter_mut().enumerate() {
+            let part = |part: usize| step[N_PARTS * index + part];
+            *lamp = lamp.moved(&bounded(lamp, [part(0), part(1), part(2), part(3)]));
+        }
+        let deviations = (0..lamps.len()).map(|index| {
+            let variance = |part: usize| covariance[(N_PARTS * index + part, N_PARTS * index + part)];
+            (variance(0) + variance(1)).max(0.0).sqrt()
+        });
+        Some(deviations.collect())
+    }
+
+    /// Central differences of what a lamp takes; none for a part that the picture does not tell.
+    fn slopes(&self, raster: &mut Rasterizer, lamp: &Lamp) -> [Slope; N_PARTS] {
+        let disc = self.disc(lamp);
+        let penumbra_px = self.penumbra_px(lamp);
+        let turn_rad = (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX) / self.px_per_rad;
+        [0, 1, DISTANCE, SPREAD].map(|part| {
+            let is_told = match part {
+                DISTANCE => lamp.distance_m.is_some(),
+                SPREAD => penumbra_px >= LEAST_PENUMBRA_PX,
+                _ => true,
+            };
+            if !is_told {
+                return None;
+            }
+            let by = if part == DISTANCE { DISTANCE_STEP } else { turn_rad };
+            let mut step = [0.0; N_PARTS];
+            step[part] = by;
+            let more = lamp.moved(&step);
+            step[part] = -by;
+            let less = lamp.moved(&step);
+            let span = match part {
+                SPREAD => more.spread - less.spread,
+                _ => 2.0 * by,
+            };
+            let [more, less] = [more, less].map(|lamp| self.taken(raster, &lamp, &disc));
+            #[allow(clippy::cast_possible_truncation, reason = "a slope, to 7 digits")]
+            let differences = more
+                .iter()
+                .zip(&less)
+                .map(|(more, less)| (f64::from(more - less) / span) as f32);
+            Some(differences.collect())
+        })
+    }
+
+    fn gather(&self, system: &mut System, shaded: &Shaded, shading: &Shading, slopes: &[Slope], robust: f64) {
+        let mut slope = vec![0.0; slopes.len()];
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let columns = shaded.columns(index);
+            for (value, slope) in slope.iter_mut().zip(slopes) {
+                *value = slope.as_ref().map_or(0.0, |slope| f64::from(slope[index]));
+            }
+            for channel in 0..3 {
+                let factors = &shading.factors[pixel.receiver][channel];
+                let Some(one) = shaded.residual((index, channel), &columns, factors, robust) else {
+                    continue;
+                };
+                let plate = f64::from(pixel.plate[channel]);
+                let of_lamps = slope.iter().enumerate();
+                let of_lamps =
+                    of_lamps.map(|(place, slope)| -plate * factors[FIRST_LAMP + place / N_PARTS] * slope);
+                system.add(
+                    3 * pixel.receiver + channel,
+                    &one.row,
+                    of_lamps,
+                    (one.weight, one.residual),
+                );
+            }
+        }
+    }
+}
+
+/// Normal equations of lamps and factors; each receiver and channel has factors of its own.
+struct System {
+    lamps: DMatrix<f64>,
+    side: DVector<f64>,
+    blocks: Vec<Block>,
+    /// The lamps' part of a row, reused.
+    row: DVector<f64>,
+}
+
+/// Of the factors of one channel of a receiver.
+struct Block {
+    factors: DMatrix<f64>,
+    mixed: DMatrix<f64>,
+    side: DVector<f64>,
+}
+
+impl System {
+    /// Keeps factors of what no pixel shows.
+    const PRIOR: f64 = 1e-3;
+
+    fn new(n_parts: usize, n_receivers: usize) -> Self {
+        let block = || Block {
+            factors: DMatrix::identity(N_FACTORS, N_FACTORS) * Self::PRIOR,
+            mixed: DMatrix::zeros(N_FACTORS, n_parts),
+            side: DVector::zeros(N_FACTORS),
+        };
+        Self {
+            lamps: DMatrix::zeros(n_parts, n_parts),
+            side: DVector::zeros(n_parts),
+            blocks: (0..3 * n_receivers).map(|_| block()).collect(),
+            row: DVector::zeros(n_parts),
+        }
+    }
+
+    fn add(
+        &mut self,
+        block: usize,
+        factors: &Factors,
+        lamps: impl Iterator<Item = f64>,
+        (weight, residual): (f64, f64),
+    ) {
+        let block = &mut self.blocks[block];
+        block.factors.ger(weight, factors, factors, 1.0);
+        block.side.axpy(weight * residual, factors, 1.0);
+        let mut is_touched = false;
+        for (value, part) in self.row.iter_mut().zip(lamps) {
+            *value = part;
+            is_touched |= part != 0.0;
+        }
+        if is_touched {
+            self.lamps.ger(weight, &self.row, &self.row, 1.0);
+            self.side.axpy(weight * residual, &self.row, 1.0);
+            block.mixed.ger(weight, factors, &self.row, 1.0);
+        }
+    }
+
+    /// The lamps' equations with all factors solved for: Schur complements.
+    fn without_factors(self) -> (DMatrix<f64>, DVector<f64>) {
+        let (mut normal, mut side) = (self.lamps, self.side);
+        for block in self.blocks {
+            if let Some(factor) = block.factors.cholesky() {
+                normal -= block.mixed.transpose() * factor.solve(&block.mixed);
+                side -= block.mixed.transpose() * factor.solve(&block.side);
+            }
+        }
+        (normal, side)
+    }
+}
+
+/// How far each part is from what was given, and the deviation of that; directions are free within theirs.
+fn prior(lamp: &Lamp, given: &Lamp) -> [(f64, f64); N_PARTS] {
+    let distances = lamp.distance_m.zip(given.distance_m);
+    let farther = distances.map_or(0.0, |(lamp, given)| (lamp / given).ln());
+    let spread = GIVEN_SPREAD * given.spread + GIVEN_POINT;
+    [
+        (0.0, GIVEN_RAD),
+        (0.0, GIVEN_RAD),
+        (farther, GIVEN_DISTANCE),
+        (lamp.spread - given.spread, spread),
+    ]
+}
+
+/// A step no longer than the model is nearly linear for.
+fn bounded(lamp: &Lamp, step: [f64; N_PARTS]) -> [f64; N_PARTS] {
+    let growth = (LONGEST_GROWTH * lamp.spread).max(GIVEN_POINT);
+    [
+        step[0].clamp(-LONGEST_RAD, LONGEST_RAD),
+        step[1].clamp(-LONGEST_RAD, LONGEST_RAD),
+        step[DISTANCE].clamp(-LONGEST_DISTANCE, LONGEST_DISTANCE),
+        step[SPREAD].clamp(-LONGEST_SHRINKING * lamp.spread, growth),
+    ]
+}

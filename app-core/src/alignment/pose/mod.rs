@@ -1,0 +1,242 @@
+//! The toy's pose, by its outline in the picture.
+//!
+//! Coarse to fine. Where the pose is many pixels off, colours tell toy from surroundings (`odds`), and lines across the outline where
+//! the one becomes the other (`lines`). Then each pixel beside the outline tells how much of it the toy covers (`matte`). Each
+//! round is one Gauss-Newton step of all six numbers (`motion`).
+
+mod contour;
+mod lines;
+mod matte;
+mod motion;
+mod odds;
+
+use glam::DMat4;
+
+use super::picture::{Level, Pyramid};
+use super::raster::{Coverage, Rasterizer, project};
+use super::report::PoseDeviation;
+use super::shape::Shape;
+use contour::{Element, contour};
+use matte::Band;
+use motion::{Matrix6, Measured, Motion, Vector6, solve};
+use odds::Odds;
+
+/// Rounds along lines: the level, and how far they reach in its pixels.
+const COARSE: [(usize, i32); 11] = [
+    (2, 10),
+    (2, 10),
+    (2, 8),
+    (2, 8),
+    (2, 6),
+    (2, 6),
+    (2, 4),
+    (1, 6),
+    (1, 6),
+    (1, 4),
+    (1, 4),
+];
+/// Colours are learned this far around the toy, over how far lines reach.
+const LEARNED_AROUND: i32 = 3;
+/// Rounds by matting, at the largest level: ever narrower bands, and how often each.
+const FINE: [(Band, usize); 4] = [
+    (band(8.0, 2.0), 2),
+    (band(4.0, 1.0), 3),
+    (band(2.5, 0.5), 3),
+    (FINEST, 6),
+];
+const FINEST: Band = band(1.5, 0.2);
+/// By which poses that are far from one another are compared.
+const WIDE: Band = band(4.0, 2.0);
+/// Root mean square of the outline in the wide band, in pixels, below which no coarse rounds are needed.
+const NEAR_PX: f64 = 0.6;
+/// Of its robust scale, a band's loss below which most of the outline is within it.
+const FINE_ENOUGH: f64 = 0.7;
+/// A step that moves the toy by less, over its radius, is the last of its band.
+const LAST_STEP: f64 = 1e-6;
+/// How far off a pose may be, over the toy's radius: the deviation of the prior.
+const PRIOR: f64 = 0.2;
+/// Deviation of one piece of the outline, for the prior's weight against the pictures.
+const PIECE_PX: f64 = 0.3;
+/// Fewer pieces of the outline than that tell no pose.
+const LEAST_PIECES: usize = 40;
+/// Of the outline, what has to be measured.
+const LEAST_MEASURED: f64 = 0.3;
+
+const fn band(half_px: f64, robust_px: f64) -> Band {
+    Band { half_px, robust_px }
+}
+
+/// The outline of a pose against the picture's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// Of the finest band, robust, in square pixels.
+    pub(super) loss_px2: f64,
+    /// The same of the wide band.
+    wide_loss_px2: f64,
+}
+
+impl Fit {
+    /// Root mean square distance of the outline, in pixels: by the finest band where that is wide enough to tell.
+    pub(super) fn outline_px(&self) -> f64 {
+        let fine_px = self.loss_px2.sqrt();
+        if fine_px < FINE_ENOUGH * FINEST.robust_px {
+            fine_px
+        } else {
+            self.wide_loss_px2.sqrt().max(fine_px)
+        }
+    }
+
+    fn is_far(&self) -> bool {
+        self.wide_loss_px2 > NEAR_PX * NEAR_PX
+    }
+
+    /// Whether it is nearer to the picture than another, by both bands.
+    pub(super) fn is_nearer_than(&self, other: &Self) -> bool {
+        self.loss_px2 < other.loss_px2 && self.wide_loss_px2 <= other.wide_loss_px2
+    }
+}
+
+/// A pose that was found.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// Moves the toy from where it was given, in camera space.
+    pub(super) motion: DMat4,
+    /// Distance that the toy's middle moved, in metres.
+    pub(super) moved_m: f64,
+    /// Angle in radians.
+    pub(super) turned_rad: f64,
+    /// As given.
+    pub(super) given: Fit,
+    /// As found.
+    pub(super) found: Fit,
+    /// One deviation of what was found.
+    pub(super) deviation: PoseDeviation,
+}
+
+/// Finds the pose, starting from that of `shape`; none where too little of the outline is seen.
+pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
+    let mut search = Search {
+        shape,
+        pyramid,
+        raster: Rasterizer::default(),
+        prior: Matrix6::identity() * (PIECE_PX / (PRIOR * shape.radius_m)).powi(2),
+    };
+    let start = Motion::none(shape.centre, shape.radius_m);
+    let given = search.fit(&start)?;
+    let mut motion = start;
+    if given.is_far() {
+        motion = search.coarse(motion);
+    }
+    let Converged {
+        motion,
+        information,
+        mean_weight,
+    } = search.fine(motion)?;
+    let found = search.fit(&motion)?;
+    Some(Found {
+        motion: motion.matrix(),
+        moved_m: motion.translation.length(),
+        turned_rad: motion.rotation.to_scaled_axis().length(),
+        given,
+        deviation: deviation(&information, mean_weight * found.loss_px2, shape.radius_m),
+        found,
+    })
+}
+
+struct Search<'a> {
+    shape: &'a Shape,
+    pyramid: &'a Pyramid,
+    raster: Rasterizer,
+    prior: Matrix6,
+}
+
+impl Search<'_> {
+    fn outline(&mut self, motion: &Motion, level: &Level) -> (Coverage, Vec<Element>) {
+        let corners = project(&motion.apply(&self.shape.points), &level.intrinsics);
+        let size_px = level.frame.size_px;
+        let coverage = self.raster.with_depth(&corners, &self.shape.triangles, size_px);
+        let elements = contour(&coverage, size_px);
+        (coverage, elements)
+    }
+
+    fn matte(&mut self, motion: &Motion, band: Band) -> Option<Vec<Measured>> {
+        let level = self.pyramid.level(0);
+        let (coverage, elements) = self.outline(motion, level);
+        let measured = matte::measure(level, &coverage, &elements, band);
+        #[allow(clippy::cast_precision_loss, reason = "pixels of an outline")]
+        let share = measured.len() as f64 / elements.len() as f64;
+        (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some(measured)
+    }
+
+    fn fit(&mut self, motion: &Motion) -> Option<Fit> {
+        Some(Fit {
+            loss_px2: FINEST.loss_px2(&self.matte(motion, FINEST)?),
+            wide_loss_px2: WIDE.loss_px2(&self.matte(motion, WIDE)?),
+        })
+    }
+
+    fn coarse(&mut self, mut motion: Motion) -> Motion {
+        for (level, reach_px) in COARSE {
+            let level = self.pyramid.level(level);
+            let (coverage, elements) = self.outline(&motion, level);
+            let odds = Odds::learn(level, &coverage, LEARNED_AROUND * reach_px);
+            let measured = lines::measure(&elements, &coverage, &odds, reach_px);
+            if let Some((step, _)) = solve(&measured, &level.intrinsics, &motion, &self.prior) {
+                motion = motion.then(&step);
+            }
+        }
+        motion
+    }
+
+    fn fine(&mut self, mut motion: Motion) -> Option<Converged> {
+        let mut last = None;
+        for (band, n_rounds) in FINE {
+            for _ in 0..n_rounds {
+                let measured = self.matte(&motion, band)?;
+                let k = &self.pyramid.level(0).intrinsics;
+                let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.prior)?;
+                motion = motion.then(&step);
+                last = Some(Converged {
+                    motion,
+                    information,
+                    mean_weight: mean_weight(&measured),
+                });
+                if step.norm() < LAST_STEP * self.shape.radius_m {
+                    break;
+                }
+            }
+        }
+        last
+    }
+}
+
+/// Where the search came to rest.
+struct Converged {
+    motion: Motion,
+    information: Matrix6,
+    mean_weight: f64,
+}
+
+/// Of the pieces that were measured, by length; at least one is.
+fn mean_weight(measured: &[Measured]) -> f64 {
+    let weighted = |one: &Measured| (one.element.length_px, one.precision * one.robust);
+    let (sum, total) = measured
+        .iter()
+        .map(weighted)
+        .fold((0.0, 0.0), |(sum, total), (length, weight)| {
+            (sum + length * weight, total + length)
+        });
+    sum / total
+}
+
+/// One deviation of a pose, by the information on it and the variance of a piece of unit weight.
+fn deviation(information: &Matrix6, unit_variance: f64, radius_m: f64) -> PoseDeviation {
+    // It was solved with, so that it has an inverse.
+    let covariance = information.try_inverse().unwrap_or_else(Matrix6::identity);
+    let root = |index: usize| (covariance[(index, index)].max(0.0) * unit_variance).sqrt();
+    PoseDeviation {
+        lateral_m: root(3).hypot(root(4)),
+        depth_m: root(5),
+        rotation_rad: root(0).hypot(root(1)).hypot(root(2)) / radius_m,
+    }
+}

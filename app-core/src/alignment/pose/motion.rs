@@ -1,0 +1,115 @@
+//! Small rigid motions of the toy, and the one that moves its outline as measured.
+
+use glam::{DMat4, DQuat, DVec3};
+use nalgebra::{SMatrix, SVector};
+
+use super::contour::Element;
+use crate::scene::Intrinsics;
+
+/// Rotation vector times the toy's radius, then translation: six lengths in metres.
+pub(super) type Vector6 = SVector<f64, 6>;
+/// Information about them: one over metres squared.
+pub(super) type Matrix6 = SMatrix<f64, 6, 6>;
+
+/// A rotation about a pivot, then a translation, in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pivot: DVec3,
+    /// Turns six lengths into angles: the toy's radius, in metres.
+    radius_m: f64,
+    /// About the pivot.
+    pub(super) rotation: DQuat,
+    /// In metres.
+    pub(super) translation: DVec3,
+}
+
+impl Motion {
+    /// No motion of a toy around `pivot`.
+    pub(super) fn none(pivot: DVec3, radius_m: f64) -> Self {
+        Self {
+            pivot,
+            radius_m,
+            rotation: DQuat::IDENTITY,
+            translation: DVec3::ZERO,
+        }
+    }
+
+    /// As a matrix, camera space to camera space.
+    pub(super) fn matrix(&self) -> DMat4 {
+        DMat4::from_translation(self.centre())
+            * DMat4::from_quat(self.rotation)
+            * DMat4::from_translation(-self.pivot)
+    }
+
+    /// Moves points.
+    pub(super) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let to = self.centre();
+        points
+            .iter()
+            .map(|point| self.rotation * (*point - self.pivot) + to)
+            .collect()
+    }
+
+    /// Where the pivot is now.
+    fn centre(&self) -> DVec3 {
+        self.pivot + self.translation
+    }
+
+    /// Followed by a step.
+    pub(super) fn then(&self, step: &Vector6) -> Self {
+        let turn = DVec3::new(step[0], step[1], step[2]) / self.radius_m;
+        Self {
+            rotation: (DQuat::from_scaled_axis(turn) * self.rotation).normalize(),
+            translation: self.translation + DVec3::new(step[3], step[4], step[5]),
+            ..*self
+        }
+    }
+
+    /// How far a piece of the outline moves along its normal, in pixels, for each part of a step.
+    ///
+    /// That a rim slides over a curved surface as it turns counts only in the second order.
+    fn outward(&self, element: &Element, k: &Intrinsics) -> Vector6 {
+        let depth_m = element.depth_m;
+        let slope_x = (element.at_px.x - k.cx_px) / k.fx_px;
+        let slope_y = -(element.at_px.y - k.cy_px) / k.fy_px;
+        let point = DVec3::new(slope_x, slope_y, -1.0) * depth_m;
+        let (across, down) = (element.normal.x * k.fx_px, -element.normal.y * k.fy_px);
+        let per_m = DVec3::new(across, down, across * slope_x + down * slope_y) / depth_m;
+        let turn = (point - self.centre()).cross(per_m) / self.radius_m;
+        Vector6::new(turn.x, turn.y, turn.z, per_m.x, per_m.y, per_m.z)
+    }
+}
+
+/// A measured displacement of a piece of the outline.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    /// The piece.
+    pub(super) element: Element,
+    /// Out of the toy.
+    pub(super) offset_px: f64,
+    /// How far the pixels can be trusted there, from 0.
+    pub(super) precision: f64,
+    /// That of robust estimation: less for what does not fit.
+    pub(super) robust: f64,
+}
+
+/// The step that moves all pieces as measured, in weighted least squares, with the information that there is on it.
+///
+/// `prior` holds what the outline does not tell, such as how a toy of revolution is turned. None where nothing was measured.
+pub(super) fn solve(
+    measured: &[Measured],
+    k: &Intrinsics,
+    motion: &Motion,
+    prior: &Matrix6,
+) -> Option<(Vector6, Matrix6)> {
+    let mut information = *prior;
+    let mut gradient = Vector6::zeros();
+    for one in measured {
+        let row = motion.outward(&one.element, k);
+        let weight = one.precision * one.robust * one.element.length_px;
+        information += weight * row * row.transpose();
+        gradient += weight * one.offset_px * row;
+    }
+    let factor = information.cholesky()?;
+    (!measured.is_empty()).then(|| (factor.solve(&gradient), information))
+}

@@ -1,0 +1,58 @@
+//! What alignment found, and what it did with it.
+
+/// What was aligned in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlignmentReport {
+    /// The toy's pose; none where too little of its outline is seen.
+    pub pose: Option<PoseAlignment>,
+    /// The lights, in the order of the list; empty where their shadows were not looked at: no light is listed, there is no plate,
+    /// or the toy's pose is not known well enough.
+    pub lights: Vec<LightAlignment>,
+    /// Error of the shadows that the given lights predict, and of those that were found: mean squares over receivers, in units of
+    /// what noise and the model of light are expected to leave. None where lights were not looked at.
+    pub light_errors: Option<[f64; 2]>,
+}
+
+/// The toy's pose, by its outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseAlignment {
+    /// Whether the pose was moved: only where that brings the outline nearer by more than noise explains.
+    pub is_applied: bool,
+    /// How far the middle of the toy was found from where it was given, in metres.
+    pub moved_m: f64,
+    /// How far it was found turned, in radians.
+    pub turned_rad: f64,
+    /// Root mean square distance from the outline as given to that in the picture, in pixels; a piece that is far off counts as
+    /// two pixels.
+    pub given_outline_px: f64,
+    /// The same for the pose that was found.
+    pub outline_px: f64,
+    /// One deviation of what was found, by noise alone: errors of the model can be some ten times that.
+    pub deviation: PoseDeviation,
+}
+
+/// One deviation of a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseDeviation {
+    /// Across the line of sight, in metres.
+    pub lateral_m: f64,
+    /// Along it, in metres.
+    pub depth_m: f64,
+    /// About all axes, in radians. Large where a toy can be turned unseen.
+    pub rotation_rad: f64,
+}
+
+/// A light, by its shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightAlignment {
+    /// Whether the lights were moved, all or none.
+    pub is_applied: bool,
+    /// Angle at the toy between the direction given and that found, in radians.
+    pub turned_rad: f64,
+    /// Found distance over the given; 1 for a directional light.
+    pub distance_ratio: f64,
+    /// Found radius over distance, over the same as given; none for a point light.
+    pub size_ratio: Option<f64>,
+    /// One deviation of the direction, in radians, by noise alone.
+    pub deviation_rad: f64,
+}

@@ -1,0 +1,56 @@
+//! The physical toy as a shape in camera space.
+
+use glam::{DMat4, DVec3};
+
+use crate::scene::Scene;
+use crate::toy::{PosedMesh, ToyError};
+
+/// Welded vertices, and triangles of which those that face an eye cover all that the toy covers.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// In camera space.
+    pub(super) points: Vec<DVec3>,
+    /// Corners among the points, counter-clockwise seen from outside.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Middle of the box around it.
+    pub(super) centre: DVec3,
+    /// Half of that box's diagonal, in metres.
+    pub(super) radius_m: f64,
+}
+
+impl Shape {
+    /// The scene's physical pose.
+    pub(super) fn new(scene: &Scene, camera_from_object: &DMat4) -> Result<Self, ToyError> {
+        let toy = &scene.toy;
+        let mut posed = PosedMesh::default();
+        toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
+        let shadow = toy.shadow_indices();
+        let facing = &shadow.ranges.facing;
+        let corners = &shadow.indices[facing.start as usize..facing.end as usize];
+        let mut used: Vec<u32> = corners.to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let mut places = vec![0; posed.positions.len()];
+        for (place, vertex) in (0..).zip(&used) {
+            places[*vertex as usize] = place;
+        }
+        let points: Vec<DVec3> = used
+            .iter()
+            .map(|vertex| posed.positions[*vertex as usize].as_dvec3())
+            .collect();
+        let (low, high) = points
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
+                (low.min(*point), high.max(*point))
+            });
+        let triangles = corners.as_chunks().0.iter();
+        Ok(Self {
+            triangles: triangles
+                .map(|corners: &[u32; 3]| corners.map(|vertex| places[vertex as usize]))
+                .collect(),
+            centre: 0.5 * (low + high),
+            radius_m: 0.5 * (high - low).length(),
+            points,
+        })
+    }
+}

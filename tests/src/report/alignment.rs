@@ -1,0 +1,95 @@
+//! What alignment found, as it stands in `report.json`: in millimetres and degrees.
+
+use app_core::alignment::{LightAlignment, PoseAlignment};
+use serde::Serialize;
+
+use crate::alignment::Aligned;
+
+/// Of one frame.
+#[derive(Clone, Debug, Serialize)]
+pub struct AlignmentEntry {
+    /// Time that it took on the processor.
+    pub cpu_ms: f64,
+    /// The toy's pose; none where too little of its outline is seen.
+    pub pose: Option<PoseEntry>,
+    /// The lights, in the order of the list; empty where their shadows were not looked at.
+    pub lights: Vec<LightEntry>,
+    /// Error of the predicted shadows over what noise and model are expected to leave, with the given lights and with those found.
+    pub light_errors: Option<[f64; 2]>,
+}
+
+/// The toy's pose.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoseEntry {
+    /// Whether it was corrected.
+    pub is_applied: bool,
+    /// From given to found.
+    pub moved_mm: f64,
+    /// From given to found.
+    pub turned_deg: f64,
+    /// Root mean square distance between the outline as given and that in the picture.
+    pub given_outline_px: f64,
+    /// The same as found.
+    pub outline_px: f64,
+    /// One deviation across the line of sight, by noise alone.
+    pub lateral_deviation_mm: f64,
+    /// One deviation along it.
+    pub depth_deviation_mm: f64,
+    /// One deviation of the rotation.
+    pub rotation_deviation_deg: f64,
+}
+
+/// A light.
+#[derive(Clone, Debug, Serialize)]
+pub struct LightEntry {
+    /// Whether it was corrected.
+    pub is_applied: bool,
+    /// From given to found, at the toy.
+    pub turned_deg: f64,
+    /// Found distance over the given.
+    pub distance_ratio: f64,
+    /// Found angular size over the given; none for a point light.
+    pub size_ratio: Option<f64>,
+    /// One deviation of the direction, by noise alone.
+    pub deviation_deg: f64,
+}
+
+impl From<&Aligned> for AlignmentEntry {
+    fn from(aligned: &Aligned) -> Self {
+        let report = &aligned.alignment.report;
+        Self {
+            cpu_ms: aligned.cpu_ms,
+            pose: report.pose.as_ref().map(PoseEntry::from),
+            lights: report.lights.iter().map(LightEntry::from).collect(),
+            light_errors: report.light_errors,
+        }
+    }
+}
+
+impl From<&PoseAlignment> for PoseEntry {
+    fn from(pose: &PoseAlignment) -> Self {
+        let mm = |metres: f64| 1e3 * metres;
+        Self {
+            is_applied: pose.is_applied,
+            moved_mm: mm(pose.moved_m),
+            turned_deg: pose.turned_rad.to_degrees(),
+            given_outline_px: pose.given_outline_px,
+            outline_px: pose.outline_px,
+            lateral_deviation_mm: mm(pose.deviation.lateral_m),
+            depth_deviation_mm: mm(pose.deviation.depth_m),
+            rotation_deviation_deg: pose.deviation.rotation_rad.to_degrees(),
+        }
+    }
+}
+
+impl From<&LightAlignment> for LightEntry {
+    fn from(light: &LightAlignment) -> Self {
+        Self {
+            is_applied: light.is_applied,
+            turned_deg: light.turned_rad.to_degrees(),
+            distance_ratio: light.distance_ratio,
+            size_ratio: light.size_ratio,
+            deviation_deg: light.deviation_rad.to_degrees(),
+        }
+    }
+}

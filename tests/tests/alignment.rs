@@ -1,0 +1,224 @@
+//! Toy and lights are found in the pictures of the bundled session, however they were given within some millimetres and
+//! degrees; what is right stays as it is.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::alignment::{AlignError, Aligner, Alignment};
+use app_core::frame::{FrameInput, Warning};
+use app_core::scene::{Image, Light, Scene};
+use app_core::session::{Capture, Session};
+use glam::{BVec3, DMat4, DQuat, DVec2, DVec3};
+use harness::files::{BUNDLED_SESSION, Folder};
+
+static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
+    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let input = FrameInput::from(&session.frame(0).unwrap());
+    (session.scene().clone(), input)
+});
+
+/// Where the pose that is found with the recorded one may differ from it, at the corners of the toy's box: the session was
+/// rendered with few samples a pixel.
+const RECORDED_PX: f64 = 0.3;
+/// Where poses that are found from different starts may differ from one another.
+const SAME_PX: f64 = 0.02;
+/// The same of a light's direction.
+const SAME_DEG: f64 = 0.02;
+
+fn align(input: &FrameInput) -> Alignment {
+    Aligner::new().align(&SESSION.0, input).unwrap()
+}
+
+/// The session's first frame, with the toy moved about its middle by millimetres and degrees.
+fn disturbed(axis: DVec3, mm: DVec3, deg: f64) -> FrameInput {
+    let mut input = SESSION.1.clone();
+    let middle = toy_in_world();
+    input.world_from_object = DMat4::from_translation(middle + 1e-3 * mm)
+        * DMat4::from_axis_angle(axis.normalize(), deg.to_radians())
+        * DMat4::from_translation(-middle)
+        * input.world_from_object;
+    input
+}
+
+fn corners() -> [DVec3; 8] {
+    let (scene, _) = &*SESSION;
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
+    let [min, max] = [bounds.min.as_dvec3(), bounds.max.as_dvec3()];
+    std::array::from_fn(|i| DVec3::select(BVec3::new(i & 1 == 0, i & 2 == 0, i & 4 == 0), min, max))
+}
+
+fn toy_in_world() -> DVec3 {
+    let middle = corners().iter().sum::<DVec3>() / 8.0;
+    SESSION.1.world_from_object.transform_point3(middle)
+}
+
+/// The largest distance in the picture between the corners of the toy's box in two poses.
+fn apart_px(a: &DMat4, b: &DMat4) -> f64 {
+    let (_, input) = &*SESSION;
+    let pixel = |world_from_object: &DMat4, corner: DVec3| {
+        let k = &input.camera.intrinsics;
+        let at = input.camera.world_from_camera.inverse() * *world_from_object;
+        let at = at.transform_point3(corner);
+        DVec2::new(-k.fx_px * at.x / at.z, k.fy_px * at.y / at.z)
+    };
+    let distances = corners().map(|corner| (pixel(a, corner) - pixel(b, corner)).length());
+    distances.into_iter().fold(0.0, f64::max)
+}
+
+fn turned_light(deg: f64, size: f64) -> Light {
+    match SESSION.0.lights[0] {
+        Light::Sphere {
+            position_in_world,
+            radius_m,
+        } => {
+            let to = position_in_world - toy_in_world();
+            let axis = to.cross(DVec3::new(0.3, 0.9, -0.4)).normalize();
+            Light::Sphere {
+                position_in_world: toy_in_world() + DQuat::from_axis_angle(axis, deg.to_radians()) * to,
+                radius_m: size * radius_m,
+            }
+        }
+        Light::Directional { .. } => unreachable!("the bundled session has a bulb"),
+    }
+}
+
+fn direction(light: &Light) -> DVec3 {
+    match light {
+        Light::Sphere {
+            position_in_world, ..
+        } => (*position_in_world - toy_in_world()).normalize(),
+        Light::Directional { .. } => unreachable!("the bundled session has a bulb"),
+    }
+}
+
+#[test]
+fn what_is_right_stays_as_it_is() {
+    let (_, input) = &*SESSION;
+    let found = align(input);
+    assert_eq!(found.world_from_object, input.world_from_object);
+    assert_eq!(found.lights, None);
+    assert!(found.warnings.is_empty());
+    let pose = found.report.pose.unwrap();
+    assert!(!pose.is_applied && pose.outline_px < 0.2, "{pose:?}");
+}
+
+#[test]
+fn a_disturbed_pose_comes_back_to_one_place() {
+    let starts = [
+        disturbed(DVec3::X, DVec3::new(2.0, -3.0, 3.5), 3.0),
+        disturbed(DVec3::Y, DVec3::new(-4.0, 1.0, 2.0), -3.0),
+        disturbed(DVec3::new(1.0, 1.0, -1.0), DVec3::new(7.0, 5.0, -5.0), 6.0),
+    ];
+    let found = starts.map(|start| {
+        // What is found is not what was given.
+        assert!(apart_px(&start.world_from_object, &SESSION.1.world_from_object) > 5.0);
+        let found = align(&start);
+        assert!(found.report.pose.unwrap().is_applied);
+        found.world_from_object
+    });
+    for pose in &found {
+        let recorded_px = apart_px(pose, &SESSION.1.world_from_object);
+        assert!(
+            recorded_px < RECORDED_PX,
+            "{recorded_px} px from the recorded pose"
+        );
+        let apart_px = apart_px(pose, &found[0]);
+        assert!(apart_px < SAME_PX, "{apart_px} px apart");
+    }
+}
+
+#[test]
+fn a_disturbed_light_comes_back_to_one_place() {
+    let found = [(10.0, 2.0), (-10.0, 0.5)].map(|(deg, size)| {
+        let mut input = SESSION.1.clone();
+        input.lights = Some(Arc::new([turned_light(deg, size)]));
+        let found = align(&input);
+        assert!(found.report.lights[0].is_applied);
+        found.lights.unwrap()[0]
+    });
+    let recorded = direction(&SESSION.0.lights[0]);
+    for light in &found {
+        let deg = direction(light).angle_between(recorded).to_degrees();
+        assert!(deg < 0.15, "{deg} degrees from the recorded direction");
+        let deg = direction(light).angle_between(direction(&found[0])).to_degrees();
+        assert!(deg < SAME_DEG, "{deg} degrees apart");
+    }
+}
+
+#[test]
+fn a_world_elsewhere_has_the_same_correction() {
+    let input = disturbed(DVec3::Z, DVec3::new(1.0, 2.0, -2.0), 2.0);
+    let here = align(&input);
+    let there_from_here = DMat4::from_rotation_translation(
+        DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7),
+        DVec3::new(6e3, -3e3, 7e3),
+    );
+    let mut scene = SESSION.0.clone();
+    let mut moved = input.clone();
+    moved.camera.world_from_camera = there_from_here * moved.camera.world_from_camera;
+    moved.world_from_object = there_from_here * moved.world_from_object;
+    for receiver in &mut scene.receivers {
+        receiver.world_from_plane = there_from_here * receiver.world_from_plane;
+    }
+    for plate in &mut scene.plates {
+        plate.camera = moved.camera;
+    }
+    for light in &mut scene.lights {
+        if let Light::Sphere {
+            position_in_world, ..
+        } = light
+        {
+            *position_in_world = there_from_here.transform_point3(*position_in_world);
+        }
+    }
+    let there = Aligner::new().align(&scene, &moved).unwrap();
+    let in_camera = |found: &Alignment, input: &FrameInput| {
+        (input.camera.world_from_camera.inverse() * found.world_from_object).as_mat4()
+    };
+    // Products of matrices of a world 10 km away keep a millionth of a millimetre.
+    let (here, there) = (in_camera(&here, &input), in_camera(&there, &moved));
+    assert!(here.abs_diff_eq(there, 1e-8), "{here} and {there}");
+}
+
+#[test]
+fn a_frame_that_was_aligned_is_not_aligned_again() {
+    let input = disturbed(DVec3::X, DVec3::ZERO, 2.0);
+    let mut aligner = Aligner::new();
+    let first = aligner.align(&SESSION.0, &input).unwrap();
+    let again = aligner.align(&SESSION.0, &input).unwrap();
+    assert_eq!(first.world_from_object, again.world_from_object);
+    assert_eq!(first.report, again.report);
+    // Another picture is.
+    let mut other = input.clone();
+    other.image = Arc::clone(&SESSION.0.plates[0].image);
+    let other = aligner.align(&SESSION.0, &other).unwrap();
+    assert_ne!(first.report, other.report);
+}
+
+#[test]
+fn a_toy_that_is_not_in_the_picture_is_not_found_there() {
+    let mut input = SESSION.1.clone();
+    input.image = Arc::clone(&SESSION.0.plates[0].image);
+    let found = align(&input);
+    assert_eq!(found.world_from_object, input.world_from_object);
+    assert!(found.report.lights.is_empty());
+    let is_told = found
+        .warnings
+        .iter()
+        .any(|warning| matches!(warning, Warning::Misaligned { .. }));
+    assert!(is_told || found.report.pose.is_none(), "{:?}", found.report);
+}
+
+#[test]
+fn pictures_of_another_size_are_refused() {
+    let mut input = SESSION.1.clone();
+    input.image = Arc::new(Image {
+        width_px: 2,
+        height_px: 2,
+        rgba8: vec![255; 16],
+    });
+    let refused = Aligner::new().align(&SESSION.0, &input).unwrap_err();
+    assert!(matches!(refused, AlignError::Size { .. }), "{refused}");
+    assert!(refused.to_string().contains("camera frame"), "{refused}");
+}
