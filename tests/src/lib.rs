@@ -2,6 +2,7 @@
 
 pub mod alignment;
 pub mod bench;
+pub mod check;
 pub mod compare;
 pub mod false_color;
 pub mod files;

@@ -32,14 +32,22 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
 
 /// Runs a program of the harness with `args` and hands on its exit code.
 pub(crate) fn run(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
-    let asks_only = args.iter().any(|arg| arg == "--help" || arg == "-h");
-    if !asks_only {
+    if !asks_only(args) {
         vulkan::ensure()?;
     }
+    run_on_processor(toolchain, program, args)
+}
+
+fn asks_only(args: &[OsString]) -> bool {
+    args.iter().any(|arg| arg == "--help" || arg == "-h")
+}
+
+/// The same of a program that needs no graphics device.
+pub(crate) fn run_on_processor(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
     let mut cargo = toolchain.cargo("run");
     cargo.args(["--package", "tests", "--bin", program]);
     // A first build takes minutes, which must not look like a standstill.
-    if asks_only || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
+    if asks_only(args) || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
         cargo.arg("--quiet");
     }
     let status = cargo

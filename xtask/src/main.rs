@@ -30,6 +30,20 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Say what is wrong with a session, and draw what it predicts over its first frame (`check --help` tells more)
+    #[command(disable_help_flag = true)]
+    Check {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Write a session anew with pose and lights aligned by its pictures (`align --help` tells more)
+    #[command(disable_help_flag = true)]
+    Align {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Measure presets over sessions: time against error (`bench --help` tells more)
     #[command(disable_help_flag = true)]
     Bench {
@@ -95,6 +109,8 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Demo => return harness::demo(&toolchain),
         Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
+        Command::Check { args } => return harness::run_on_processor(&toolchain, "check", &args),
+        Command::Align { args } => return harness::run_on_processor(&toolchain, "align", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::Bless { args } => return bless(&toolchain, &args),

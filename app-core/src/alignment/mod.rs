@@ -18,6 +18,7 @@
 //! round trip to the device takes.
 
 mod lights;
+mod outlines;
 mod picture;
 mod pose;
 mod raster;
@@ -38,6 +39,7 @@ use picture::{Picture, Pyramid};
 use receivers::{SeenReceiver, plate_for};
 use shape::Shape;
 
+pub use outlines::Outlines;
 pub use report::{AlignmentReport, LightAlignment, PoseAlignment, PoseDeviation};
 
 /// A found pose is applied where the outline's loss in the finest band falls to less than this part of the given pose's.

@@ -85,6 +85,24 @@ function showTimes() {
       el("div", { class: "columns" }, lists)));
 }
 
+/* What alignment found: the same for all presets */
+
+function showAlignment() {
+  const alignment = entry(data.presets[0]).alignment;
+  at("alignment").hidden = !alignment;
+  if (!alignment) return;
+  const { pose, lights, cpu_ms } = alignment;
+  const verdict = found => found.is_applied ? "corrected" : "left as given";
+  const rows = [];
+  if (pose) rows.push(row("the toy's pose", [verdict(pose), `${pose.moved_mm.toFixed(2)} mm, ${pose.turned_deg.toFixed(2)}\u00b0`,
+    `outline ${pose.given_outline_px.toFixed(2)} px off as given, ${pose.outline_px.toFixed(2)} px as found`]));
+  lights.forEach((light, i) => rows.push(row(`light ${i}`, [verdict(light), `${light.turned_deg.toFixed(2)}\u00b0`,
+    `distance \u00d7 ${light.distance_ratio.toFixed(2)}` + (light.size_ratio ? `, angular size \u00d7 ${light.size_ratio.toFixed(2)}` : "")])));
+  at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),
+    rows.length > 0 ? table(`took ${ms(cpu_ms)}`, ["", "", "found elsewhere by", ""], rows)
+      : el("p", { class: "soft" }, "Too little of the toy's outline is seen to align anything."));
+}
+
 /* What was learned, what was skipped, what is odd */
 
 function makeFit() {

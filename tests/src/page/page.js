@@ -6,7 +6,7 @@ function show() {
   at("frame").value = current;
   at("frame-name").textContent = `Frame ${index}, at ${entry(preset).time_secs.toFixed(2)} s`;
   viewers.forEach(showViewer);
-  [showNumbers, showTimes, showSkipped, showWarnings].forEach(part => part());
+  [showNumbers, showTimes, showAlignment, showSkipped, showWarnings].forEach(part => part());
 }
 
 function go(frame) {

@@ -16,8 +16,6 @@ const LOWEST: f64 = 0.1;
 pub(super) struct Caster<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
-    /// The toy in each receiver's plane space.
-    in_planes: Vec<Vec<DVec3>>,
     intrinsics: Intrinsics,
     size_px: IVec2,
 }
@@ -29,14 +27,7 @@ impl<'a> Caster<'a> {
         intrinsics: Intrinsics,
         size_px: IVec2,
     ) -> Self {
-        let in_plane = |receiver: &SeenReceiver| {
-            let points = shape.points.iter();
-            points
-                .map(|point| receiver.plane_from_camera.transform_point3(*point))
-                .collect()
-        };
         Self {
-            in_planes: receivers.iter().map(in_plane).collect(),
             shape,
             receivers,
             intrinsics,
@@ -68,7 +59,7 @@ impl<'a> Caster<'a> {
         let mut rects = Vec::new();
         for (index, receiver) in self.receivers.iter().enumerate() {
             for point in lamp.points(&receiver.plane_from_camera, self.shape.centre, disc) {
-                let coverage = self.flattened(raster, index, point);
+                let coverage = self.hard(raster, index, point);
                 if coverage.size_px != IVec2::ZERO {
                     let first = coverage.origin_px;
                     rects.push([first, first + coverage.size_px - 1]);
@@ -108,7 +99,7 @@ impl<'a> Caster<'a> {
     ) {
         let total: f64 = points.iter().map(|(_, weight)| weight).sum();
         for (point, weight) in points.into_iter().filter(|(_, weight)| *weight > 0.0) {
-            let coverage = self.flattened(raster, receiver, point);
+            let coverage = self.hard(raster, receiver, point);
             #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
             let weight = (weight / total) as f32;
             let [first, end] = [coverage.origin_px.y, coverage.origin_px.y + coverage.size_px.y]
@@ -121,19 +112,27 @@ impl<'a> Caster<'a> {
     }
 
     /// The hard shadow from one point.
-    fn flattened(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
-        let camera_from_plane = self.receivers[receiver].plane_from_camera.inverse();
-        let points = self.in_planes[receiver].iter();
-        let flat: Vec<DVec3> = points
-            .map(|point| flattened(*point, light, &camera_from_plane))
-            .collect();
+    fn hard(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
+        let flat = flattened(self.shape, &self.receivers[receiver].plane_from_camera, light);
         let corners = project(&flat, &self.intrinsics);
         raster.coverage(&corners, &self.shape.triangles, self.size_px)
     }
 }
 
+/// A shape's points on a receiver, along rays from a point of a light, homogeneous in plane space; in camera space.
+pub(super) fn flattened(shape: &Shape, plane_from_camera: &DMat4, light: DVec4) -> Vec<DVec3> {
+    let camera_from_plane = plane_from_camera.inverse();
+    let in_plane = shape
+        .points
+        .iter()
+        .map(|point| plane_from_camera.transform_point3(*point));
+    in_plane
+        .map(|point| on_plane(point, light, &camera_from_plane))
+        .collect()
+}
+
 /// Where the ray from a light through a point meets the plane, in camera space; behind the camera where it does not.
-fn flattened(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
+fn on_plane(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
     const BEHIND: DVec3 = DVec3::Z;
     let to_light = light.truncate() - light.w * point;
     if to_light.y > 0.0 {

@@ -17,7 +17,7 @@ use super::raster::{Rasterizer, project};
 use super::receivers::SeenReceiver;
 use super::shape::Shape;
 use crate::scene::Light;
-use cast::Caster;
+use cast::{Caster, flattened};
 use floor::{FloorPixel, floor_pixels};
 use lamp::{Lamp, N_PARTS, disc};
 use shading::{Shaded, Shading};
@@ -125,6 +125,27 @@ pub(super) fn find(
             .collect(),
         losses: losses?,
     })
+}
+
+/// The toy flattened onto each receiver from the middle of a light, in camera space.
+pub(super) fn hard_shadows(
+    light: &Light,
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    camera_from_world: &DMat4,
+) -> Vec<Shape> {
+    let Some(lamp) = Lamp::new(light, camera_from_world, shape.centre) else {
+        return Vec::new();
+    };
+    let flat = receivers.iter().map(|receiver| {
+        let plane_from_camera = &receiver.plane_from_camera;
+        let middle = lamp.points(plane_from_camera, shape.centre, &disc(1));
+        Shape {
+            points: flattened(shape, plane_from_camera, middle[0]),
+            ..shape.clone()
+        }
+    });
+    flat.collect()
 }
 
 fn ratio(found_m: Option<f64>, given_m: Option<f64>) -> f64 {

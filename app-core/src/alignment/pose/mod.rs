@@ -10,12 +10,13 @@ mod matte;
 mod motion;
 mod odds;
 
-use glam::DMat4;
+use glam::{DMat4, DVec2, IVec2};
 
 use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
 use super::report::PoseDeviation;
 use super::shape::Shape;
+use crate::scene::Intrinsics;
 use contour::{Element, contour};
 use matte::Band;
 use motion::{Matrix6, Measured, Motion, Vector6, solve};
@@ -141,6 +142,19 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
         deviation: deviation(&information, mean_weight * found.loss_px2, shape.radius_m),
         found,
     })
+}
+
+/// Places on the outline of a shape, in pixels of a picture.
+pub(super) fn outline_px(
+    raster: &mut Rasterizer,
+    shape: &Shape,
+    k: &Intrinsics,
+    size_px: IVec2,
+) -> Vec<DVec2> {
+    let corners = project(&shape.points, k);
+    let coverage = raster.with_depth(&corners, &shape.triangles, size_px);
+    let elements = contour(&coverage, size_px);
+    elements.into_iter().map(|element| element.at_px).collect()
 }
 
 struct Search<'a> {

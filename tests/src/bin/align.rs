@@ -1,0 +1,40 @@
+//! Writes a session anew, with the toy's pose and the lights as its pictures show them.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::session::{Capture, Session};
+use clap::Parser;
+use harness::alignment::Alignments;
+use harness::check::aligned_session;
+use harness::files::Folder;
+use harness::program::exit_code;
+
+/// Write a session anew with pose and lights aligned by its pictures; all else stays as it is.
+#[derive(Parser)]
+#[command(name = "align", bin_name = "cargo xtask align")]
+struct Args {
+    /// Folder of the session
+    session: PathBuf,
+    /// Folder for the corrected session, which must not be there yet
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Args::parse()))
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let capture =
+        Capture::open(Folder::open(&args.session)?).with_context(|| args.session.display().to_string())?;
+    let alignments = Alignments::find(&capture, 0..capture.n_frames())?;
+    let n_corrected = aligned_session::write(&args.session, &args.out, &alignments)?;
+    println!(
+        "{n_corrected} of {} frames have a corrected pose or lights: {}",
+        capture.n_frames(),
+        args.out.display()
+    );
+    Ok(())
+}

@@ -1,0 +1,139 @@
+//! What is wrong with a session, as far as it can be told without any truth.
+
+pub mod aligned_session;
+mod keys;
+mod overlay;
+mod sense;
+
+use std::path::{Path, PathBuf};
+
+use app_core::alignment::{Alignment, Outlines};
+use app_core::frame::FrameInput;
+use app_core::scene::Image;
+use app_core::session::{Capture, Session};
+
+use crate::alignment::Alignments;
+use crate::files::Folder;
+use crate::output::write_png;
+
+/// File name of the drawing.
+const DRAWING: &str = "check.png";
+
+/// What was looked at.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// How toy, lights and camera stand to one another.
+    pub facts: Vec<String>,
+    /// What is wrong; nothing in a good session.
+    pub wrong: Vec<String>,
+    /// Of the first frame.
+    pub drawing: Option<PathBuf>,
+}
+
+/// Looks at a session's index, files, numbers and pictures, and draws what it predicts into `out`.
+///
+/// # Errors
+/// When the folder cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
+pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
+    let folder = Folder::open(session)?;
+    let mut findings = Findings {
+        wrong: keys::unknown(&folder),
+        ..Findings::default()
+    };
+    let capture = match Capture::open(folder) {
+        Ok(capture) => capture,
+        Err(error) => {
+            findings.wrong.push(error.to_string());
+            return Ok(findings);
+        }
+    };
+    findings
+        .wrong
+        .extend(capture.warnings().iter().map(ToString::to_string));
+    findings.wrong.extend(sense::wrong(capture.scene()));
+    let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
+    for (index, frame) in frames {
+        match frame {
+            Ok(frame) => {
+                let wrong = frame.warnings.iter().map(ToString::to_string);
+                findings.wrong.extend(wrong);
+                findings
+                    .wrong
+                    .extend(sense::wrong_of_frame(capture.scene(), index, &frame));
+            }
+            Err(error) => findings.wrong.push(format!("frame {index}: {error}")),
+        }
+    }
+    if let Ok(first) = capture.frame(0) {
+        let given = FrameInput::from(&first);
+        match Alignments::find(&capture, 0..1) {
+            Ok(alignments) => {
+                if let Some(aligned) = alignments.of(0) {
+                    findings.aligned(&aligned.alignment);
+                    let picture = drawn(&capture, &given, &aligned.alignment.applied_to(&given))?;
+                    let path = out.join(DRAWING);
+                    write_png(&path, &picture)?;
+                    findings.drawing = Some(path);
+                }
+            }
+            Err(error) => findings.wrong.push(error.to_string()),
+        }
+    }
+    Ok(findings)
+}
+
+impl Findings {
+    fn aligned(&mut self, alignment: &Alignment) {
+        let report = &alignment.report;
+        match &report.pose {
+            None => self.wrong.push(
+                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
+                    .to_owned(),
+            ),
+            Some(pose) => {
+                let told = format!(
+                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px where the toy is moved by {:.2} mm and turned by {:.2} degrees",
+                    pose.given_outline_px,
+                    pose.outline_px,
+                    1e3 * pose.moved_m,
+                    pose.turned_rad.to_degrees(),
+                );
+                if pose.is_applied {
+                    self.wrong.push(told);
+                } else {
+                    self.facts.push(told);
+                }
+            }
+        }
+        for (index, light) in report.lights.iter().enumerate() {
+            let size = light.size_ratio.map_or(String::new(), |ratio| {
+                format!(", {ratio:.2} times its angular size")
+            });
+            let told = format!(
+                "lights[{index}]: its shadow tells a direction {:.2} degrees from that given, {:.2} times its distance{size}",
+                light.turned_rad.to_degrees(),
+                light.distance_ratio
+            );
+            if light.is_applied {
+                self.wrong.push(told);
+            } else {
+                self.facts.push(told);
+            }
+        }
+        self.wrong.extend(
+            alignment
+                .warnings
+                .iter()
+                .map(|warning| format!("frames[0]: {warning}")),
+        );
+    }
+}
+
+fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {
+    let scene = capture.scene();
+    let mut picture = Image::clone(&given.image);
+    overlay::receivers(&mut picture, scene, given);
+    overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
+    overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);
+    Ok(picture)
+}

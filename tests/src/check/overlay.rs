@@ -1,0 +1,67 @@
+//! Lines over a photograph.
+
+use app_core::alignment::Outlines;
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Scene};
+use glam::{DVec2, DVec3};
+
+/// Of what was given: red.
+pub(super) const GIVEN: [u8; 3] = [255, 40, 40];
+/// Of what was aligned: green.
+pub(super) const ALIGNED: [u8; 3] = [40, 255, 60];
+/// Of receivers: blue.
+const RECEIVERS: [u8; 3] = [70, 120, 255];
+/// Lines of a receiver's grid around the toy, how far apart, and dots along each.
+const N_LINES: i32 = 6;
+const LINE_M: f64 = 0.05;
+const N_DOTS: i32 = 400;
+
+/// Draws outlines of toy and shadows.
+pub(super) fn outlines(picture: &mut Image, outlines: &Outlines, color: [u8; 3]) {
+    let shadows = outlines.shadows.iter().flatten();
+    for at_px in outlines.toy.iter().chain(shadows) {
+        dot(picture, *at_px, color);
+    }
+}
+
+/// Draws a grid on each receiver around the foot of the toy: a line every 5 cm.
+pub(super) fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) {
+    for receiver in &scene.receivers {
+        let toy = input.world_from_object.w_axis.truncate();
+        let foot = receiver.world_from_plane.inverse().transform_point3(toy);
+        let foot = (DVec2::new(foot.x, foot.z) / LINE_M).round() * LINE_M;
+        for line in -N_LINES..=N_LINES {
+            for dot in -N_DOTS..=N_DOTS {
+                let across = f64::from(line) * LINE_M;
+                let along = f64::from(dot) / f64::from(N_DOTS) * f64::from(N_LINES) * LINE_M;
+                for step in [DVec2::new(across, along), DVec2::new(along, across)] {
+                    let at = foot + step;
+                    let is_on = at.abs().cmple(receiver.half_extent_m).all();
+                    let world = receiver
+                        .world_from_plane
+                        .transform_point3(DVec3::new(at.x, 0.0, at.y));
+                    if let Some(at_px) = pixel(input, world).filter(|_| is_on) {
+                        self::dot(picture, at_px, RECEIVERS);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where a point is in the picture; none behind the camera.
+fn pixel(input: &FrameInput, world: DVec3) -> Option<DVec2> {
+    let k = &input.camera.intrinsics;
+    let at = input.camera.world_from_camera.inverse().transform_point3(world);
+    (at.z < 0.0).then(|| DVec2::new(k.cx_px - k.fx_px * at.x / at.z, k.cy_px + k.fy_px * at.y / at.z))
+}
+
+fn dot(picture: &mut Image, at_px: DVec2, color: [u8; 3]) {
+    let at = at_px.floor();
+    let size = DVec2::new(f64::from(picture.width_px), f64::from(picture.height_px));
+    if at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all() {
+        let at = at.as_uvec2();
+        let first = 4 * (at.y * picture.width_px + at.x) as usize;
+        picture.rgba8[first..first + 3].copy_from_slice(&color);
+    }
+}
