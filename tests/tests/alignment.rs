@@ -211,6 +211,30 @@ fn a_toy_that_is_not_in_the_picture_is_not_found_there() {
 }
 
 #[test]
+fn nonsense_is_neither_found_nor_a_panic() {
+    let camera = SESSION.1.camera.world_from_camera.w_axis.truncate();
+    let behind = 2.0 * (camera - toy_in_world());
+    for (mm, scale) in [
+        (DVec3::new(0.0, 300.0, 0.0), 1.0),
+        // Around the camera, behind it, and as large as a house.
+        (1e3 * (camera - toy_in_world()), 1.0),
+        (1e3 * behind, 1.0),
+        (DVec3::ZERO, 100.0),
+        (DVec3::ZERO, 1e-4),
+    ] {
+        let mut input = disturbed(DVec3::Y, mm, 40.0);
+        input.world_from_object *= DMat4::from_scale(DVec3::splat(scale));
+        let given = input.world_from_object;
+        let found = align(&input);
+        assert_eq!(
+            found.world_from_object, given,
+            "moved by {mm} mm, scaled by {scale}"
+        );
+        assert!(found.lights.is_none());
+    }
+}
+
+#[test]
 fn pictures_of_another_size_are_refused() {
     let mut input = SESSION.1.clone();
     input.image = Arc::new(Image {

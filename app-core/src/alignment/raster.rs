@@ -227,6 +227,9 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
     let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
     let area = ab.perp_dot(ac);
     let (at_a, to_b, to_c) = (1.0 / a.z, 1.0 / b.z - 1.0 / a.z, 1.0 / c.z - 1.0 / a.z);
+    // Of a sliver, rounding would go beyond its corners.
+    let nearest = at_a + to_b.max(to_c).max(0.0);
+    let farthest = at_a + to_b.min(to_c).min(0.0);
     let slope = DVec2::new(to_b * ac.y - to_c * ab.y, to_c * ab.x - to_b * ac.x) / area;
     let limit = f64::from(out.size_px.y);
     let top = a.y.min(b.y).min(c.y);
@@ -242,11 +245,11 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
         for column in columns {
             #[allow(clippy::cast_precision_loss, reason = "columns of a picture")]
             let at = DVec2::new(column as f64 + 0.5, y);
-            let inverse = at_a + slope.dot(at - a.truncate());
+            let inverse = (at_a + slope.dot(at - a.truncate())).max(farthest).min(nearest);
             #[allow(clippy::cast_possible_truncation, reason = "a depth, to 7 digits")]
             let depth_m = (1.0 / inverse) as f32;
-            let nearest = &mut out.depths_m[row * out.size_px.x as usize + column];
-            *nearest = nearest.min(depth_m);
+            let kept = &mut out.depths_m[row * out.size_px.x as usize + column];
+            *kept = kept.min(depth_m);
         }
     }
 }

@@ -1,0 +1,154 @@
+//! What `check` says of a good session and of ones that are wrong, and that `align` rights them.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::{fs, process};
+
+use app_core::session::{Capture, Session};
+use glam::{DMat4, DVec3};
+use harness::alignment::Alignments;
+use harness::check::{aligned_session, check};
+use harness::files::{BUNDLED_SESSION, Folder};
+use serde_json::{Value, json};
+
+/// A new folder, which goes with it.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    fn new(name: &str) -> Self {
+        static N_MADE: AtomicU32 = AtomicU32::new(0);
+        let number = N_MADE.fetch_add(1, Ordering::Relaxed);
+        let name = format!("check-{name}-{}-{number}", process::id());
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The bundled session with a changed index.
+fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
+    let folder = Temporary::new(name);
+    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.0.join(path.file_name().unwrap())).unwrap();
+    }
+    let index = folder.0.join("capture.json");
+    let mut value: Value = serde_json::from_str(&fs::read_to_string(&index).unwrap()).unwrap();
+    change(&mut value);
+    fs::write(&index, value.to_string()).unwrap();
+    folder
+}
+
+fn wrong(session: &Path) -> Vec<String> {
+    let out = Temporary::new("drawing");
+    check(session, &out.0).unwrap().wrong
+}
+
+fn matrix(value: &Value) -> DMat4 {
+    let columns: Vec<f64> = value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_f64().unwrap())
+        .collect();
+    DMat4::from_cols_slice(&columns)
+}
+
+fn off(index: &mut Value) {
+    let object = &mut index["toy"]["world_from_object"];
+    let moved = DMat4::from_translation(DVec3::new(0.003, 0.001, -0.002)) * matrix(object);
+    *object = json!(moved.to_cols_array());
+}
+
+#[test]
+fn a_good_session_has_nothing_wrong_and_is_drawn() {
+    let out = Temporary::new("good");
+    let findings = check(Path::new(BUNDLED_SESSION), &out.0).unwrap();
+    assert_eq!(findings.wrong, Vec::<String>::new());
+    let drawing = image::open(findings.drawing.unwrap()).unwrap().into_rgba8();
+    let greens = drawing
+        .pixels()
+        .filter(|pixel| pixel.0 == [40, 255, 60, 255])
+        .count();
+    assert!(greens > 400, "{greens} pixels of outlines");
+}
+
+#[test]
+fn each_wrong_session_is_told_by_its_field() {
+    type Change = fn(&mut Value);
+    let cases: [(&str, Change, &str); 7] = [
+        (
+            "key",
+            |index| index["toy"]["scale"] = json!(2.0),
+            "capture.json (toy.scale)",
+        ),
+        (
+            "millimetres",
+            |index| {
+                let object = &mut index["toy"]["world_from_object"];
+                *object = json!((matrix(object) * DMat4::from_scale(DVec3::splat(1e3))).to_cols_array());
+            },
+            "lengths are in metres",
+        ),
+        (
+            "convention",
+            |index| {
+                for frame in index["frames"].as_array_mut().unwrap() {
+                    let camera = matrix(&frame["world_from_camera"]);
+                    frame["world_from_camera"] =
+                        json!((camera * DMat4::from_rotation_y(3.1)).to_cols_array());
+                }
+            },
+            "the toy is behind the camera",
+        ),
+        (
+            "light",
+            |index| index["lights"][0]["position"][1] = json!(-1.0),
+            "lights[0]: it is above none of the receivers",
+        ),
+        (
+            "no-plate",
+            |index| index["backgrounds"] = json!([]),
+            "backgrounds",
+        ),
+        (
+            "file",
+            |index| index["frames"][1]["image"] = json!("gone.png"),
+            "gone.png",
+        ),
+        ("pose", off, "toy.world_from_object: the outline is"),
+    ];
+    for (name, change, expected) in cases {
+        let session = changed(name, change);
+        let wrong = wrong(&session.0);
+        assert!(
+            wrong.iter().any(|line| line.contains(expected)),
+            "{name}: {wrong:?}"
+        );
+    }
+}
+
+#[test]
+fn an_aligned_session_is_right() {
+    let session = changed("align", off);
+    let parent = Temporary::new("aligned");
+    let out = parent.0.join("session");
+    let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
+    let alignments = Alignments::find(&capture, 0..capture.n_frames()).unwrap();
+    assert_eq!(
+        aligned_session::write(&session.0, &out, &alignments).unwrap(),
+        capture.n_frames()
+    );
+    assert_eq!(wrong(&out), Vec::<String>::new());
+    // Nothing is written over.
+    assert!(aligned_session::write(&session.0, &out, &alignments).is_err());
+}
