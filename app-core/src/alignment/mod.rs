@@ -3,7 +3,7 @@
 //! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
 //! the picture at once. Frame against plate is the best segmentation there is. The **outline** of the toy gives its pose
 //! (`pose`); the outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
-//! Both papers (2018, section 6; 2019, section 8) name misregistration as their largest error and leave it there.
+//! Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plate ─► pyramid ─┐
@@ -14,8 +14,8 @@
 //! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out.
 //! A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
 //!
-//! It runs on the processor: the outline has some thousand pixels, which a phone's cores read in the time that a
-//! round trip to the device takes.
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
+//! lights, once a session: more the more triangles and lights there are.
 
 mod lights;
 mod outlines;
