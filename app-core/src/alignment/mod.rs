@@ -17,6 +17,7 @@
 //! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
 //! lights, once a session: more the more triangles and lights there are.
 
+mod error;
 mod lights;
 mod outlines;
 mod picture;
@@ -29,16 +30,16 @@ mod shape;
 use std::sync::Arc;
 
 use glam::DMat4;
-use thiserror::Error;
 
 use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
-use crate::scene::{Camera, Image, InputError, Light, MAX_LIGHTS, Scene};
+use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Scene};
 use crate::toy::ToyError;
 use picture::{Picture, Pyramid};
 use receivers::{SeenReceiver, plate_for};
 use shape::Shape;
 
+pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{AlignmentReport, LightAlignment, PoseAlignment, PoseDeviation};
 
@@ -55,26 +56,6 @@ const LIGHT_GAIN: f64 = 0.96;
 const LEAST_TURN: f64 = 0.06;
 const LEAST_TURN_RAD: f64 = 0.0015;
 const LEAST_GROWTH: f64 = 0.15;
-
-/// Why a frame cannot be aligned.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum AlignError {
-    /// A value that cannot be.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// The toy cannot be posed.
-    #[error(transparent)]
-    Toy(#[from] ToyError),
-    /// A picture is not of the scene's size.
-    #[error("the {what} is not {} x {} pixels with 4 bytes each, as the scene is", size_px[0], size_px[1])]
-    Size {
-        /// Which.
-        what: &'static str,
-        /// The scene's size.
-        size_px: [u32; 2],
-    },
-}
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
@@ -145,7 +126,7 @@ impl Aligner {
     /// # Errors
     /// When a value of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
     pub fn align(&mut self, scene: &Scene, input: &FrameInput) -> Result<Alignment, AlignError> {
-        check(scene, input)?;
+        error::check(scene, input)?;
         let is_known = self.pose.as_ref().is_some_and(|pose| pose.is_of(input));
         let given_lights = input.lights.as_deref().unwrap_or(&scene.lights);
         let has_lights = (1..=MAX_LIGHTS).contains(&given_lights.len()) && !scene.plates.is_empty();
@@ -315,22 +296,4 @@ impl lights::FoundLight {
             deviation_rad: self.deviation_rad,
         }
     }
-}
-
-fn check(scene: &Scene, input: &FrameInput) -> Result<(), AlignError> {
-    scene.check()?;
-    input.check()?;
-    let plates = scene.plates.iter().map(|plate| ("plate", &plate.image));
-    for (what, image) in plates.chain([("camera frame", &input.image)]) {
-        let n_bytes = 4 * u64::from(scene.width_px) * u64::from(scene.height_px);
-        let is_fit = [image.width_px, image.height_px] == [scene.width_px, scene.height_px]
-            && image.rgba8.len() as u64 == n_bytes;
-        if !is_fit {
-            return Err(AlignError::Size {
-                what,
-                size_px: [scene.width_px, scene.height_px],
-            });
-        }
-    }
-    Ok(())
 }

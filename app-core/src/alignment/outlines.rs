@@ -1,13 +1,13 @@
 //! Outlines that a scene predicts in a frame, to be drawn over the photograph.
 
-use glam::DVec2;
+use glam::{DVec2, UVec2};
 
+use super::error::{AlignError, check};
 use super::lights::hard_shadows;
 use super::pose::outline_px;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
 use super::shape::Shape;
-use super::{AlignError, check};
 use crate::frame::FrameInput;
 use crate::scene::Scene;
 
@@ -30,7 +30,7 @@ impl Outlines {
         let camera_from_world = input.camera.world_from_camera.inverse();
         let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
         let receivers = SeenReceiver::all(&scene.receivers, &camera_from_world);
-        let size_px = glam::UVec2::new(scene.width_px, scene.height_px).as_ivec2();
+        let size_px = UVec2::new(scene.width_px, scene.height_px).as_ivec2();
         let (k, mut raster) = (&input.camera.intrinsics, Rasterizer::default());
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);
         let shadows = lights.iter().map(|light| {

@@ -1,0 +1,46 @@
+//! Input that cannot be aligned.
+
+use thiserror::Error;
+
+use crate::frame::FrameInput;
+use crate::scene::{InputError, Scene};
+use crate::toy::ToyError;
+
+/// Why a frame cannot be aligned.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AlignError {
+    /// A value that cannot be.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The toy cannot be posed.
+    #[error(transparent)]
+    Toy(#[from] ToyError),
+    /// A picture is not of the scene's size.
+    #[error("the {what} is not {} x {} pixels with 4 bytes each, as the scene is", size_px[0], size_px[1])]
+    Size {
+        /// Which.
+        what: &'static str,
+        /// The scene's size.
+        size_px: [u32; 2],
+    },
+}
+
+/// Validates a scene and a frame of it.
+pub(super) fn check(scene: &Scene, input: &FrameInput) -> Result<(), AlignError> {
+    scene.check()?;
+    input.check()?;
+    let plates = scene.plates.iter().map(|plate| ("plate", &plate.image));
+    for (what, image) in plates.chain([("camera frame", &input.image)]) {
+        let n_bytes = 4 * u64::from(scene.width_px) * u64::from(scene.height_px);
+        let is_fit = [image.width_px, image.height_px] == [scene.width_px, scene.height_px]
+            && image.rgba8.len() as u64 == n_bytes;
+        if !is_fit {
+            return Err(AlignError::Size {
+                what,
+                size_px: [scene.width_px, scene.height_px],
+            });
+        }
+    }
+    Ok(())
+}
