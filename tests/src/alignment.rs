@@ -38,17 +38,15 @@ impl Alignments {
     /// # Errors
     /// When a frame cannot be read or aligned.
     pub fn find(session: &dyn Session, frames: Range<usize>) -> Result<Self, ReplayError> {
-        let mut aligner = Aligner::new();
+        let mut aligner = Aligner::new(session.scene().clone());
         let mut found = Vec::with_capacity(frames.len());
         for index in frames.clone() {
             let input = FrameInput::from(&session.frame(index)?);
             let start = Instant::now();
-            let alignment = aligner
-                .align(session.scene(), &input)
-                .map_err(|reason| ReplayError::Align {
-                    index,
-                    reason: Box::new(reason),
-                })?;
+            let alignment = aligner.align(&input).map_err(|reason| ReplayError::Align {
+                index,
+                reason: Box::new(reason),
+            })?;
             found.push(Aligned {
                 alignment,
                 cpu_ms: start.elapsed().as_secs_f64() * 1e3,

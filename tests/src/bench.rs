@@ -17,7 +17,7 @@ use app_core::session::Capture;
 use crate::alignment::Alignments;
 use crate::metrics::Scores;
 use crate::progress::Quiet;
-use crate::replay::{self, ReplayError, replay};
+use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
 
 pub(crate) use table::aligned;
@@ -82,8 +82,9 @@ pub struct Times {
 /// When a frame cannot be read, made or scored.
 pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Vec<Row>, ReplayError> {
     let mut rows = Vec::new();
+    let alignments = replay::alignments(session, &replay_options(options))?;
     for &preset in &options.presets {
-        rows.push(measure(session, core, preset, options)?);
+        rows.push(measure(session, core, preset, (options, &alignments))?);
     }
     let frame_ms = |row: &Row| row.times.as_ref().and_then(|times| times.gpu_ms.or(times.cpu_ms));
     let paper_ms = rows
@@ -109,19 +110,17 @@ fn measure(
     session: &Capture,
     core: &mut Core,
     preset: Preset,
-    options: &Options,
+    (options, alignments): (&Options, &Alignments),
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
         presets: vec![preset],
-        frames: options.frames.clone(),
-        out: None,
-        is_aligned: options.is_aligned,
+        ..replay_options(options)
     };
     // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
-    let mut reports = replay(session, Some(session), core, &asked, &mut Quiet)?;
+    let mut reports = replay_aligned((session, Some(session)), core, &asked, alignments, &mut Quiet)?;
     // One preset, one report.
     let report = reports.swap_remove(0);
-    let inputs = inputs(session, &report, options.is_aligned)?;
+    let inputs = inputs(session, &report, alignments)?;
     Ok(Row {
         session: report.session,
         preset: preset.name().to_owned(),
@@ -134,18 +133,23 @@ fn measure(
     })
 }
 
+fn replay_options(options: &Options) -> replay::Options {
+    replay::Options {
+        presets: options.presets.clone(),
+        frames: options.frames.clone(),
+        out: None,
+        is_aligned: options.is_aligned,
+    }
+}
+
 /// The replayed frames on which something was worked on, as the core was given them.
-fn inputs(session: &Capture, report: &Report, is_aligned: bool) -> Result<Vec<FrameInput>, ReplayError> {
+fn inputs(
+    session: &Capture,
+    report: &Report,
+    alignments: &Alignments,
+) -> Result<Vec<FrameInput>, ReplayError> {
     use app_core::session::Session;
-    let frames = &report.frames;
-    let range =
-        frames.first().map_or(0, |frame| frame.index)..frames.last().map_or(0, |frame| frame.index + 1);
-    let alignments = if is_aligned {
-        Alignments::find(session, range)?
-    } else {
-        Alignments::none()
-    };
-    let worked = frames.iter().filter(|frame| frame.region.is_some());
+    let worked = report.frames.iter().filter(|frame| frame.region.is_some());
     worked
         .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?)))
         .collect()

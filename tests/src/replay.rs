@@ -113,6 +113,18 @@ pub fn picture_file(index: usize) -> String {
     format!("frame_{index:04}.png")
 }
 
+/// Corrections of the frames that the options ask for.
+///
+/// # Errors
+/// When there are no such frames, or one cannot be read or aligned.
+pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments, ReplayError> {
+    if options.is_aligned {
+        Alignments::find(session, frames_of(session, options)?)
+    } else {
+        Ok(Alignments::none())
+    }
+}
+
 /// Replays `session` on `core` with each preset, scores it against `truth`, and tells `progress` about each frame.
 ///
 /// Report and page left by an earlier run are removed first, so that one in the output folder means that all frames
@@ -125,6 +137,21 @@ pub fn replay(
     truth: Option<&dyn GroundTruth>,
     core: &mut Core,
     options: &Options,
+    progress: &mut dyn Progress,
+) -> Result<Vec<Report>, ReplayError> {
+    let alignments = alignments(session, options)?;
+    replay_aligned((session, truth), core, options, &alignments, progress)
+}
+
+/// The same with corrections that were found before.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_aligned(
+    (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
+    core: &mut Core,
+    options: &Options,
+    alignments: &Alignments,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
     core.time_passes(true)?;
@@ -141,18 +168,13 @@ pub fn replay(
     for folder in folders.iter().map(String::as_str).chain([""]) {
         out.map(|out| prepare(&out.join(folder))).transpose()?;
     }
-    let alignments = if options.is_aligned {
-        Alignments::find(session, frames.clone())?
-    } else {
-        Alignments::none()
-    };
     let mut reports = Vec::with_capacity(folders.len());
     for (preset, folder) in options.presets.iter().zip(folders) {
         let mut run = Run {
             session,
             truth,
             core,
-            alignments: &alignments,
+            alignments,
             out: out.map(|out| Out::new(out.join(&folder))),
         };
         let report = run.replay(*preset, frames.clone(), progress)?;

@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use app_core::alignment::{AlignError, Aligner, Alignment};
+use app_core::alignment::{AlignError, Aligner, Alignment, Outlines};
 use app_core::frame::{FrameInput, Warning};
 use app_core::scene::{Image, Light, Scene};
 use app_core::session::{Capture, Session};
@@ -26,8 +26,12 @@ const SAME_PX: f64 = 0.02;
 /// The same of a light's direction.
 const SAME_DEG: f64 = 0.02;
 
+fn aligner() -> Aligner {
+    Aligner::new(SESSION.0.clone())
+}
+
 fn align(input: &FrameInput) -> Alignment {
-    Aligner::new().align(&SESSION.0, input).unwrap()
+    aligner().align(input).unwrap()
 }
 
 /// The session's first frame, with the toy moved about its middle by millimetres and degrees.
@@ -92,6 +96,17 @@ fn direction(light: &Light) -> DVec3 {
     }
 }
 
+/// Radius over distance.
+fn spread(light: &Light) -> f64 {
+    match light {
+        Light::Sphere {
+            position_in_world,
+            radius_m,
+        } => radius_m / position_in_world.distance(toy_in_world()),
+        Light::Directional { .. } => unreachable!("the bundled session has a bulb"),
+    }
+}
+
 #[test]
 fn what_is_right_stays_as_it_is() {
     let (_, input) = &*SESSION;
@@ -141,6 +156,8 @@ fn a_disturbed_light_comes_back_to_one_place() {
     for light in &found {
         let deg = direction(light).angle_between(recorded).to_degrees();
         assert!(deg < 0.15, "{deg} degrees from the recorded direction");
+        let size = spread(light) / spread(&SESSION.0.lights[0]);
+        assert!((size - 1.0).abs() < 0.1, "{size} times the recorded size");
         let deg = direction(light).angle_between(direction(&found[0])).to_degrees();
         assert!(deg < SAME_DEG, "{deg} degrees apart");
     }
@@ -172,28 +189,63 @@ fn a_world_elsewhere_has_the_same_correction() {
             *position_in_world = there_from_here.transform_point3(*position_in_world);
         }
     }
-    let there = Aligner::new().align(&scene, &moved).unwrap();
+    let there = Aligner::new(scene).align(&moved).unwrap();
     let in_camera = |found: &Alignment, input: &FrameInput| {
         (input.camera.world_from_camera.inverse() * found.world_from_object).as_mat4()
     };
+    assert!(here.report.pose.unwrap().is_applied && there.report.pose.unwrap().is_applied);
     // Products of matrices of a world 10 km away keep a millionth of a millimetre.
     let (here, there) = (in_camera(&here, &input), in_camera(&there, &moved));
     assert!(here.abs_diff_eq(there, 1e-8), "{here} and {there}");
 }
 
 #[test]
-fn a_frame_that_was_aligned_is_not_aligned_again() {
-    let input = disturbed(DVec3::X, DVec3::ZERO, 2.0);
-    let mut aligner = Aligner::new();
-    let first = aligner.align(&SESSION.0, &input).unwrap();
-    let again = aligner.align(&SESSION.0, &input).unwrap();
-    assert_eq!(first.world_from_object, again.world_from_object);
-    assert_eq!(first.report, again.report);
-    // Another picture is.
+fn what_was_found_is_kept_as_long_as_it_holds() {
+    let mut input = SESSION.1.clone();
+    input.lights = Some(Arc::new([turned_light(10.0, 2.0)]));
+    let mut aligner = aligner();
+    let first = aligner.align(&input).unwrap();
+    assert!(first.lights.is_some());
+    // The same lights in another picture of the same view are those that were found before.
+    let mut again = input.clone();
+    again.image = Arc::new(Image::clone(&input.image));
+    let again = aligner.align(&again).unwrap();
+    assert_eq!(again.lights, first.lights);
+    assert_eq!(again.report.lights, first.report.lights);
+    // Other lights are not overwritten by them, nor is their absence.
+    for others in [vec![], vec![SESSION.0.lights[0]; 5]] {
+        let mut other = input.clone();
+        other.lights = Some(others.into());
+        let found = aligner.align(&other).unwrap();
+        assert_eq!((found.lights, found.report.lights.len()), (None, 0));
+    }
+    // A picture that does not show the toy is not taken for the one before.
     let mut other = input.clone();
     other.image = Arc::clone(&SESSION.0.plates[0].image);
-    let other = aligner.align(&SESSION.0, &other).unwrap();
-    assert_ne!(first.report, other.report);
+    assert_ne!(aligner.align(&other).unwrap().report, first.report);
+}
+
+#[test]
+fn a_shadow_is_cast_from_the_middle_of_its_light() {
+    let outlines = |radius: f64| {
+        let mut input = SESSION.1.clone();
+        input.lights = Some(Arc::new([turned_light(0.0, radius)]));
+        Outlines::of(&SESSION.0, &input).unwrap()
+    };
+    let (small, large) = (outlines(0.0), outlines(5.0));
+    assert!(small.shadows[0].len() > 100 && small.toy.len() > 100);
+    assert_eq!(small.shadows, large.shadows);
+}
+
+#[test]
+fn without_a_plate_the_pose_is_found_and_lights_stay() {
+    let mut scene = SESSION.0.clone();
+    scene.plates.clear();
+    let start = disturbed(DVec3::Y, DVec3::new(3.0, -2.0, 2.0), 3.0);
+    let found = Aligner::new(scene).align(&start).unwrap();
+    let apart_px = apart_px(&found.world_from_object, &SESSION.1.world_from_object);
+    assert!(apart_px < 1.0, "{apart_px} px from the recorded pose");
+    assert_eq!((found.lights, found.report.lights.len()), (None, 0));
 }
 
 #[test]
@@ -203,11 +255,11 @@ fn a_toy_that_is_not_in_the_picture_is_not_found_there() {
     let found = align(&input);
     assert_eq!(found.world_from_object, input.world_from_object);
     assert!(found.report.lights.is_empty());
-    let is_told = found
-        .warnings
-        .iter()
-        .any(|warning| matches!(warning, Warning::Misaligned { .. }));
-    assert!(is_told || found.report.pose.is_none(), "{:?}", found.report);
+    assert!(
+        matches!(found.warnings[..], [Warning::Misaligned { .. }]),
+        "{:?}",
+        found.report
+    );
 }
 
 #[test]
@@ -242,7 +294,7 @@ fn pictures_of_another_size_are_refused() {
         height_px: 2,
         rgba8: vec![255; 16],
     });
-    let refused = Aligner::new().align(&SESSION.0, &input).unwrap_err();
+    let refused = aligner().align(&input).unwrap_err();
     assert!(matches!(refused, AlignError::Size { .. }), "{refused}");
     assert!(refused.to_string().contains("camera frame"), "{refused}");
 }

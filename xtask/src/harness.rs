@@ -38,11 +38,7 @@ pub(crate) fn run(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Re
     run_on_processor(toolchain, program, args)
 }
 
-fn asks_only(args: &[OsString]) -> bool {
-    args.iter().any(|arg| arg == "--help" || arg == "-h")
-}
-
-/// The same of a program that needs no graphics device.
+/// Runs one that needs no graphics device.
 pub(crate) fn run_on_processor(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
     let mut cargo = toolchain.cargo("run");
     cargo.args(["--package", "tests", "--bin", program]);
@@ -57,6 +53,10 @@ pub(crate) fn run_on_processor(toolchain: &Toolchain, program: &str, args: &[OsS
         .with_context(|| line(&cargo))?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+fn asks_only(args: &[OsString]) -> bool {
+    args.iter().any(|arg| arg == "--help" || arg == "-h")
 }
 
 /// A path as seen from where the command was called.

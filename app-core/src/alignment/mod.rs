@@ -11,7 +11,7 @@
 //! ```
 //!
 //! What is held fixed, since pictures of one view do not tell it: the camera with its intrinsics, and the receivers.
-//! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out.
+//! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out, but for the last of them.
 //! A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
 //!
 //! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
@@ -20,6 +20,7 @@
 mod error;
 mod lights;
 mod outlines;
+mod photograph;
 mod picture;
 mod pose;
 mod raster;
@@ -34,28 +35,11 @@ use glam::DMat4;
 use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Scene};
-use crate::toy::ToyError;
-use picture::{Picture, Pyramid};
-use receivers::{SeenReceiver, plate_for};
-use shape::Shape;
+use photograph::{FoundLights, FoundPose, MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{AlignmentReport, LightAlignment, PoseAlignment, PoseDeviation};
-
-/// A found pose is applied where the outline's loss in the finest band falls to less than this part of the given pose's.
-///
-/// With exact poses it falls to .9, by what the model of the outline's pixels lacks. The wide band does not decide: where there is no
-/// plate, a shadow beside the toy draws it along.
-const POSE_GAIN: f64 = 0.5;
-/// A pose whose outline stays farther from the picture's, in pixels, was not found.
-const MOST_OUTLINE_PX: f64 = 1.0;
-/// Found lights are applied where the loss falls to less than this part of the given lights'.
-const LIGHT_GAIN: f64 = 0.96;
-/// And where one of them turned by more than that part of its spread, and by more than that in radians; or grew by more.
-const LEAST_TURN: f64 = 0.06;
-const LEAST_TURN_RAD: f64 = 0.0015;
-const LEAST_GROWTH: f64 = 0.15;
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
@@ -84,15 +68,16 @@ impl Alignment {
 
 /// Aligns the frames of one scene, one after the other.
 ///
-/// A frame with the same picture, camera and pose as the one before costs nothing. Lights are found in the first frame that
+/// A frame with the same picture, camera, pose and lights as the one before costs nothing. Lights are found in the first frame that
 /// shows their shadow, and kept while the listed ones stay as they are.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Aligner {
+    scene: Scene,
     pose: Option<AlignedPose>,
     lights: Option<AlignedLights>,
 }
 
-/// The pose of the latest view.
+/// The pose in the latest view.
 #[derive(Debug)]
 struct AlignedPose {
     image: Arc<Image>,
@@ -102,21 +87,26 @@ struct AlignedPose {
     report: Option<PoseAlignment>,
 }
 
-/// Lights that were found.
+/// Lights that were looked for.
 #[derive(Debug)]
 struct AlignedLights {
     given: Arc<[Light]>,
     /// None where those that were given stay.
     applied: Option<Arc<[Light]>>,
+    /// Empty where they were not found in the latest view.
     report: Vec<LightAlignment>,
-    errors: [f64; 2],
+    errors: Option<[f64; 2]>,
 }
 
 impl Aligner {
-    /// Knows nothing yet.
+    /// Knows a scene, and none of its frames.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            pose: None,
+            lights: None,
+        }
     }
 
     /// Finds the pose of the toy in a frame and the lights, and corrects both where the picture is explained better by more than
@@ -124,29 +114,39 @@ impl Aligner {
     /// twenty-fifth and a light move by enough to show.
     ///
     /// # Errors
-    /// When a value of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
-    pub fn align(&mut self, scene: &Scene, input: &FrameInput) -> Result<Alignment, AlignError> {
-        error::check(scene, input)?;
-        let is_known = self.pose.as_ref().is_some_and(|pose| pose.is_of(input));
-        let given_lights = input.lights.as_deref().unwrap_or(&scene.lights);
-        let has_lights = (1..=MAX_LIGHTS).contains(&given_lights.len()) && !scene.plates.is_empty();
-        let are_lights_known = self
+    /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
+    pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
+        error::check(&self.scene, input)?;
+        let given: Arc<[Light]> = match &input.lights {
+            Some(lights) => Arc::clone(lights),
+            None => self.scene.lights.as_slice().into(),
+        };
+        let is_view_known = self.pose.as_ref().is_some_and(|pose| pose.is_of(input));
+        // Other lights than those that were found; and those that were not found are looked for in each view.
+        self.lights = self
             .lights
-            .as_ref()
-            .is_some_and(|lights| *lights.given == *given_lights);
-        if !is_known || (has_lights && !are_lights_known) {
-            let view = View::new(scene, input);
-            if !is_known {
-                self.pose = Some(view.pose(scene, input)?);
-            }
-            self.lights = match &self.pose {
-                Some(pose) if has_lights && !are_lights_known && pose.is_trusted() => {
-                    view.lights(scene, input, &pose.world_from_object, given_lights)?
-                }
-                _ => self.lights.take().filter(|_| are_lights_known),
+            .take()
+            .filter(|lights| lights.given == given && (is_view_known || lights.errors.is_some()));
+        if !is_view_known || self.lights.is_none() {
+            let photograph = Photograph::new(&self.scene, input);
+            let pose = match self.pose.take().filter(|_| is_view_known) {
+                Some(pose) => pose,
+                None => AlignedPose::new(input, photograph.pose(&self.scene, input)?),
             };
+            if self.lights.is_none() {
+                let found = match pose.is_trusted() && self.can_look_for(&given) {
+                    true => photograph.lights(&self.scene, input, &pose.world_from_object, &given)?,
+                    false => None,
+                };
+                self.lights = Some(AlignedLights::new(given, found));
+            }
+            self.pose = Some(pose);
         }
         Ok(self.aligned(input))
+    }
+
+    fn can_look_for(&self, lights: &[Light]) -> bool {
+        (1..=MAX_LIGHTS).contains(&lights.len()) && !self.scene.plates.is_empty()
     }
 
     fn aligned(&self, input: &FrameInput) -> Alignment {
@@ -154,7 +154,7 @@ impl Aligner {
         let report = AlignmentReport {
             pose: pose.and_then(|pose| pose.report),
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
-            light_errors: lights.map(|lights| lights.errors),
+            light_errors: lights.and_then(|lights| lights.errors),
         };
         let off = report
             .pose
@@ -172,6 +172,16 @@ impl Aligner {
 }
 
 impl AlignedPose {
+    fn new(input: &FrameInput, found: FoundPose) -> Self {
+        Self {
+            image: Arc::clone(&input.image),
+            camera: input.camera,
+            given: input.world_from_object,
+            world_from_object: found.world_from_object,
+            report: found.report,
+        }
+    }
+
     fn is_of(&self, input: &FrameInput) -> bool {
         Arc::ptr_eq(&self.image, &input.image)
             && self.camera == input.camera
@@ -193,107 +203,21 @@ impl AlignedPose {
     }
 }
 
-/// A photograph with its plate, and where the receivers are in it.
-struct View {
-    pyramid: Pyramid,
-    receivers: Vec<SeenReceiver>,
-    camera_from_world: DMat4,
-}
-
-impl View {
-    fn new(scene: &Scene, input: &FrameInput) -> Self {
-        let camera_from_world = input.camera.world_from_camera.inverse();
-        let receivers = SeenReceiver::all(&scene.receivers, &camera_from_world);
-        let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let frame = Picture::decode(&input.image);
-        Self {
-            pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
-            receivers,
-            camera_from_world,
-        }
-    }
-
-    /// Rounded to 32 bits, which are the same wherever the world's origin is.
-    fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
-        (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
-    }
-
-    fn pose(&self, scene: &Scene, input: &FrameInput) -> Result<AlignedPose, ToyError> {
-        let given = input.world_from_object;
-        let camera_from_object = self.camera_from_object(&given);
-        let shape = Shape::new(scene, &camera_from_object)?;
-        let found = pose::find(&shape, &self.pyramid);
-        let mut aligned = AlignedPose {
-            image: Arc::clone(&input.image),
-            camera: input.camera,
-            given,
-            world_from_object: given,
-            report: None,
-        };
-        if let Some(found) = found {
-            let is_applied = found.found.is_nearer_than(&found.given)
-                && found.found.loss_px2 < POSE_GAIN * found.given.loss_px2
-                && found.found.outline_px() <= MOST_OUTLINE_PX;
-            if is_applied {
-                aligned.world_from_object =
-                    input.camera.world_from_camera * found.motion * camera_from_object;
-            }
-            aligned.report = Some(PoseAlignment {
-                is_applied,
-                moved_m: found.moved_m,
-                turned_rad: found.turned_rad,
-                given_outline_px: found.given.outline_px(),
-                outline_px: found.found.outline_px(),
-                deviation: found.deviation,
-            });
-        }
-        Ok(aligned)
-    }
-
-    fn lights(
-        &self,
-        scene: &Scene,
-        input: &FrameInput,
-        world_from_object: &DMat4,
-        given: &[Light],
-    ) -> Result<Option<AlignedLights>, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(world_from_object))?;
-        let world_from_camera = &input.camera.world_from_camera;
-        let found = lights::find(given, &shape, &self.receivers, &self.pyramid, world_from_camera);
-        Ok(found.map(|found| {
-            let [before, after] = found.losses;
-            let is_applied =
-                after < LIGHT_GAIN * before && found.lights.iter().any(lights::FoundLight::is_moved);
-            let lights = found.lights.iter().map(|found| found.light);
-            AlignedLights {
-                given: given.into(),
-                applied: is_applied.then(|| lights.collect()),
-                report: found
-                    .lights
-                    .iter()
-                    .map(|found| found.report(is_applied))
-                    .collect(),
-                errors: found.losses,
-            }
-        }))
-    }
-}
-
-impl lights::FoundLight {
-    /// Whether it was found elsewhere by enough to show.
-    fn is_moved(&self) -> bool {
-        let growth = (self.spread - self.given_spread).abs();
-        self.turned_rad > (LEAST_TURN * self.given_spread).max(LEAST_TURN_RAD)
-            || growth > LEAST_GROWTH * self.given_spread
-    }
-
-    fn report(&self, is_applied: bool) -> LightAlignment {
-        LightAlignment {
-            is_applied,
-            turned_rad: self.turned_rad,
-            distance_ratio: self.distance_ratio,
-            size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
-            deviation_rad: self.deviation_rad,
+impl AlignedLights {
+    fn new(given: Arc<[Light]>, found: Option<FoundLights>) -> Self {
+        match found {
+            Some(found) => Self {
+                given,
+                applied: found.applied,
+                report: found.report,
+                errors: Some(found.errors),
+            },
+            None => Self {
+                given,
+                applied: None,
+                report: Vec::new(),
+                errors: None,
+            },
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
-use crate::geometry::color::linear_from_srgb;
+use crate::geometry::color::linear_of_codes;
 use crate::scene::{Image, Intrinsics};
 
 /// Linear red, green and blue.
@@ -22,9 +22,7 @@ pub(super) struct Picture {
 impl Picture {
     /// Decodes a picture of a size that was checked.
     pub(super) fn decode(image: &Image) -> Self {
-        let table: Vec<f32> = (0..=u8::MAX)
-            .map(|code| linear_from_srgb(f32::from(code) / 255.0))
-            .collect();
+        let table = linear_of_codes();
         let texels = image.rgba8.chunks_exact(4);
         Self {
             size_px: UVec2::new(image.width_px, image.height_px).as_ivec2(),
@@ -101,13 +99,14 @@ pub(super) struct Level {
 #[derive(Clone, Debug)]
 pub(super) struct Pyramid {
     levels: Vec<Level>,
+    picture_px: f64,
 }
 
 impl Pyramid {
     /// The last of the levels.
     pub(super) const SMALLEST: usize = 3;
     /// Larger photographs are halved first: what is lost is less than a phone's lens resolves.
-    const MOST_PIXELS: i32 = 3_000_000;
+    const MOST_PIXELS: i32 = 4096 * 3072 / 4;
 
     /// All levels, from the largest.
     pub(super) fn new(frame: Picture, plate: Option<Picture>, intrinsics: Intrinsics) -> Self {
@@ -116,14 +115,21 @@ impl Pyramid {
             frame,
             plate,
         };
+        let mut picture_px = 1.0;
         while level.frame.size_px.x * level.frame.size_px.y > Self::MOST_PIXELS {
             level = level.halved();
+            picture_px *= 2.0;
         }
         let mut levels = vec![level];
         for above in 0..Self::SMALLEST {
             levels.push(levels[above].halved());
         }
-        Self { levels }
+        Self { levels, picture_px }
+    }
+
+    /// Pixels of the photograph in one of the largest level.
+    pub(super) fn picture_px(&self) -> f64 {
+        self.picture_px
     }
 
     /// A level from 0, the largest, to [`Pyramid::SMALLEST`].

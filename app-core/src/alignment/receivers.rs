@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Picture, UNKNOWN};
-use crate::scene::{Camera, Intrinsics, Plate, Receiver};
+use crate::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 
 /// Cameras whose matrices differ by less are one.
 const SAME_CAMERA: f64 = 1e-9;
@@ -17,8 +17,15 @@ pub(super) struct SeenReceiver {
 }
 
 impl SeenReceiver {
-    pub(super) fn all(receivers: &[Receiver], camera_from_world: &DMat4) -> Vec<Self> {
-        let seen = receivers.iter().map(|receiver| Self {
+    /// The receivers nearest to the toy, no more than shadows are moved on.
+    pub(super) fn near(receivers: &[Receiver], toy_in_world: DVec3, camera_from_world: &DMat4) -> Vec<Self> {
+        let away_m = |receiver: &Receiver| {
+            let toy = receiver.world_from_plane.inverse().transform_point3(toy_in_world);
+            toy.y.abs()
+        };
+        let mut receivers: Vec<&Receiver> = receivers.iter().collect();
+        receivers.sort_by(|a, b| away_m(a).total_cmp(&away_m(b)));
+        let seen = receivers.iter().take(MAX_RECEIVERS).map(|receiver| Self {
             plane_from_camera: (*camera_from_world * receiver.world_from_plane).inverse(),
             half_extent_m: receiver.half_extent_m,
         });

@@ -5,8 +5,8 @@
 pub struct AlignmentReport {
     /// The toy's pose; none where too little of its outline is seen.
     pub pose: Option<PoseAlignment>,
-    /// The lights, in the order of the list; empty where their shadows were not looked at: no light is listed, there is no plate,
-    /// or the toy's pose is not known well enough.
+    /// The lights, in the order of the list; empty where they were not found: none or more than four are listed, there is no plate,
+    /// the toy's pose is not known well enough, or the picture shows too little of their shadows.
     pub lights: Vec<LightAlignment>,
     /// Error of the shadows that the given lights predict, and of those that were found: mean squares over receivers, in units of
     /// what noise and the model of light are expected to leave. None where lights were not looked at.
@@ -27,14 +27,14 @@ pub struct PoseAlignment {
     pub given_outline_px: f64,
     /// The same for the pose that was found.
     pub outline_px: f64,
-    /// One deviation of what was found, by noise alone: errors of the model can be some ten times that.
+    /// One deviation of what was found, by noise alone: errors of the model come on top.
     pub deviation: PoseDeviation,
 }
 
 /// One deviation of a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseDeviation {
-    /// Across the line of sight, in metres.
+    /// Across the camera's axis, in metres.
     pub lateral_m: f64,
     /// Along it, in metres.
     pub depth_m: f64,
@@ -47,6 +47,8 @@ pub struct PoseDeviation {
 pub struct LightAlignment {
     /// Whether the lights were moved, all or none.
     pub is_applied: bool,
+    /// Whether this one was found elsewhere by enough to show.
+    pub is_moved: bool,
     /// Angle at the toy between the direction given and that found, in radians.
     pub turned_rad: f64,
     /// Found distance over the given; 1 for a directional light.

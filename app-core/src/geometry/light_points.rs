@@ -96,7 +96,10 @@ pub fn ambient_directions(n_directions: usize) -> Vec<Vec4> {
         .collect()
 }
 
-fn vogel_disc(n_points: usize) -> impl Iterator<Item = DVec2> {
+/// `n_points` points over the unit disc, each representing an equal area.
+///
+/// Source: Vogel 1979 (sunflower spiral).
+pub(crate) fn vogel_disc(n_points: usize) -> impl Iterator<Item = DVec2> {
     let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
     (0..n_points).map(move |i| {

@@ -1,7 +1,7 @@
 //! A session's folder with corrected poses and lights.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use app_core::scene::Light;
@@ -16,32 +16,45 @@ const INDEX: &str = "capture.json";
 /// Copies a session's files, and writes its index with what was found. Returns the number of corrected frames.
 ///
 /// # Errors
-/// When the folder is there already, or a file cannot be read or written.
+/// When the folder is there already or would lie in the session, or a file is a link or cannot be read or written.
 pub fn write(from: &Path, to: &Path, alignments: &Alignments) -> anyhow::Result<usize> {
     ensure!(!to.exists(), "{}: is there already", to.display());
     let text =
         fs::read_to_string(from.join(INDEX)).with_context(|| from.join(INDEX).display().to_string())?;
     let mut index: Value = serde_json::from_str(&text)?;
     let n_corrected = correct(&mut index, alignments);
+    let files = files_below(from, Path::new(""))?;
     make_folder(to)?;
-    copy(from, to)?;
+    let is_inside = to.canonicalize()?.starts_with(from.canonicalize()?);
+    if is_inside {
+        fs::remove_dir(to)?;
+    }
+    ensure!(!is_inside, "{}: lies in the session itself", to.display());
+    for file in files.iter().filter(|file| *file != Path::new(INDEX)) {
+        if let Some(folder) = file.parent() {
+            make_folder(&to.join(folder))?;
+        }
+        fs::copy(from.join(file), to.join(file)).with_context(|| from.join(file).display().to_string())?;
+    }
     write_whole(&to.join(INDEX), format!("{index:#}\n").as_bytes())?;
     Ok(n_corrected)
 }
 
-/// Everything but the index.
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+/// Files of a folder and of those in it, as paths within the session; a link could lead out of it.
+fn files_below(session: &Path, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let at = session.join(folder);
+    let mut files = Vec::new();
+    for entry in fs::read_dir(&at).with_context(|| at.display().to_string())? {
         let entry = entry?;
-        let (source, target) = (entry.path(), to.join(entry.file_name()));
-        if source.is_dir() {
-            make_folder(&target)?;
-            copy(&source, &target)?;
-        } else if entry.file_name() != INDEX {
-            fs::copy(&source, &target).with_context(|| source.display().to_string())?;
+        let (kind, path) = (entry.file_type()?, folder.join(entry.file_name()));
+        ensure!(!kind.is_symlink(), "{}: is a link", session.join(&path).display());
+        if kind.is_dir() {
+            files.extend(files_below(session, &path)?);
+        } else {
+            files.push(path);
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 fn correct(index: &mut Value, alignments: &Alignments) -> usize {

@@ -5,8 +5,8 @@ use serde_json::Value;
 
 use crate::files::Folder;
 
-/// No index is longer.
-const MOST_BYTES: u64 = 64 << 20;
+/// No longer index is read.
+const MOST_BYTES: u64 = 16 << 20;
 const INTRINSICS: &[&str] = &["fx", "fy", "cx", "cy"];
 const POSE: &[&str] = &["clip", "time"];
 /// Keys of each object, by its path without numbers.

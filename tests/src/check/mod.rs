@@ -14,7 +14,7 @@ use app_core::session::{Capture, Session};
 
 use crate::alignment::Alignments;
 use crate::files::Folder;
-use crate::output::write_png;
+use crate::output::{remove_file, write_png};
 
 /// File name of the drawing.
 const DRAWING: &str = "check.png";
@@ -36,6 +36,8 @@ pub struct Findings {
 /// When the folder cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
 pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
     let folder = Folder::open(session)?;
+    // A drawing in the folder is of this session.
+    remove_file(&out.join(DRAWING))?;
     let mut findings = Findings {
         wrong: keys::unknown(&folder),
         ..Findings::default()
@@ -50,6 +52,7 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
     findings
         .wrong
         .extend(capture.warnings().iter().map(ToString::to_string));
+    findings.facts.extend(sense::without(capture.scene()));
     findings.wrong.extend(sense::wrong(capture.scene()));
     let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
     for (index, frame) in frames {
@@ -114,7 +117,7 @@ impl Findings {
                 light.turned_rad.to_degrees(),
                 light.distance_ratio
             );
-            if light.is_applied {
+            if light.is_applied && light.is_moved {
                 self.wrong.push(told);
             } else {
                 self.facts.push(told);

@@ -8,14 +8,28 @@ use glam::{DMat4, DVec3};
 const TOY_M: [f64; 2] = [0.005, 3.0];
 const CAMERA_M: [f64; 2] = [0.03, 30.0];
 
+/// What a session does without, and what is made of it.
+pub(super) fn without(scene: &Scene) -> Vec<String> {
+    let mut facts = Vec::new();
+    if scene.lights.is_empty() {
+        facts.push("lights: none is listed, so that no shadow is moved".to_owned());
+    }
+    if scene.plates.is_empty() {
+        facts.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());
+    }
+    facts
+}
+
 /// Of the session as a whole.
 pub(super) fn wrong(scene: &Scene) -> Vec<String> {
     let mut wrong = Vec::new();
-    if scene.lights.is_empty() {
-        wrong.push("lights: none is listed, and no shadow is moved".to_owned());
-    }
-    if scene.plates.is_empty() {
-        wrong.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());
+    if let Some(corners) = corners(scene, &scene.physical_pose, &scene.world_from_object) {
+        let toy_m = corners[0].distance(corners[7]);
+        if !(TOY_M[0]..=TOY_M[1]).contains(&toy_m) {
+            wrong.push(format!(
+                "toy.world_from_object: the toy is {toy_m:.3} m from corner to corner: lengths are in metres, and the matrix holds the scale of the model"
+            ));
+        }
     }
     for (index, light) in scene.lights.iter().enumerate() {
         let is_above = scene.receivers.iter().any(|receiver| {
@@ -43,12 +57,6 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
         return vec![format!("frames[{index}]: the toy cannot be posed")];
     };
     let mut wrong = Vec::new();
-    let toy_m = corners[0].distance(corners[7]);
-    if !(TOY_M[0]..=TOY_M[1]).contains(&toy_m) {
-        wrong.push(format!(
-            "toy.world_from_object: the toy is {toy_m:.3} m from corner to corner: lengths are in metres, and the matrix holds the scale of the model"
-        ));
-    }
     let camera = &frame.camera;
     let centre = 0.5 * (corners[0] + corners[7]);
     let camera_m = camera.world_from_camera.w_axis.truncate().distance(centre);

@@ -74,7 +74,7 @@ impl<'a> Caster<'a> {
         &self,
         raster: &mut Rasterizer,
         pixels: &[FloorPixel],
-        n_directions: u32,
+        n_directions: usize,
     ) -> Vec<f32> {
         // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
         let lifted = |at: DVec2| {

@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 
+use crate::geometry::light_points::vogel_disc;
 use crate::scene::Light;
 
 /// Numbers of a lamp: two angles, the logarithm of its distance, and its spread.
@@ -99,28 +100,21 @@ impl Lamp {
     }
 }
 
-/// Points over the unit disc, of equal areas, with the disc's own mean and variance.
-///
-/// Source: Vogel 1979 (sunflower spiral), which by itself is a little off both.
-pub(super) fn disc(n_points: u32) -> Vec<DVec2> {
-    let n = f64::from(n_points);
-    let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    let mut points: Vec<DVec2> = (0..n_points)
-        .map(f64::from)
-        .map(|i| ((i + 0.5) / n).sqrt() * DVec2::from_angle(i * golden_angle_rad))
-        .collect();
-    let mean = points.iter().sum::<DVec2>() / n;
-    let variance = points
-        .iter()
-        .map(|point| (*point - mean) * (*point - mean))
-        .sum::<DVec2>()
-        / n;
-    // Along each axis a disc has a variance of 1/4; a single point has none.
-    if variance.cmpgt(DVec2::ZERO).all() {
-        let scale = 0.5 / DVec2::new(variance.x.sqrt(), variance.y.sqrt());
-        points
-            .iter_mut()
-            .for_each(|point| *point = (*point - mean) * scale);
+/// At least three points over the unit disc, of equal areas, with the disc's own mean and variance, of which a spiral of few is a
+/// little off.
+pub(super) fn disc(n_points: usize) -> Vec<DVec2> {
+    let mut points: Vec<DVec2> = vogel_disc(n_points).collect();
+    let mean_of = |values: &mut dyn Iterator<Item = DVec2>| {
+        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+        let n = n_points as f64;
+        values.sum::<DVec2>() / n
+    };
+    let mean = mean_of(&mut points.iter().copied());
+    let variance = mean_of(&mut points.iter().map(|point| (*point - mean) * (*point - mean)));
+    // Along each axis a disc has a variance of 1/4.
+    let scale = 0.5 / DVec2::new(variance.x.sqrt(), variance.y.sqrt());
+    for point in &mut points {
+        *point = (*point - mean) * scale;
     }
     points
 }

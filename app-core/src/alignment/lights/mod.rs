@@ -23,7 +23,7 @@ use lamp::{Lamp, N_PARTS, disc};
 use shading::{Shaded, Shading};
 
 /// Directions of ambient light.
-const N_AMBIENT: u32 = 128;
+const N_AMBIENT: usize = 128;
 /// Scale of robust weights, in deviations: while lights may be far off, and after.
 const ROBUST_FAR: f64 = 30.0;
 const ROBUST_NEAR: f64 = 8.0;
@@ -31,13 +31,15 @@ const ROBUST_NEAR: f64 = 8.0;
 const SEARCH_STEP_RAD: f64 = 3.5 * std::f64::consts::PI / 180.0;
 const SEARCH_STEPS: i32 = 4;
 /// Points over a lamp then.
-const N_SEARCH_POINTS: u32 = 7;
+const N_SEARCH_POINTS: usize = 7;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
 const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
 /// Where every penumbra is at least as wide in pixels of a level, a larger one tells no more.
 const WIDE_PENUMBRA_PX: f64 = 5.0;
 /// Pixels around the shadows that are looked at, in pixels of a level.
 const AROUND_PX: i32 = 16;
+/// Fewer pixels beside the toy tell no light.
+const LEAST_PIXELS: usize = 100;
 /// Wider than the lamps, so that shadows that grow stay in sight.
 const GROWN: f64 = 1.5;
 
@@ -65,7 +67,8 @@ pub(super) struct FoundLight {
     pub(super) deviation_rad: f64,
 }
 
-/// Finds the lights around those given; none where no receiver shows their shadows.
+/// Finds the lights around those given; none where too little of a receiver shows their shadows, where one of them stands in the
+/// middle of the toy, or where one would have to darken what it shines on.
 pub(super) fn find(
     lights: &[Light],
     shape: &Shape,
@@ -81,7 +84,7 @@ pub(super) fn find(
     let given = given?;
     let mut raster = Rasterizer::default();
     let mut lamps = given.clone();
-    let smallest = Scene::new(
+    let smallest = Shadows::new(
         &mut raster,
         (shape, receivers),
         pyramid.level(Pyramid::SMALLEST),
@@ -91,22 +94,26 @@ pub(super) fn find(
     let mut losses = None;
     let mut deviations_rad = Vec::new();
     for (level, n_rounds, robust) in ROUNDS {
-        let scene = Scene::new(
+        let shadows = Shadows::new(
             &mut raster,
             (shape, receivers),
             pyramid.level(level),
             Some(&[&given[..], &lamps[..]].concat()),
         );
-        if scene.pixels.is_empty() {
+        if shadows.pixels.len() < LEAST_PIXELS {
             return None;
         }
         for _ in 0..n_rounds {
-            deviations_rad = scene.step(&mut raster, &mut lamps, &given, robust)?;
+            deviations_rad = shadows.step(&mut raster, &mut lamps, &given, robust)?;
         }
-        losses = Some([&given, &lamps].map(|lamps| scene.shading(&mut raster, lamps, robust).loss));
+        let shadings = [&given, &lamps].map(|lamps| shadows.shading(&mut raster, lamps, robust));
+        if !shadings[1].has_light_of_all(lamps.len()) {
+            return None;
+        }
+        losses = Some(shadings.map(|shading| shading.loss));
         if lamps
             .iter()
-            .all(|lamp| scene.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
+            .all(|lamp| shadows.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
         {
             break;
         }
@@ -139,7 +146,7 @@ pub(super) fn hard_shadows(
     };
     let flat = receivers.iter().map(|receiver| {
         let plane_from_camera = &receiver.plane_from_camera;
-        let middle = lamp.points(plane_from_camera, shape.centre, &disc(1));
+        let middle = lamp.points(plane_from_camera, shape.centre, &[DVec2::ZERO]);
         Shape {
             points: flattened(shape, plane_from_camera, middle[0]),
             ..shape.clone()
@@ -153,7 +160,7 @@ fn ratio(found_m: Option<f64>, given_m: Option<f64>) -> f64 {
 }
 
 /// What one level shows of the shadows.
-struct Scene<'a> {
+struct Shadows<'a> {
     caster: Caster<'a>,
     pixels: Vec<FloorPixel>,
     ambient: Vec<f32>,
@@ -161,7 +168,7 @@ struct Scene<'a> {
     px_per_rad: f64,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Shadows<'a> {
     /// All of a level's receivers, or what lies around the shadows of `lamps`.
     fn new(
         raster: &mut Rasterizer,
@@ -193,7 +200,7 @@ impl<'a> Scene<'a> {
     /// Points over a lamp: more the wider its penumbra.
     fn disc(&self, lamp: &Lamp) -> Vec<DVec2> {
         #[allow(clippy::cast_possible_truncation, reason = "clamped")]
-        let n_points = self.penumbra_px(lamp).powi(2).clamp(8.0, 40.0) as u32;
+        let n_points = self.penumbra_px(lamp).powi(2).clamp(8.0, 40.0) as usize;
         disc(n_points)
     }
 

@@ -31,8 +31,19 @@ pub(super) struct Shaded<'a> {
 /// Factors of each receiver and channel.
 pub(super) struct Shading {
     pub(super) factors: Vec<[Factors; 3]>,
-    /// Mean robust loss of a channel of a pixel, in variances.
+    /// Mean robust loss of a channel of a pixel, in variances; of the factors before the last round.
     pub(super) loss: f64,
+}
+
+impl Shading {
+    /// Whether each of the lamps gives light, over all receivers and channels.
+    pub(super) fn has_light_of_all(&self, n_lamps: usize) -> bool {
+        let given = |lamp: usize| -> f64 {
+            let factors = self.factors.iter().flatten();
+            factors.map(|factors| factors[FIRST_LAMP + lamp]).sum()
+        };
+        (0..n_lamps).all(|lamp| given(lamp) > 0.0)
+    }
 }
 
 /// One channel of one pixel against a shading.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Scene;
+use super::Shadows;
 use super::lamp::{DISTANCE, Lamp, N_PARTS, SPREAD};
 use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Shaded, Shading};
 use crate::alignment::raster::Rasterizer;
@@ -19,7 +19,7 @@ const LEAST_PENUMBRA_PX: f64 = 0.6;
 const GIVEN_RAD: f64 = 0.2;
 const GIVEN_DISTANCE: f64 = 0.3;
 const GIVEN_SPREAD: f64 = 0.7;
-/// Of the spread of a point light, so that it can grow.
+/// The least deviation of a spread, and its least step; a point light stays one.
 const GIVEN_POINT: f64 = 0.003;
 /// The longest step of each part; of the spread as a fraction of it.
 const LONGEST_RAD: f64 = 0.06;
@@ -30,7 +30,7 @@ const LONGEST_SHRINKING: f64 = 0.5;
 /// How what a lamp takes changes with one of its parts, at each pixel.
 type Slope = Option<Vec<f32>>;
 
-impl Scene<'_> {
+impl Shadows<'_> {
     /// Moves all lamps by one step; returns one deviation of each direction. None where there is nothing to go by.
     pub(super) fn step(
         &self,

@@ -14,6 +14,8 @@ use crate::alignment::raster::Coverage;
 const NOISE_CODES: f32 = 2.0;
 /// What colours that are carried across the band are wrong by, over the contrast.
 const CARRIED: f32 = 0.05;
+/// Linear light that ratios to the plate are taken above, where a plate is black in a channel.
+const FLOOR: f32 = 5e-4;
 /// Samples of colour on either side of the band, and where the first is beyond it, in pixels.
 const N_SAMPLES: i32 = 3;
 const BEYOND_PX: f64 = 0.75;
@@ -48,6 +50,9 @@ impl Band {
 
 /// Measures each piece's displacement: the covered area that the picture has beyond the model's, over its length.
 pub(super) fn measure(level: &Level, coverage: &Coverage, elements: &[Element], band: Band) -> Vec<Measured> {
+    if elements.is_empty() {
+        return Vec::new();
+    }
     let mut pieces: Vec<Piece> = elements
         .iter()
         .map(|element| Piece::new(level, coverage, element, band.half_px))
@@ -101,7 +106,7 @@ impl Piece {
         };
         let (mut along, mut contrast) = (0.0, 0.0);
         for channel in 0..3 {
-            let background = sides.ratio[channel] * plate[channel];
+            let background = (sides.ratio[channel] * (plate[channel] + FLOOR) - FLOOR).max(0.0);
             let apart = sides.toy[channel] - background;
             let middle = 0.5 * (sides.toy[channel] + background);
             let variance = deviation_of_codes(middle, NOISE_CODES).powi(2);
@@ -142,7 +147,7 @@ fn plate_at(level: &Level, at: IVec2) -> Option<Color> {
 /// Means of the toy just within the band and of the background just beyond it, along the normal.
 fn sides(level: &Level, coverage: &Coverage, element: &Element, half_px: f64) -> Option<Sides> {
     let (mut toy, mut background, mut plate) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-    let mut n_toy = 0.0;
+    let (mut n_toy, mut n_background) = (0.0, 0.0);
     for sample in 0..N_SAMPLES {
         let distance_px = half_px + BEYOND_PX + f64::from(sample);
         let inside = element.pixel(-distance_px);
@@ -154,12 +159,15 @@ fn sides(level: &Level, coverage: &Coverage, element: &Element, half_px: f64) ->
         if coverage.at(outside) < ALONE {
             background = plus(background, level.frame.get(outside)?);
             plate = plus(plate, plate_at(level, outside)?);
+            n_background += 1.0;
         }
     }
-    let is_known = n_toy > 0.0 && plate.iter().all(|sum| *sum > 0.0);
-    is_known.then(|| Sides {
+    (n_toy > 0.0 && n_background > 0.0).then(|| Sides {
         toy: toy.map(|sum| sum / n_toy),
-        ratio: [0, 1, 2].map(|channel| background[channel] / plate[channel]),
+        ratio: [0, 1, 2].map(|channel| {
+            let floor = n_background * FLOOR;
+            (background[channel] + floor) / (plate[channel] + floor)
+        }),
     })
 }
 

@@ -54,14 +54,17 @@ const NEAR_PX: f64 = 0.6;
 const FINE_ENOUGH: f64 = 0.7;
 /// A step that moves the toy by less, over its radius, is the last of its band.
 const LAST_STEP: f64 = 1e-6;
-/// How far off a pose may be, over the toy's radius: the deviation of the prior.
-const PRIOR: f64 = 0.2;
-/// Deviation of one piece of the outline, for the prior's weight against the pictures.
+/// A step that the outline does not tell is held back as by this deviation, over the toy's radius (Levenberg 1944).
+const STEP: f64 = 0.2;
+/// Deviation of one piece of the outline, for the weight of that against the pictures.
 const PIECE_PX: f64 = 0.3;
 /// Fewer pieces of the outline than that tell no pose.
 const LEAST_PIECES: usize = 40;
 /// Of the outline, what has to be measured.
 const LEAST_MEASURED: f64 = 0.3;
+
+/// How much less of the outline a better pose may have measured: a different part of it may be thin, or beside a corner.
+const LESS_SEEN: f64 = 0.1;
 
 const fn band(half_px: f64, robust_px: f64) -> Band {
     Band { half_px, robust_px }
@@ -74,6 +77,8 @@ pub(super) struct Fit {
     pub(super) loss_px2: f64,
     /// The same of the wide band.
     wide_loss_px2: f64,
+    /// Of the outline, what was measured in the finest band.
+    share: f64,
 }
 
 impl Fit {
@@ -89,11 +94,6 @@ impl Fit {
 
     fn is_far(&self) -> bool {
         self.wide_loss_px2 > NEAR_PX * NEAR_PX
-    }
-
-    /// Whether it is nearer to the picture than another, by both bands.
-    pub(super) fn is_nearer_than(&self, other: &Self) -> bool {
-        self.loss_px2 < other.loss_px2 && self.wide_loss_px2 <= other.wide_loss_px2
     }
 }
 
@@ -114,13 +114,30 @@ pub(super) struct Found {
     pub(super) deviation: PoseDeviation,
 }
 
+impl Found {
+    /// Whether the outline's loss fell to less than a part in either band, and did not rise in the other; and not because less of the
+    /// outline is seen. From far off it is the wide band that tells, since the finest counts all that is far as one.
+    pub(super) fn is_better(&self, part: f64) -> bool {
+        let (found, given) = (&self.found, &self.given);
+        let fell_to = |part: f64| {
+            [
+                found.loss_px2 <= part * given.loss_px2,
+                found.wide_loss_px2 <= part * given.wide_loss_px2,
+            ]
+        };
+        fell_to(part).contains(&true)
+            && !fell_to(1.0).contains(&false)
+            && found.share > given.share - LESS_SEEN
+    }
+}
+
 /// Finds the pose, starting from that of `shape`; none where too little of the outline is seen.
 pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
     let mut search = Search {
         shape,
         pyramid,
         raster: Rasterizer::default(),
-        prior: Matrix6::identity() * (PIECE_PX / (PRIOR * shape.radius_m)).powi(2),
+        damping: Matrix6::identity() * (PIECE_PX / (STEP * shape.radius_m)).powi(2),
     };
     let start = Motion::none(shape.centre, shape.radius_m);
     let given = search.fit(&start)?;
@@ -161,7 +178,7 @@ struct Search<'a> {
     shape: &'a Shape,
     pyramid: &'a Pyramid,
     raster: Rasterizer,
-    prior: Matrix6,
+    damping: Matrix6,
 }
 
 impl Search<'_> {
@@ -173,19 +190,23 @@ impl Search<'_> {
         (coverage, elements)
     }
 
-    fn matte(&mut self, motion: &Motion, band: Band) -> Option<Vec<Measured>> {
+    /// The pieces that can be measured, and how many of all these are.
+    fn matte(&mut self, motion: &Motion, band: Band) -> Option<(Vec<Measured>, f64)> {
         let level = self.pyramid.level(0);
         let (coverage, elements) = self.outline(motion, level);
         let measured = matte::measure(level, &coverage, &elements, band);
         #[allow(clippy::cast_precision_loss, reason = "pixels of an outline")]
         let share = measured.len() as f64 / elements.len() as f64;
-        (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some(measured)
+        (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))
     }
 
     fn fit(&mut self, motion: &Motion) -> Option<Fit> {
+        let (fine, share) = self.matte(motion, FINEST)?;
+        let (wide, _) = self.matte(motion, WIDE)?;
         Some(Fit {
-            loss_px2: FINEST.loss_px2(&self.matte(motion, FINEST)?),
-            wide_loss_px2: WIDE.loss_px2(&self.matte(motion, WIDE)?),
+            loss_px2: FINEST.loss_px2(&fine),
+            wide_loss_px2: WIDE.loss_px2(&wide),
+            share,
         })
     }
 
@@ -195,7 +216,7 @@ impl Search<'_> {
             let (coverage, elements) = self.outline(&motion, level);
             let odds = Odds::learn(level, &coverage, LEARNED_AROUND * reach_px);
             let measured = lines::measure(&elements, &coverage, &odds, reach_px);
-            if let Some((step, _)) = solve(&measured, &level.intrinsics, &motion, &self.prior) {
+            if let Some((step, _)) = solve(&measured, &level.intrinsics, &motion, &self.damping) {
                 motion = motion.then(&step);
             }
         }
@@ -206,9 +227,9 @@ impl Search<'_> {
         let mut last = None;
         for (band, n_rounds) in FINE {
             for _ in 0..n_rounds {
-                let measured = self.matte(&motion, band)?;
+                let (measured, _) = self.matte(&motion, band)?;
                 let k = &self.pyramid.level(0).intrinsics;
-                let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.prior)?;
+                let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.damping)?;
                 motion = motion.then(&step);
                 last = Some(Converged {
                     motion,

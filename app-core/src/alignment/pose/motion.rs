@@ -95,14 +95,14 @@ pub(super) struct Measured {
 
 /// The step that moves all pieces as measured, in weighted least squares, with the information that there is on it.
 ///
-/// `prior` holds what the outline does not tell, such as how a toy of revolution is turned. None where nothing was measured.
+/// `damping` holds what the outline does not tell, such as how a toy of revolution is turned. None where nothing was measured.
 pub(super) fn solve(
     measured: &[Measured],
     k: &Intrinsics,
     motion: &Motion,
-    prior: &Matrix6,
+    damping: &Matrix6,
 ) -> Option<(Vector6, Matrix6)> {
-    let mut information = *prior;
+    let mut information = *damping;
     let mut gradient = Vector6::zeros();
     for one in measured {
         let row = motion.outward(&one.element, k);

@@ -1,0 +1,162 @@
+//! A photograph with its plate, and what is made of a toy's pose and lights that are found in it.
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use super::lights::FoundLight;
+use super::picture::{Picture, Pyramid};
+use super::receivers::{SeenReceiver, plate_for};
+use super::report::{LightAlignment, PoseAlignment};
+use super::shape::Shape;
+use super::{lights, pose};
+use crate::frame::FrameInput;
+use crate::scene::{Light, Scene, check};
+use crate::toy::ToyError;
+
+/// A found pose is applied where the outline's loss falls to less than this part of the given pose's.
+///
+/// With exact poses it falls to .9 in the finest band and to .99 in the wide one, by what the model of the outline's pixels lacks;
+/// without a plate a shadow beside the toy draws it along, and the wide one fell to .8.
+const POSE_GAIN: f64 = 0.5;
+/// A pose whose outline stays farther from the picture's, in pixels, was not found.
+pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
+/// Found lights are applied where the loss falls to less than this part of the given lights'.
+const LIGHT_GAIN: f64 = 0.96;
+/// And where one of them turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
+/// nearer or farther by more, as a logarithm.
+const LEAST_TURN: f64 = 0.06;
+const LEAST_TURN_RAD: f64 = 0.0015;
+const LEAST_GROWTH: f64 = 0.15;
+const LEAST_DISTANCE: f64 = 0.1;
+/// A direction is told where it turned by as many deviations.
+const TOLD: f64 = 3.0;
+
+/// A photograph with its plate, and where the receivers are in it.
+pub(super) struct Photograph {
+    pyramid: Pyramid,
+    receivers: Vec<SeenReceiver>,
+    camera_from_world: DMat4,
+}
+
+impl Photograph {
+    pub(super) fn new(scene: &Scene, input: &FrameInput) -> Self {
+        let camera_from_world = input.camera.world_from_camera.inverse();
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+        let plate = plate_for(&scene.plates, &receivers, &input.camera);
+        let frame = Picture::decode(&input.image);
+        Self {
+            pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
+            receivers,
+            camera_from_world,
+        }
+    }
+
+    /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
+    fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
+        (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
+    }
+
+    /// Where the toy is, for a given pose; that stays where no better one is found.
+    pub(super) fn pose(&self, scene: &Scene, input: &FrameInput) -> Result<FoundPose, ToyError> {
+        let given = input.world_from_object;
+        let camera_from_object = self.camera_from_object(&given);
+        let shape = Shape::new(scene, &camera_from_object)?;
+        let found = pose::find(&shape, &self.pyramid);
+        let mut aligned = FoundPose {
+            world_from_object: given,
+            report: None,
+        };
+        if let Some(found) = found {
+            let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
+            let is_applied = found.is_better(POSE_GAIN)
+                && found.found.outline_px() <= MOST_OUTLINE_PX
+                && check::similarity(corrected.to_cols_array()).is_ok();
+            if is_applied {
+                aligned.world_from_object = corrected;
+            }
+            let picture_px = self.pyramid.picture_px();
+            aligned.report = Some(PoseAlignment {
+                is_applied,
+                moved_m: found.moved_m,
+                turned_rad: found.turned_rad,
+                given_outline_px: picture_px * found.given.outline_px(),
+                outline_px: picture_px * found.found.outline_px(),
+                deviation: found.deviation,
+            });
+        }
+        Ok(aligned)
+    }
+
+    /// Where the lights are, for a pose of the toy; none where too little of their shadows is seen.
+    pub(super) fn lights(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        world_from_object: &DMat4,
+        given: &[Light],
+    ) -> Result<Option<FoundLights>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let found = lights::find(given, &shape, &self.receivers, &self.pyramid, world_from_camera);
+        Ok(found.map(|found| {
+            let [before, after] = found.losses;
+            let lights: Arc<[Light]> = found.lights.iter().map(|found| found.light).collect();
+            let is_applied = after < LIGHT_GAIN * before
+                && found.lights.iter().any(FoundLight::is_moved)
+                && lights.iter().all(|light| check::light("lights", light).is_ok());
+            FoundLights {
+                applied: is_applied.then_some(lights),
+                report: found
+                    .lights
+                    .iter()
+                    .map(|found| found.report(is_applied))
+                    .collect(),
+                errors: found.losses,
+            }
+        }))
+    }
+}
+
+/// A pose, as given or corrected.
+pub(super) struct FoundPose {
+    /// From object space.
+    pub(super) world_from_object: DMat4,
+    /// None where too little of the outline is seen.
+    pub(super) report: Option<PoseAlignment>,
+}
+
+/// Lights that were looked for.
+pub(super) struct FoundLights {
+    /// None where those that were given stay.
+    pub(super) applied: Option<Arc<[Light]>>,
+    /// Of each.
+    pub(super) report: Vec<LightAlignment>,
+    /// Mean losses with the given and with the found ones.
+    pub(super) errors: [f64; 2],
+}
+
+impl FoundLight {
+    /// Whether it was found elsewhere by enough to show, and by more than noise.
+    fn is_moved(&self) -> bool {
+        let least_rad = (LEAST_TURN * self.given_spread)
+            .max(LEAST_TURN_RAD)
+            .max(TOLD * self.deviation_rad);
+        let growth = (self.spread - self.given_spread).abs();
+        self.turned_rad > least_rad
+            || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
+            || self.distance_ratio.ln().abs() > LEAST_DISTANCE
+    }
+
+    fn report(&self, is_applied: bool) -> LightAlignment {
+        LightAlignment {
+            is_applied,
+            is_moved: self.is_moved(),
+            turned_rad: self.turned_rad,
+            distance_ratio: self.distance_ratio,
+            size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
+            deviation_rad: self.deviation_rad,
+        }
+    }
+}
