@@ -65,6 +65,7 @@
 //! }
 //! ```
 //!
+//! Where poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them by the picture.
 //! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
 //! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
