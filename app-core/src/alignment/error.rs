@@ -31,16 +31,10 @@ pub(super) fn check(scene: &Scene, input: &FrameInput) -> Result<(), AlignError>
     scene.check()?;
     input.check()?;
     let plates = scene.plates.iter().map(|plate| ("plate", &plate.image));
-    for (what, image) in plates.chain([("camera frame", &input.image)]) {
-        let n_bytes = 4 * u64::from(scene.width_px) * u64::from(scene.height_px);
-        let is_fit = [image.width_px, image.height_px] == [scene.width_px, scene.height_px]
-            && image.rgba8.len() as u64 == n_bytes;
-        if !is_fit {
-            return Err(AlignError::Size {
-                what,
-                size_px: [scene.width_px, scene.height_px],
-            });
-        }
+    let size_px = [scene.width_px, scene.height_px];
+    let mut pictures = plates.chain([("camera frame", &input.image)]);
+    match pictures.find(|(_, image)| !image.is_of_size(size_px)) {
+        Some((what, _)) => Err(AlignError::Size { what, size_px }),
+        None => Ok(()),
     }
-    Ok(())
 }

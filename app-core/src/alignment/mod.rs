@@ -25,6 +25,7 @@ mod picture;
 mod pose;
 mod raster;
 mod receivers;
+mod rectangle;
 pub(crate) mod report;
 mod shape;
 

@@ -36,12 +36,14 @@ impl Outlines {
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);
         let shadows = lights.iter().map(|light| {
             let flat = hard_shadows(light, &shape, &receivers, &camera_from_world);
-            let outlines = flat.iter().map(|flat| outline_px(&mut raster, flat, k, size_px));
+            let outlines = flat
+                .iter()
+                .map(|flat| outline_px(&mut raster, (flat, &shape), k, size_px));
             outlines.flatten().collect()
         });
         Ok(Self {
             shadows: shadows.collect(),
-            toy: outline_px(&mut Rasterizer::default(), &shape, k, size_px),
+            toy: outline_px(&mut Rasterizer::default(), (&shape.points, &shape), k, size_px),
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
+use super::rectangle::{index_in, places};
 use crate::geometry::color::linear_of_codes;
 use crate::scene::{Image, Intrinsics};
 
@@ -39,9 +40,8 @@ impl Picture {
 
     /// A pixel; none outside the picture, nor where nothing is known.
     pub(super) fn get(&self, at: IVec2) -> Option<Color> {
-        let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(self.size_px).all();
-        let index = is_inside.then_some((at.y * self.size_px.x + at.x) as usize)?;
-        self.pixels.get(index).copied().filter(|color| !color[0].is_nan())
+        let pixel = self.pixels.get(index_in(self.size_px, at)?);
+        pixel.copied().filter(|color| !color[0].is_nan())
     }
 
     /// The value at a place in pixels, bilinear between the centres of four; none where one of them is unknown.
@@ -68,18 +68,16 @@ impl Picture {
     /// Half as large, each pixel the mean of four; an odd last row or column is left out.
     fn halved(&self) -> Self {
         let size_px = self.size_px / 2;
-        let mean = |x: i32, y: i32| {
-            let corner = 2 * IVec2::new(x, y);
-            let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(corner + step));
+        let mean = |at: IVec2| {
+            let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(2 * at + step));
             let [Some(a), Some(b), Some(c), Some(d)] = four else {
                 return UNKNOWN;
             };
             [0, 1, 2].map(|channel| 0.25 * (a[channel] + b[channel] + c[channel] + d[channel]))
         };
-        let rows = (0..size_px.y).flat_map(|y| (0..size_px.x).map(move |x| (x, y)));
         Self {
             size_px,
-            pixels: rows.map(|(x, y)| mean(x, y)).collect(),
+            pixels: places(size_px).map(mean).collect(),
         }
     }
 }
@@ -154,14 +152,17 @@ impl Level {
     }
 }
 
-/// Standard deviation that noise of some 8-bit sRGB codes has in linear light.
+/// Noise of a photograph, in 8-bit sRGB codes.
+const NOISE_CODES: f32 = 2.0;
+
+/// Standard deviation that a photograph's noise has in linear light.
 ///
 /// Source: the derivative of IEC 61966-2-1.
-pub(super) fn deviation_of_codes(linear: f32, codes: f32) -> f32 {
+pub(super) fn noise_deviation(linear: f32) -> f32 {
     let slope = if linear <= 0.003_130_8 {
         1.0 / 12.92
     } else {
         2.4 / 1.055 * linear.powf(1.4 / 2.4)
     };
-    codes / 255.0 * slope
+    NOISE_CODES / 255.0 * slope
 }

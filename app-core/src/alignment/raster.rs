@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, IVec2};
 
+use super::rectangle::{index_in, places};
 use crate::scene::Intrinsics;
 
 /// Samples of each pixel: 8 rows of 16.
@@ -38,15 +39,13 @@ impl Coverage {
     }
 
     fn index(&self, at: IVec2) -> Option<usize> {
-        let at = at - self.origin_px;
-        let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(self.size_px).all();
-        is_inside.then_some((at.y * self.size_px.x + at.x) as usize)
+        index_in(self.size_px, at - self.origin_px)
     }
 
     /// Pixels of the rectangle, row by row.
     pub(super) fn pixels(&self) -> impl Iterator<Item = IVec2> + use<> {
-        let (origin, size) = (self.origin_px, self.size_px);
-        (0..size.y).flat_map(move |y| (0..size.x).map(move |x| origin + IVec2::new(x, y)))
+        let origin = self.origin_px;
+        places(self.size_px).map(move |place| origin + place)
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Picture, UNKNOWN};
+use super::rectangle::places;
 use crate::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 
 /// Cameras whose matrices differ by less are one.
@@ -95,7 +96,6 @@ fn carried(picture: &Picture, from: &Camera, receivers: &[SeenReceiver], to: &Ca
         );
         (point.z < 0.0).then(|| picture.sample(at_px)).flatten()
     };
-    let rows = (0..picture.size_px.y).flat_map(|y| (0..picture.size_px.x).map(move |x| IVec2::new(x, y)));
-    let pixels = rows.map(|at| color(at).unwrap_or(UNKNOWN));
+    let pixels = places(picture.size_px).map(|at| color(at).unwrap_or(UNKNOWN));
     Picture::of(picture.size_px, pixels.collect())
 }

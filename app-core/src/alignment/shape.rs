@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
+use crate::geometry::bounds::Bounds;
 use crate::scene::Scene;
 use crate::toy::{PosedMesh, ToyError};
 
@@ -38,18 +39,14 @@ impl Shape {
             .iter()
             .map(|vertex| posed.positions[*vertex as usize].as_dvec3())
             .collect();
-        let (low, high) = points
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
-                (low.min(*point), high.max(*point))
-            });
+        let bounds = Bounds::around(points.iter().copied());
         let triangles = corners.as_chunks().0.iter();
         Ok(Self {
             triangles: triangles
                 .map(|corners: &[u32; 3]| corners.map(|vertex| places[vertex as usize]))
                 .collect(),
-            centre: 0.5 * (low + high),
-            radius_m: 0.5 * (high - low).length(),
+            centre: bounds.centre(),
+            radius_m: 0.5 * (bounds.max - bounds.min).length(),
             points,
         })
     }

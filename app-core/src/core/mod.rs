@@ -224,15 +224,13 @@ impl Core {
 
 fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
     let expected_px = [scene.width_px, scene.height_px];
-    let actual_px = [image.width_px, image.height_px];
-    let n_bytes = 4 * u64::from(image.width_px) * u64::from(image.height_px);
-    if expected_px == actual_px && image.rgba8.len() as u64 == n_bytes {
+    if image.is_of_size(expected_px) {
         Ok(())
     } else {
         Err(CoreError::SizeDiffers {
             what,
             expected_px,
-            actual_px,
+            actual_px: [image.width_px, image.height_px],
             n_bytes: image.rgba8.len(),
         })
     }

@@ -163,6 +163,14 @@ pub struct Image {
     pub rgba8: Vec<u8>,
 }
 
+impl Image {
+    /// Whether it is of a size, width first, with all of its bytes.
+    pub(crate) fn is_of_size(&self, size_px: [u32; 2]) -> bool {
+        let n_bytes = 4 * u64::from(self.width_px) * u64::from(self.height_px);
+        [self.width_px, self.height_px] == size_px && self.rgba8.len() as u64 == n_bytes
+    }
+}
+
 impl fmt::Debug for Image {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Image({} x {} px)", self.width_px, self.height_px)

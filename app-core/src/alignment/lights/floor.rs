@@ -2,14 +2,13 @@
 
 use glam::IVec2;
 
-use crate::alignment::picture::{Color, Level, deviation_of_codes};
+use crate::alignment::picture::{Color, Level, noise_deviation};
 use crate::alignment::raster::Coverage;
 use crate::alignment::receivers::{SeenReceiver, receiver_at};
+use crate::alignment::rectangle::places;
 
 /// Pixels as near to the toy may mix with it.
 const CLEAR_PX: i32 = 2;
-/// Noise of a photograph, in 8-bit codes.
-const NOISE_CODES: f32 = 2.0;
 /// What the model of light leaves unexplained, over the plate.
 const UNEXPLAINED: f32 = 0.02;
 /// Linear light of the codes 4 and 250: beyond, a pixel says little.
@@ -38,9 +37,7 @@ pub(super) fn floor_pixels(
     receivers: &[SeenReceiver],
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {
-    let size_px = level.frame.size_px;
-    let all = (0..size_px.y).flat_map(|y| (0..size_px.x).map(move |x| IVec2::new(x, y)));
-    let clear = all.filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
+    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
     let pixels = clear.filter_map(|at| {
         let (receiver, _) = receiver_at(receivers, &level.intrinsics, at)?;
         let (frame, plate) = (level.frame.get(at)?, level.plate.as_ref()?.get(at)?);
@@ -59,7 +56,7 @@ pub(super) fn floor_pixels(
 fn precision(frame: f32, plate: f32) -> f32 {
     let is_useful = |value: f32| value > DARKEST && value < BRIGHTEST;
     if is_useful(frame) && is_useful(plate) {
-        let deviation = deviation_of_codes(frame, NOISE_CODES).hypot(UNEXPLAINED * plate);
+        let deviation = noise_deviation(frame).hypot(UNEXPLAINED * plate);
         1.0 / (deviation * deviation)
     } else {
         0.0

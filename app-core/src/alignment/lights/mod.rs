@@ -10,7 +10,7 @@ mod lamp;
 mod shading;
 mod step;
 
-use glam::{DMat4, DVec2, IVec2};
+use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Level, Pyramid};
 use super::raster::{Rasterizer, project};
@@ -134,23 +134,20 @@ pub(super) fn find(
     })
 }
 
-/// The toy flattened onto each receiver from the middle of a light, in camera space.
+/// The toy's points flattened onto each receiver from the middle of a light, in camera space.
 pub(super) fn hard_shadows(
     light: &Light,
     shape: &Shape,
     receivers: &[SeenReceiver],
     camera_from_world: &DMat4,
-) -> Vec<Shape> {
+) -> Vec<Vec<DVec3>> {
     let Some(lamp) = Lamp::new(light, camera_from_world, shape.centre) else {
         return Vec::new();
     };
     let flat = receivers.iter().map(|receiver| {
         let plane_from_camera = &receiver.plane_from_camera;
         let middle = lamp.points(plane_from_camera, shape.centre, &[DVec2::ZERO]);
-        Shape {
-            points: flattened(shape, plane_from_camera, middle[0]),
-            ..shape.clone()
-        }
+        flattened(shape, plane_from_camera, middle[0])
     });
     flat.collect()
 }
@@ -208,6 +205,14 @@ impl<'a> Shadows<'a> {
         self.caster.lamp(raster, &self.pixels, lamp, disc)
     }
 
+    /// The part that each lamp loses.
+    fn taken_of_all(&self, raster: &mut Rasterizer, lamps: &[Lamp]) -> Vec<Vec<f32>> {
+        let taken = lamps
+            .iter()
+            .map(|lamp| self.taken(raster, lamp, &self.disc(lamp)));
+        taken.collect()
+    }
+
     fn shaded<'b>(&'b self, lamps: &'b [Vec<f32>]) -> Shaded<'b> {
         Shaded {
             pixels: &self.pixels,
@@ -217,10 +222,7 @@ impl<'a> Shadows<'a> {
     }
 
     fn shading(&self, raster: &mut Rasterizer, lamps: &[Lamp], robust: f64) -> Shading {
-        let taken: Vec<Vec<f32>> = lamps
-            .iter()
-            .map(|lamp| self.taken(raster, lamp, &self.disc(lamp)))
-            .collect();
+        let taken = self.taken_of_all(raster, lamps);
         self.shaded(&taken).fit(self.caster.receivers.len(), robust)
     }
 

@@ -17,7 +17,7 @@ pub(super) type Factors = SVector<f64, N_FACTORS>;
 type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
 
 /// Keeps factors of what no pixel shows at 0.
-const PRIOR: f64 = 1e-3;
+pub(super) const PRIOR: f64 = 1e-3;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 3;
 

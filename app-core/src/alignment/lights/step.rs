@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Shadows;
 use super::lamp::{DISTANCE, Lamp, N_PARTS, SPREAD};
-use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Shaded, Shading};
+use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading};
 use crate::alignment::raster::Rasterizer;
 
 /// Differences are taken over this part of the penumbra: less stalls on wide ones, where single samples would count.
@@ -39,10 +39,7 @@ impl Shadows<'_> {
         given: &[Lamp],
         robust: f64,
     ) -> Option<Vec<f64>> {
-        let taken: Vec<Vec<f32>> = lamps
-            .iter()
-            .map(|lamp| self.taken(raster, lamp, &self.disc(lamp)))
-            .collect();
+        let taken = self.taken_of_all(raster, lamps);
         let slopes: Vec<Slope> = lamps.iter().flat_map(|lamp| self.slopes(raster, lamp)).collect();
         let shaded = self.shaded(&taken);
         let shading = shaded.fit(self.caster.receivers.len(), robust);
@@ -149,12 +146,9 @@ struct Block {
 }
 
 impl System {
-    /// Keeps factors of what no pixel shows.
-    const PRIOR: f64 = 1e-3;
-
     fn new(n_parts: usize, n_receivers: usize) -> Self {
         let block = || Block {
-            factors: DMatrix::identity(N_FACTORS, N_FACTORS) * Self::PRIOR,
+            factors: DMatrix::identity(N_FACTORS, N_FACTORS) * PRIOR,
             mixed: DMatrix::zeros(N_FACTORS, n_parts),
             side: DVector::zeros(N_FACTORS),
         };

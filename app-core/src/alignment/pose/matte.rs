@@ -7,11 +7,10 @@ use glam::{DVec2, IVec2};
 
 use super::contour::Element;
 use super::motion::Measured;
-use crate::alignment::picture::{Color, Level, deviation_of_codes};
+use crate::alignment::picture::{Color, Level, noise_deviation};
 use crate::alignment::raster::Coverage;
+use crate::alignment::rectangle::{index_in, places};
 
-/// Noise of a photograph, in 8-bit codes.
-const NOISE_CODES: f32 = 2.0;
 /// What colours that are carried across the band are wrong by, over the contrast.
 const CARRIED: f32 = 0.05;
 /// Linear light that ratios to the plate are taken above, where a plate is black in a channel.
@@ -109,7 +108,7 @@ impl Piece {
             let background = (sides.ratio[channel] * (plate[channel] + FLOOR) - FLOOR).max(0.0);
             let apart = sides.toy[channel] - background;
             let middle = 0.5 * (sides.toy[channel] + background);
-            let variance = deviation_of_codes(middle, NOISE_CODES).powi(2);
+            let variance = noise_deviation(middle).powi(2);
             along += (seen[channel] - background) * apart / variance;
             contrast += apart * apart / variance;
         }
@@ -209,20 +208,17 @@ impl Owners {
         let distance = from.length_squared();
         let is_in_band =
             from.dot(element.normal).abs() <= half_px + 0.5 && distance <= (half_px + 1.0).powi(2);
-        let place = at - self.origin_px;
-        let is_inside = place.cmpge(IVec2::ZERO).all() && place.cmplt(self.size_px).all();
-        if !is_in_band || !is_inside {
+        let Some(index_of_pixel) = index_in(self.size_px, at - self.origin_px).filter(|_| is_in_band) else {
             return;
-        }
-        let nearest = &mut self.nearest[(place.y * self.size_px.x + place.x) as usize];
+        };
+        let nearest = &mut self.nearest[index_of_pixel];
         if nearest.is_none_or(|(_, other)| distance < other) {
             *nearest = Some((index, distance));
         }
     }
 
     fn pixels(&self) -> impl Iterator<Item = (IVec2, usize)> + '_ {
-        let places = (0..self.size_px.y).flat_map(|y| (0..self.size_px.x).map(move |x| IVec2::new(x, y)));
-        let owned = places.zip(&self.nearest);
+        let owned = places(self.size_px).zip(&self.nearest);
         owned.filter_map(|(place, nearest)| Some((self.origin_px + place, (*nearest)?.0)))
     }
 }

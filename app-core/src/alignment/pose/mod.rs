@@ -10,7 +10,7 @@ mod matte;
 mod motion;
 mod odds;
 
-use glam::{DMat4, DVec2, IVec2};
+use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
@@ -161,17 +161,26 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
     })
 }
 
-/// Places on the outline of a shape, in pixels of a picture.
+/// Places on the outline of a shape's triangles with their corners at `points`, in pixels of a picture.
 pub(super) fn outline_px(
     raster: &mut Rasterizer,
-    shape: &Shape,
+    (points, shape): (&[DVec3], &Shape),
     k: &Intrinsics,
     size_px: IVec2,
 ) -> Vec<DVec2> {
-    let corners = project(&shape.points, k);
-    let coverage = raster.with_depth(&corners, &shape.triangles, size_px);
-    let elements = contour(&coverage, size_px);
+    let (_, elements) = outline(raster, (points, shape), k, size_px);
     elements.into_iter().map(|element| element.at_px).collect()
+}
+
+fn outline(
+    raster: &mut Rasterizer,
+    (points, shape): (&[DVec3], &Shape),
+    k: &Intrinsics,
+    size_px: IVec2,
+) -> (Coverage, Vec<Element>) {
+    let coverage = raster.with_depth(&project(points, k), &shape.triangles, size_px);
+    let elements = contour(&coverage, size_px);
+    (coverage, elements)
 }
 
 struct Search<'a> {
@@ -183,11 +192,9 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn outline(&mut self, motion: &Motion, level: &Level) -> (Coverage, Vec<Element>) {
-        let corners = project(&motion.apply(&self.shape.points), &level.intrinsics);
-        let size_px = level.frame.size_px;
-        let coverage = self.raster.with_depth(&corners, &self.shape.triangles, size_px);
-        let elements = contour(&coverage, size_px);
-        (coverage, elements)
+        let points = motion.apply(&self.shape.points);
+        let posed = (&points[..], self.shape);
+        outline(&mut self.raster, posed, &level.intrinsics, level.frame.size_px)
     }
 
     /// The pieces that can be measured, and how many of all these are.

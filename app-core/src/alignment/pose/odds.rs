@@ -4,6 +4,7 @@ use glam::IVec2;
 
 use crate::alignment::picture::{Color, Level};
 use crate::alignment::raster::Coverage;
+use crate::alignment::rectangle::{index_in, places};
 
 /// Linear light below which noise alone tells values apart.
 const FLOOR: f32 = 0.004;
@@ -33,7 +34,7 @@ impl Odds {
     pub(super) fn learn(level: &Level, coverage: &Coverage, margin_px: i32) -> Self {
         let from = (coverage.origin_px - margin_px).max(IVec2::ZERO);
         let to = (coverage.origin_px + coverage.size_px + margin_px).min(level.frame.size_px);
-        let pixels = || (from.y..to.y).flat_map(|y| (from.x..to.x).map(move |x| IVec2::new(x, y)));
+        let pixels = || places(to - from).map(|place| from + place);
         let mut toy = Histogram::new(LOWEST_COLOR);
         let mut rest = Histogram::new(if level.plate.is_some() {
             LOWEST_RATIO
@@ -65,10 +66,8 @@ impl Odds {
 
     /// Of one pixel; 0 where nothing is known.
     pub(super) fn at(&self, at: IVec2) -> f32 {
-        let at = at - self.origin_px;
-        let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(self.size_px).all();
-        let value = is_inside.then(|| self.values.get((at.y * self.size_px.x + at.x) as usize));
-        value.flatten().copied().unwrap_or(0.0)
+        let value = index_in(self.size_px, at - self.origin_px).and_then(|index| self.values.get(index));
+        value.copied().unwrap_or(0.0)
     }
 }
 
