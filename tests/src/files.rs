@@ -10,6 +10,9 @@ use thiserror::Error;
 /// The session that comes with the project.
 pub const BUNDLED_SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/llama");
 
+/// What makes a folder a session.
+pub const SESSION_FILE: &str = "capture.json";
+
 /// A session's folder.
 #[derive(Clone, Debug)]
 pub struct Folder {

@@ -15,6 +15,7 @@ use thiserror::Error;
 
 use crate::alignment::Alignments;
 use crate::false_color::{self, ERROR, describe};
+use crate::files::SESSION_FILE;
 use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
 use crate::page::pictures::Pictures;
@@ -25,8 +26,6 @@ use crate::report::{FitEntry, FrameEntry, MapEntry, Mean, Report, pass_entries};
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
-/// What makes a folder a session.
-const SESSION_FILE: &str = "capture.json";
 
 /// What to replay and where to put it.
 #[derive(Clone, Debug)]

@@ -7,9 +7,10 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::alignment::{AlignError, Aligner, Alignment, Outlines};
 use app_core::frame::{FrameInput, Warning};
+use app_core::internals::Bounds;
 use app_core::scene::{Image, Light, Scene};
 use app_core::session::{Capture, Session};
-use glam::{BVec3, DMat4, DQuat, DVec2, DVec3};
+use glam::{DMat4, DQuat, DVec2, DVec3};
 use harness::files::{BUNDLED_SESSION, Folder};
 
 static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
@@ -45,11 +46,14 @@ fn disturbed(axis: DVec3, mm: DVec3, deg: f64) -> FrameInput {
     input
 }
 
-fn corners() -> [DVec3; 8] {
+fn corners() -> Vec<DVec3> {
     let (scene, _) = &*SESSION;
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
-    let [min, max] = [bounds.min.as_dvec3(), bounds.max.as_dvec3()];
-    std::array::from_fn(|i| DVec3::select(BVec3::new(i & 1 == 0, i & 2 == 0, i & 4 == 0), min, max))
+    let bounds = Bounds {
+        min: bounds.min.as_dvec3(),
+        max: bounds.max.as_dvec3(),
+    };
+    bounds.corners().collect()
 }
 
 fn toy_in_world() -> DVec3 {
@@ -66,8 +70,10 @@ fn apart_px(a: &DMat4, b: &DMat4) -> f64 {
         let at = at.transform_point3(corner);
         DVec2::new(-k.fx_px * at.x / at.z, k.fy_px * at.y / at.z)
     };
-    let distances = corners().map(|corner| (pixel(a, corner) - pixel(b, corner)).length());
-    distances.into_iter().fold(0.0, f64::max)
+    let distances = corners()
+        .into_iter()
+        .map(|corner| (pixel(a, corner) - pixel(b, corner)).length());
+    distances.fold(0.0, f64::max)
 }
 
 fn turned_light(deg: f64, size: f64) -> Light {

@@ -89,27 +89,27 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
+/// What a command of cargo prints of the workspace as it is locked.
+fn cargo(args: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO"))
+        .args(args)
+        .arg("--locked")
+        .current_dir(repository())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output.stdout
+}
+
 /// The packages of each target.
 fn all_metadata() -> Vec<Metadata> {
     let of_target = |target| {
-        let output = Command::new(env!("CARGO"))
-            .args([
-                "metadata",
-                "--locked",
-                "--format-version",
-                "1",
-                "--filter-platform",
-                target,
-            ])
-            .current_dir(repository())
-            .output()
-            .unwrap();
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        serde_json::from_slice(&output.stdout).unwrap()
+        let metadata = ["metadata", "--format-version", "1", "--filter-platform", target];
+        serde_json::from_slice(&cargo(&metadata)).unwrap()
     };
     TARGETS.map(of_target).into()
 }
@@ -168,27 +168,17 @@ fn licence_expressions_are_weighed() {
 ///
 /// Metadata lists more: packages, too, that features name only for the case that something else asks for them.
 fn compiled(target: &str) -> Vec<(String, String)> {
-    let output = Command::new(env!("CARGO"))
-        .args([
-            "tree",
-            "--locked",
-            "--workspace",
-            "--prefix",
-            "none",
-            "--format",
-            "{p}",
-            "--target",
-            target,
-        ])
-        .current_dir(repository())
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let packages = String::from_utf8(output.stdout).unwrap();
+    let tree = [
+        "tree",
+        "--workspace",
+        "--prefix",
+        "none",
+        "--format",
+        "{p}",
+        "--target",
+        target,
+    ];
+    let packages = String::from_utf8(cargo(&tree)).unwrap();
     let named = packages.lines().filter_map(|line| line.split_once(" v"));
     let versions = named.map(|(name, rest)| (name, rest.split(' ').next().unwrap()));
     versions

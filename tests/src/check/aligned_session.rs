@@ -8,10 +8,8 @@ use app_core::scene::Light;
 use serde_json::{Value, json};
 
 use crate::alignment::Alignments;
+use crate::files::SESSION_FILE;
 use crate::output::{make_folder, write_whole};
-
-/// What makes a folder a session.
-const INDEX: &str = "capture.json";
 
 /// Copies a session's files, and writes its index with what was found. Returns the number of corrected frames.
 ///
@@ -19,8 +17,8 @@ const INDEX: &str = "capture.json";
 /// When the folder is there already or would lie in the session, or a file is a link or cannot be read or written.
 pub fn write(from: &Path, to: &Path, alignments: &Alignments) -> anyhow::Result<usize> {
     ensure!(!to.exists(), "{}: is there already", to.display());
-    let text =
-        fs::read_to_string(from.join(INDEX)).with_context(|| from.join(INDEX).display().to_string())?;
+    let text = fs::read_to_string(from.join(SESSION_FILE))
+        .with_context(|| from.join(SESSION_FILE).display().to_string())?;
     let mut index: Value = serde_json::from_str(&text)?;
     let n_corrected = correct(&mut index, alignments);
     let files = files_below(from, Path::new(""))?;
@@ -30,13 +28,13 @@ pub fn write(from: &Path, to: &Path, alignments: &Alignments) -> anyhow::Result<
         fs::remove_dir(to)?;
     }
     ensure!(!is_inside, "{}: lies in the session itself", to.display());
-    for file in files.iter().filter(|file| *file != Path::new(INDEX)) {
+    for file in files.iter().filter(|file| *file != Path::new(SESSION_FILE)) {
         if let Some(folder) = file.parent() {
             make_folder(&to.join(folder))?;
         }
         fs::copy(from.join(file), to.join(file)).with_context(|| from.join(file).display().to_string())?;
     }
-    write_whole(&to.join(INDEX), format!("{index:#}\n").as_bytes())?;
+    write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
     Ok(n_corrected)
 }
 

@@ -3,7 +3,7 @@
 use app_core::session::Files;
 use serde_json::Value;
 
-use crate::files::Folder;
+use crate::files::{Folder, SESSION_FILE};
 
 /// No longer index is read.
 const MOST_BYTES: u64 = 16 << 20;
@@ -75,7 +75,7 @@ const KNOWN: &[(&str, &[&str])] = &[
 
 /// Those of a session's index; none where it cannot be read, which the reader tells.
 pub(super) fn unknown(folder: &Folder) -> Vec<String> {
-    let bytes = folder.read("capture.json", MOST_BYTES).unwrap_or_default();
+    let bytes = folder.read(SESSION_FILE, MOST_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
     let mut unknown = Vec::new();
     look(&index, "", "", &mut unknown);
@@ -96,7 +96,7 @@ fn look(value: &Value, path: &str, kind: &str, unknown: &mut Vec<String>) {
                 if known.contains(&key.as_str()) {
                     look(value, &join(path), &join(kind), unknown);
                 } else {
-                    unknown.push(format!("capture.json ({}): the key is not known", join(path)));
+                    unknown.push(format!("{SESSION_FILE} ({}): the key is not known", join(path)));
                 }
             }
         }

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 
 use app_core::alignment::{Alignment, Outlines};
 use app_core::frame::FrameInput;
-use app_core::scene::Image;
+use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session};
+use glam::{DVec2, DVec3};
 
 use crate::alignment::Alignments;
 use crate::files::Folder;
@@ -130,6 +131,13 @@ impl Findings {
                 .map(|warning| format!("frames[0]: {warning}")),
         );
     }
+}
+
+/// Where a point of the world is in a camera's picture; none behind the camera.
+fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
+    let k = &camera.intrinsics;
+    let at = camera.world_from_camera.inverse().transform_point3(world);
+    (at.z < 0.0).then(|| DVec2::new(k.cx_px - k.fx_px * at.x / at.z, k.cy_px + k.fy_px * at.y / at.z))
 }
 
 fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {

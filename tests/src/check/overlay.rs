@@ -5,6 +5,8 @@ use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
 
+use super::pixel;
+
 /// Of what was given: red.
 pub(super) const GIVEN: [u8; 3] = [255, 40, 40];
 /// Of what was aligned: green.
@@ -40,20 +42,13 @@ pub(super) fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) 
                     let world = receiver
                         .world_from_plane
                         .transform_point3(DVec3::new(at.x, 0.0, at.y));
-                    if let Some(at_px) = pixel(input, world).filter(|_| is_on) {
+                    if let Some(at_px) = pixel(&input.camera, world).filter(|_| is_on) {
                         self::dot(picture, at_px, RECEIVERS);
                     }
                 }
             }
         }
     }
-}
-
-/// Where a point is in the picture; none behind the camera.
-fn pixel(input: &FrameInput, world: DVec3) -> Option<DVec2> {
-    let k = &input.camera.intrinsics;
-    let at = input.camera.world_from_camera.inverse().transform_point3(world);
-    (at.z < 0.0).then(|| DVec2::new(k.cx_px - k.fx_px * at.x / at.z, k.cy_px + k.fy_px * at.y / at.z))
 }
 
 fn dot(picture: &mut Image, at_px: DVec2, color: [u8; 3]) {

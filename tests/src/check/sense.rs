@@ -1,8 +1,11 @@
 //! Numbers that can be read, but are hardly meant.
 
-use app_core::scene::{Light, Pose, Scene};
+use app_core::internals::Bounds;
+use app_core::scene::{Light, Scene};
 use app_core::session::SessionFrame;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3, UVec2};
+
+use super::pixel;
 
 /// Sizes of a toy and distances to it that are no mistake, in metres.
 const TOY_M: [f64; 2] = [0.005, 3.0];
@@ -23,7 +26,7 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
 /// Of the session as a whole.
 pub(super) fn wrong(scene: &Scene) -> Vec<String> {
     let mut wrong = Vec::new();
-    if let Some(corners) = corners(scene, &scene.physical_pose, &scene.world_from_object) {
+    if let Some(corners) = corners(scene, &scene.world_from_object) {
         let toy_m = corners[0].distance(corners[7]);
         if !(TOY_M[0]..=TOY_M[1]).contains(&toy_m) {
             wrong.push(format!(
@@ -53,7 +56,7 @@ pub(super) fn wrong(scene: &Scene) -> Vec<String> {
 
 /// Of one frame.
 pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) -> Vec<String> {
-    let Some(corners) = corners(scene, &scene.physical_pose, &frame.world_from_object) else {
+    let Some(corners) = corners(scene, &frame.world_from_object) else {
         return vec![format!("frames[{index}]: the toy cannot be posed")];
     };
     let mut wrong = Vec::new();
@@ -65,20 +68,17 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
             "frames[{index}].world_from_camera: the camera is {camera_m:.3} m from the toy: lengths are in metres"
         ));
     }
-    let in_camera = corners.map(|corner| camera.world_from_camera.inverse().transform_point3(corner));
-    let n_behind = in_camera.iter().filter(|at| at.z >= 0.0).count();
-    let k = &camera.intrinsics;
-    let is_seen = in_camera.iter().any(|at| {
-        let (u, v) = (k.cx_px - k.fx_px * at.x / at.z, k.cy_px + k.fy_px * at.y / at.z);
-        let inside =
-            (0.0..f64::from(scene.width_px)).contains(&u) && (0.0..f64::from(scene.height_px)).contains(&v);
-        at.z < 0.0 && inside
-    });
-    if n_behind == corners.len() {
+    let size_px = UVec2::new(scene.width_px, scene.height_px).as_dvec2();
+    let before_camera: Vec<DVec2> = corners
+        .iter()
+        .filter_map(|corner| pixel(camera, *corner))
+        .collect();
+    let is_inside = |at_px: &DVec2| at_px.cmpge(DVec2::ZERO).all() && at_px.cmplt(size_px).all();
+    if before_camera.is_empty() {
         wrong.push(format!(
             "frames[{index}].world_from_camera: the toy is behind the camera, which looks along -Z with +Y up: the matrix may be of another convention, inverted or transposed"
         ));
-    } else if !is_seen {
+    } else if !before_camera.iter().any(is_inside) {
         wrong.push(format!(
             "frames[{index}].world_from_camera: the toy is out of the picture"
         ));
@@ -87,15 +87,16 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
 }
 
 /// Of the toy's box, in the world: the first and the last are opposite.
-fn corners(scene: &Scene, pose: &Pose, world_from_object: &DMat4) -> Option<[DVec3; 8]> {
-    let bounds = scene.toy.bounds_of_pose(pose).ok()?;
-    let [min, max] = [bounds.min.as_dvec3(), bounds.max.as_dvec3()];
-    Some(std::array::from_fn(|i| {
-        let pick = |bit: usize, low: f64, high: f64| if i & bit == 0 { low } else { high };
-        world_from_object.transform_point3(DVec3::new(
-            pick(1, min.x, max.x),
-            pick(2, min.y, max.y),
-            pick(4, min.z, max.z),
-        ))
-    }))
+fn corners(scene: &Scene, world_from_object: &DMat4) -> Option<Vec<DVec3>> {
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).ok()?;
+    let bounds = Bounds {
+        min: bounds.min.as_dvec3(),
+        max: bounds.max.as_dvec3(),
+    };
+    let corners = bounds.corners();
+    Some(
+        corners
+            .map(|corner| world_from_object.transform_point3(corner))
+            .collect(),
+    )
 }

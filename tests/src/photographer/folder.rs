@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::shot::Shot;
 use super::toy::CLIP;
 use super::world::{Shown, World};
+use crate::files::SESSION_FILE;
 use crate::output::{WriteError, make_folder, write_png, write_whole};
 
 /// Writes a session's folder.
@@ -24,7 +25,7 @@ pub fn write(folder: &Path, world: &World, shot: &Shot) -> Result<(), WriteError
     write_png(&folder.join("mask.png"), &shot.truth.mask)?;
     write_whole(&folder.join("toy.glb"), &shot.glb)?;
     let text = format!("{:#}\n", index(world, shot));
-    write_whole(&folder.join("capture.json"), text.as_bytes())
+    write_whole(&folder.join(SESSION_FILE), text.as_bytes())
 }
 
 fn index(world: &World, shot: &Shot) -> Value {
