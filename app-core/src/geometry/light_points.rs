@@ -23,7 +23,8 @@ pub fn light_in_plane(light: &Light, plane_from_world: &DMat4) -> DVec4 {
 /// `n_points` points over the light's disc as seen from the toy at `target_in_plane`, each representing an equal
 /// area.
 ///
-/// The disc of a sphere faces the toy; seen from anywhere near the toy it is the sphere's outline.
+/// The disc of a sphere faces the toy, through the sphere's centre; seen from the toy it is the sphere's outline, and nearly so
+/// from anywhere near it.
 /// Source: Vogel 1979 (sunflower spiral).
 #[must_use]
 pub fn light_points(
@@ -59,7 +60,10 @@ impl Disc {
     fn of(light: &Light, plane_from_world: &DMat4, target_in_plane: DVec3) -> Self {
         let centre = light_in_plane(light, plane_from_world);
         let (axis, radius) = match *light {
-            Light::Sphere { radius_m, .. } => (centre.truncate() - target_in_plane, radius_m),
+            Light::Sphere { radius_m, .. } => {
+                let to_centre = centre.truncate() - target_in_plane;
+                (to_centre, outline_radius_m(radius_m, to_centre.length()))
+            }
             Light::Directional {
                 angular_radius_rad, ..
             } => (centre.truncate(), angular_radius_rad.tan()),
@@ -82,6 +86,17 @@ impl Disc {
             moved
         };
         point.extend(self.centre.w)
+    }
+}
+
+/// Radius of a sphere's outline, seen from `distance_m`, on the plane through its centre across the line of sight: rays touch the
+/// sphere before they meet the plane. From within there is no outline, and any disc will do.
+pub(crate) fn outline_radius_m(radius_m: f64, distance_m: f64) -> f64 {
+    let tangent_m = (distance_m * distance_m - radius_m * radius_m).sqrt();
+    if tangent_m > 0.0 {
+        radius_m * distance_m / tangent_m
+    } else {
+        radius_m
     }
 }
 

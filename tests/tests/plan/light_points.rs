@@ -23,7 +23,7 @@ fn plane_from_world() -> DMat4 {
     )
 }
 
-/// Points of the bulb around its centre in units of its radius, across the line to the toy.
+/// Points of the bulb around its centre, across the line to the toy, in units of its outline's radius there.
 fn bulb_disc(n_points: usize) -> Vec<DVec2> {
     let plane_from_world = plane_from_world();
     let Light::Sphere {
@@ -34,13 +34,15 @@ fn bulb_disc(n_points: usize) -> Vec<DVec2> {
         unreachable!()
     };
     let centre = plane_from_world.transform_point3(position_in_world);
+    let distance_m = centre.distance(TOY);
+    let outline_m = distance_m * (radius_m / distance_m).asin().tan();
     let axis = (centre - TOY).normalize();
     let (x, y) = axis.any_orthonormal_pair();
     light_points(&BULB, &plane_from_world, TOY, n_points)
         .into_iter()
         .map(|point| {
             assert_eq!(point.w, 1.0);
-            let at = (point.truncate().as_dvec3() - centre) / radius_m;
+            let at = (point.truncate().as_dvec3() - centre) / outline_m;
             assert!(at.dot(axis).abs() < 1e-4, "the disc faces the toy");
             DVec2::new(at.dot(x), at.dot(y))
         })
@@ -106,6 +108,23 @@ fn each_position_gets_points_from_all_over_the_light() {
             );
         }
     }
+}
+
+/// A large bulb close by is seen by rays that touch it, not by a disc of its radius.
+#[test]
+fn a_wide_bulb_fills_the_cone_that_touches_it() {
+    let bulb = Light::Sphere {
+        position_in_world: DVec3::new(0.0, 1.0, 0.0),
+        radius_m: 0.5,
+    };
+    let angles_rad = light_points(&bulb, &DMat4::IDENTITY, DVec3::ZERO, 4096)
+        .into_iter()
+        .map(|point| point.truncate().as_dvec3().angle_between(DVec3::Y));
+    let widest_deg = angles_rad.fold(0.0, f64::max).to_degrees();
+    assert!((29.9..30.0).contains(&widest_deg), "{widest_deg} degrees");
+    // From within there is no such cone.
+    let around = light_points(&bulb, &DMat4::IDENTITY, DVec3::new(0.0, 0.6, 0.0), 16);
+    assert!(around.iter().all(|point| point.is_finite()));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 
-use crate::geometry::light_points::vogel_disc;
+use crate::geometry::light_points::{outline_radius_m, vogel_disc};
 use crate::scene::Light;
 
 /// Numbers of a lamp: two angles, the logarithm of its distance, and its spread.
@@ -19,12 +19,12 @@ pub(super) struct Lamp {
     pub(super) direction: DVec3,
     /// None for a light too far away for it to matter.
     pub(super) distance_m: Option<f64>,
-    /// Radius over distance.
+    /// Tangent of the angular radius.
     pub(super) spread: f64,
 }
 
 impl Lamp {
-    /// None for a light in the middle of the toy.
+    /// None for a light around the middle of the toy.
     pub(super) fn new(light: &Light, camera_from_world: &DMat4, toy: DVec3) -> Option<Self> {
         let (to, radius_m) = match *light {
             Light::Sphere {
@@ -47,7 +47,10 @@ impl Lamp {
             Light::Directional {
                 angular_radius_rad, ..
             } => angular_radius_rad.tan(),
-            Light::Sphere { radius_m, .. } => radius_m / distance_m,
+            Light::Sphere { radius_m, .. } if radius_m < distance_m => {
+                outline_radius_m(radius_m, distance_m) / distance_m
+            }
+            Light::Sphere { .. } => return None,
         };
         Some(Self {
             direction: to.try_normalize()?,
@@ -61,7 +64,7 @@ impl Lamp {
         match self.distance_m {
             Some(distance_m) => Light::Sphere {
                 position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
-                radius_m: self.spread * distance_m,
+                radius_m: self.spread.atan().sin() * distance_m,
             },
             None => Light::Directional {
                 direction_to_light_in_world: world_from_camera.transform_vector3(self.direction).normalize(),
