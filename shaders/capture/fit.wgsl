@@ -67,6 +67,8 @@ struct Observation {
   visibility: vec4f,
   // 0 where the pixel is masked out or unusable.
   weight: vec3f,
+  // 1 where frame and plate may both be clipped.
+  clipped: vec3f,
   // The plate there is an estimate, made with the previous intensities.
   is_estimated: bool,
 }
@@ -83,7 +85,8 @@ fn observe(texel: vec2u) -> Observation {
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
   seen.is_estimated = plate_texel.a < 1.0;
-  seen.weight = evident * plate_texel.a * is_usable(seen.frame, seen.plate);
+  seen.clipped = is_clipped(seen.frame, seen.plate);
+  seen.weight = evident * plate_texel.a * evidence_of(seen.frame, seen.plate);
   return seen;
 }
 
@@ -97,7 +100,9 @@ fn receiver_equation(seen: Observation, channel: u32) -> Equation {
   eq.columns[1] = b * bounced(seen.ambient);
   var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce[channel] * eq.columns[1];
   for (var i = 0u; i < globals.n_lights; i++) {
-    let visible = fit.intensity[i][channel] * seen.visibility[i] - seen.ambient;
+    // As bright as in shadow, as far as such a pixel tells; where a shadow does show, it is an outlier.
+    let lit = (1.0 - seen.clipped[channel]) * seen.visibility[i];
+    let visible = fit.intensity[i][channel] * lit - seen.ambient;
     eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
     predicted += fit.receivers[step.receiver].direct_fraction[i][channel] * eq.columns[2u + i];
   }
@@ -141,7 +146,7 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
     eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i];
   }
   let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
-  eq.weight = is_usable(f, f)[channel];
+  eq.weight = evidence_of(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
   return eq;
 }

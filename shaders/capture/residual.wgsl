@@ -38,7 +38,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   // At the pixel's centre, where the visibilities were sampled.
   let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
-  let usable = seen * is_usable(f, b.rgb);
+  let usable = seen * evidence_of(f, b.rgb);
   let weight = usable / (1.0 + relative);
   return Sums(
     sums.product + weight * b.rgb * e,

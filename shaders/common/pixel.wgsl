@@ -9,3 +9,16 @@ fn is_usable(a: vec3f, b: vec3f) -> vec3f {
   let high = max(a, b);
   return select(vec3f(0.0), vec3f(1.0), low >= vec3f(DARKEST_USABLE) & high <= vec3f(BRIGHTEST_USABLE));
 }
+// Weight of a pixel that may be clipped in both pictures: in a region that is all clipped nothing shows a change, and none is
+// to be made.
+const CLIPPED_WEIGHT: f32 = 1e-3;
+
+// 1 per channel where both values may be clipped, else 0.
+fn is_clipped(a: vec3f, b: vec3f) -> vec3f {
+  return select(vec3f(0.0), vec3f(1.0), min(a, b) > vec3f(BRIGHTEST_USABLE));
+}
+
+// What a pixel of frame and plate tells of the light there, per channel.
+fn evidence_of(frame: vec3f, plate: vec3f) -> vec3f {
+  return is_usable(frame, plate) + CLIPPED_WEIGHT * is_clipped(frame, plate);
+}

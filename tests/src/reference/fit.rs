@@ -4,7 +4,9 @@
 use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
-use super::model::{Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, usable};
+use super::model::{
+    Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, evidence, is_clipped,
+};
 use super::raster::Raster;
 use super::real::{Real, Vector};
 
@@ -134,15 +136,20 @@ fn receiver_equations<R: Real>(
         let total = R::from_f64(before.plate_falloff::<R>(region, sample.point)[channel]);
         let plane = region.plane_of(sample.point);
         let ambient = R::from_f64(sample.ambient);
+        // As bright as in shadow, as far as such a pixel tells.
+        let visibility = match is_clipped(frame, plate) {
+            true => DVec4::ZERO,
+            false => sample.visibility,
+        };
         let mut columns = vec![plate * ambient, plate * ambient * (R::ONE - ambient)];
         columns.extend((0..region.lights.len()).map(|i| {
             let intensity = R::from_f64(before.intensities[i][channel]);
-            let visible = intensity * R::from_f64(sample.visibility[i]) - ambient;
+            let visible = intensity * R::from_f64(visibility[i]) - ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
-        let mut weight = usable(frame, plate);
+        let mut weight = evidence(frame, plate);
         if is_reweighted {
-            let model = before.receiver_model::<R>(region, sample.point, sample.ambient, sample.visibility);
+            let model = before.receiver_model::<R>(region, sample.point, sample.ambient, visibility);
             let residual = value - plate * R::from_f64(model[channel]);
             weight *= cauchy_weight(residual, R::from_f64(constants.cauchy_scale) * plate);
         }
@@ -375,7 +382,7 @@ fn toy_equations<R: Real>(
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
-        let mut weight = usable(frame, frame);
+        let mut weight = evidence(frame, frame);
         if is_reweighted {
             let model: R = columns
                 .iter()

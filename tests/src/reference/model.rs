@@ -14,6 +14,9 @@ pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
 /// Linear value of the 8-bit code 250: brighter ones may be clipped.
 pub(super) const BRIGHTEST_USABLE: f64 = 0.955_973_35;
 
+/// What a pixel counts that may be clipped in both pictures.
+const CLIPPED_WEIGHT: f64 = 1e-3;
+
 /// The work region over the receivers, and the lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
@@ -252,9 +255,24 @@ pub fn coarse_at<R: Real>(map: &Raster<f64>, region: &Region, region_px: DVec2) 
     map.bilinear(at, R::from_f64)
 }
 
-/// 1 where both linear values carry evidence, else 0.
+/// Whether both linear values may be clipped.
 #[must_use]
-pub fn usable<R: Real>(a: R, b: R) -> R {
+pub fn is_clipped<R: Real>(a: R, b: R) -> bool {
+    a.to_f64().min(b.to_f64()) > BRIGHTEST_USABLE
+}
+
+/// How much a pixel of frame and plate tells of the light there, in one channel.
+#[must_use]
+pub fn evidence<R: Real>(frame: R, plate: R) -> R {
+    if is_clipped(frame, plate) {
+        R::from_f64(CLIPPED_WEIGHT)
+    } else {
+        usable(frame, plate)
+    }
+}
+
+/// 1 where both linear values carry evidence, else 0.
+pub(super) fn usable<R: Real>(a: R, b: R) -> R {
     let is_within = |value: R| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value.to_f64());
     if is_within(a) && is_within(b) {
         R::ONE

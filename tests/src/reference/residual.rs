@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec2};
 
 use super::grid::{Cell, PlaneGrid, certainty};
-use super::model::{Pictures, Region, Solution, centre_px, coarse_at, usable};
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at, evidence};
 use super::raster::Raster;
 
 /// Residual, as a fraction of the plate, at which a pixel counts half: more is of what the model does not know.
@@ -53,11 +53,11 @@ impl Sums {
         let unexplained = frame / solution.gain - plate * model;
         let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {
-            let usable = usable(frame[channel], plate[channel]) * pictures.seen.at(texel);
-            let weight = usable / (1.0 + relative);
+            let evidence = evidence(frame[channel], plate[channel]) * pictures.seen.at(texel);
+            let weight = evidence / (1.0 + relative);
             self.product[channel] += weight * plate[channel] * unexplained[channel];
             self.energy[channel] += weight * plate[channel] * plate[channel];
-            self.n_points += usable / 3.0;
+            self.n_points += evidence / 3.0;
         }
     }
 

@@ -9,9 +9,12 @@ use harness::reference::fit::{
 use harness::reference::model::{ReceiverSolution, Solution, centre_px};
 use harness::reference::raster::Raster;
 
+use crate::device::Device;
 use crate::errors::Errors;
-use crate::photo::truth;
+use crate::photo::{Photo, truth};
 use crate::run::{Run, runs};
+use crate::setups::SETUPS;
+use crate::stand::Stand;
 
 /// What the core starts from.
 fn start(n_lights: usize) -> Solution {
@@ -39,27 +42,47 @@ fn receiver_values(solution: &Solution, receiver: usize) -> impl Iterator<Item =
 
 #[test]
 fn receiver() {
+    runs().iter().for_each(check_receivers);
+}
+
+fn check_receivers(run: &Run) {
     let constants = FitConstants::default();
-    for run in runs() {
-        let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
-        let mut expected = start(run.region.lights.len());
-        for receiver in 0..run.stand.receivers.len() {
-            let of_receiver = (receiver, &samples[..]);
-            expected = fit_receiver::<f64>(
-                &run.region,
-                of_receiver,
-                &expected,
-                &constants,
-                run.plan.n_fit_steps,
-            );
-            let values = |solution| receiver_values(solution, receiver);
-            let errors = Errors::between(values(&run.solution).zip(values(&expected)));
-            // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and
-            // 8 bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits:
-            // 4e-6.
-            errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
-        }
+    let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
+    let mut expected = start(run.region.lights.len());
+    for receiver in 0..run.stand.receivers.len() {
+        let of_receiver = (receiver, &samples[..]);
+        expected = fit_receiver::<f64>(
+            &run.region,
+            of_receiver,
+            &expected,
+            &constants,
+            run.plan.n_fit_steps,
+        );
+        let values = |solution| receiver_values(solution, receiver);
+        let errors = Errors::between(values(&run.solution).zip(values(&expected)));
+        // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and
+        // 8 bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits:
+        // 4e-6.
+        errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
     }
+}
+
+/// All is clipped, the shadow too: there is none to be moved.
+#[test]
+fn clipped_pictures_tell_of_no_shadow() {
+    let stand = Stand::new(SETUPS[0]);
+    let photo = Photo {
+        albedo: |_| DVec3::splat(20.0),
+        ..Photo::plain(stand.setup.lights.len())
+    };
+    let pictures = [photo.plate(&stand), photo.frame(&stand, &stand.physical)];
+    let run = Run::new(stand, pictures, &Device::shared().decoded()).unwrap();
+    check_receivers(&run);
+    let direct_fraction = run.solution.receivers[0].direct_fractions[0];
+    assert!(
+        direct_fraction.max_element() < 0.01,
+        "{direct_fraction} of the plate is taken for a light's"
+    );
 }
 
 /// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.

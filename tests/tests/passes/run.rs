@@ -52,7 +52,11 @@ pub(crate) struct Run {
 
 static RUNS: LazyLock<Result<Vec<Run>, String>> = LazyLock::new(|| {
     let decoded = Device::shared().decoded();
-    let run = |setup| Run::new(Stand::new(setup), &decoded).map_err(|error| error.to_string());
+    let run = |setup| {
+        let stand = Stand::new(setup);
+        let pictures = photograph(&stand);
+        Run::new(stand, pictures, &decoded).map_err(|error| error.to_string())
+    };
     SETUPS.into_iter().map(run).collect()
 });
 
@@ -68,8 +72,12 @@ pub(crate) fn runs() -> &'static [Run] {
 }
 
 impl Run {
-    fn new(stand: Stand, decoded: &[f64]) -> Result<Self, CoreError> {
-        let [plate, frame] = photograph(&stand);
+    /// Of a plate and a frame; `decoded` are the linear values of all codes, as the device decodes them.
+    pub(crate) fn new(
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
         let mut core = core_on(scene(&stand, &plate), Preset::Balanced)?;
         let report = core.frame(&input(&stand, &frame))?;
         assert!(report.warnings.is_empty(), "{:?}", report.warnings);
