@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use app_core::alignment::{Aligner, Alignment};
 use app_core::frame::FrameInput;
+use app_core::scene::{Camera, Scene};
 use app_core::session::{Session, SessionFrame};
 
 use crate::replay::ReplayError;
@@ -13,6 +14,8 @@ use crate::replay::ReplayError;
 pub struct Alignments {
     first: usize,
     found: Vec<Aligned>,
+    /// Plates whose camera was corrected, by their index.
+    moved_plates: Vec<(usize, Camera)>,
 }
 
 /// Of one frame.
@@ -30,6 +33,7 @@ impl Alignments {
         Self {
             first: 0,
             found: Vec::new(),
+            moved_plates: Vec::new(),
         }
     }
 
@@ -55,7 +59,24 @@ impl Alignments {
         Ok(Self {
             first: frames.start,
             found,
+            moved_plates: moved_plates(session.scene(), aligner.scene()),
         })
+    }
+
+    /// What the core is given of a session's scene.
+    #[must_use]
+    pub fn scene(&self, given: &Scene) -> Scene {
+        let mut scene = given.clone();
+        for (index, camera) in &self.moved_plates {
+            scene.plates[*index].camera = *camera;
+        }
+        scene
+    }
+
+    /// Plates whose camera was corrected, by their index.
+    #[must_use]
+    pub fn moved_plates(&self) -> &[(usize, Camera)] {
+        &self.moved_plates
     }
 
     /// Of a frame; none where it stays as recorded.
@@ -73,4 +94,12 @@ impl Alignments {
             None => input,
         }
     }
+}
+
+fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {
+    let plates = given.plates.iter().zip(&aligned.plates).enumerate();
+    let moved = plates.filter(|(_, (given, aligned))| given.camera != aligned.camera);
+    moved
+        .map(|(index, (_, aligned))| (index, aligned.camera))
+        .collect()
 }

@@ -217,7 +217,7 @@ impl Run<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Report, ReplayError> {
         let scene = self.session.scene();
-        self.core.set_scene(scene.clone(), preset)?;
+        self.core.set_scene(self.alignments.scene(scene), preset)?;
         progress.start(&format!("{} with {preset}", scene.name), indices.len());
         let mut frames = Vec::with_capacity(indices.len());
         for index in indices {

@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use app_core::alignment::{AlignError, Aligner, Alignment, Outlines};
 use app_core::frame::{FrameInput, Warning};
 use app_core::internals::Bounds;
-use app_core::scene::{Image, Light, Scene};
+use app_core::scene::{Camera, Image, Light, Plate, Scene};
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DQuat, DVec2, DVec3};
 use harness::files::{BUNDLED_SESSION, Folder};
@@ -63,16 +63,26 @@ fn toy_in_world() -> DVec3 {
 
 /// The largest distance in the picture between the corners of the toy's box in two poses.
 fn apart_px(a: &DMat4, b: &DMat4) -> f64 {
-    let (_, input) = &*SESSION;
-    let pixel = |world_from_object: &DMat4, corner: DVec3| {
-        let k = &input.camera.intrinsics;
-        let at = input.camera.world_from_camera.inverse() * *world_from_object;
-        let at = at.transform_point3(corner);
+    let camera_from_world = SESSION.1.camera.world_from_camera.inverse();
+    corners_apart_px([a, b].map(|world_from_object| camera_from_world * *world_from_object))
+}
+
+/// The same of the recorded pose, seen by two cameras.
+fn cameras_apart_px(a: &DMat4, b: &DMat4) -> f64 {
+    corners_apart_px(
+        [a, b].map(|world_from_camera| world_from_camera.inverse() * SESSION.1.world_from_object),
+    )
+}
+
+fn corners_apart_px([a, b]: [DMat4; 2]) -> f64 {
+    let pixel = |camera_from_object: &DMat4, corner: DVec3| {
+        let k = &SESSION.1.camera.intrinsics;
+        let at = camera_from_object.transform_point3(corner);
         DVec2::new(-k.fx_px * at.x / at.z, k.fy_px * at.y / at.z)
     };
     let distances = corners()
         .into_iter()
-        .map(|corner| (pixel(a, corner) - pixel(b, corner)).length());
+        .map(|corner| (pixel(&a, corner) - pixel(&b, corner)).length());
     distances.fold(0.0, f64::max)
 }
 
@@ -116,7 +126,10 @@ fn spread(light: &Light) -> f64 {
 #[test]
 fn what_is_right_stays_as_it_is() {
     let (_, input) = &*SESSION;
-    let found = align(input);
+    let mut aligner = aligner();
+    let found = aligner.align(input).unwrap();
+    assert_eq!(found.camera, input.camera);
+    assert_eq!(aligner.scene().plates[0].camera, SESSION.0.plates[0].camera);
     assert_eq!(found.world_from_object, input.world_from_object);
     assert_eq!(found.lights, None);
     assert!(found.warnings.is_empty());
@@ -203,6 +216,70 @@ fn a_world_elsewhere_has_the_same_correction() {
     // Products of matrices of a world 10 km away keep a millionth of a millimetre.
     let (here, there) = (in_camera(&here, &input), in_camera(&there, &moved));
     assert!(here.abs_diff_eq(there, 1e-8), "{here} and {there}");
+}
+
+/// A camera moved by millimetres and turned by degrees, as a tracker would tell it.
+fn shaken(camera: &Camera, mm: DVec3, deg: DVec3) -> Camera {
+    let step = DMat4::from_rotation_translation(DQuat::from_scaled_axis(deg.map(f64::to_radians)), 1e-3 * mm);
+    Camera {
+        world_from_camera: camera.world_from_camera * step,
+        ..*camera
+    }
+}
+
+#[test]
+fn a_camera_is_found_by_the_table() {
+    let recorded = SESSION.1.camera;
+    for (mm, deg) in [
+        (DVec3::new(0.1, 0.1, -0.2), DVec3::new(0.02, -0.01, 0.03)),
+        (DVec3::new(-1.0, 0.5, 1.0), DVec3::new(0.1, 0.2, -0.1)),
+        (DVec3::new(6.0, -6.0, 5.0), DVec3::new(-0.6, 0.7, 0.3)),
+    ] {
+        let given = FrameInput {
+            camera: shaken(&recorded, mm, deg),
+            ..SESSION.1.clone()
+        };
+        let found = align(&given);
+        assert!(found.report.camera.unwrap().is_applied);
+        let apart_px = cameras_apart_px(&found.camera.world_from_camera, &recorded.world_from_camera);
+        assert!(apart_px < 0.1, "{mm} mm, {deg} degrees: {apart_px} px off");
+    }
+}
+
+#[test]
+fn plates_are_aligned_to_the_first() {
+    let (mut scene, input) = SESSION.clone();
+    let shaken = Plate {
+        camera: shaken(
+            &input.camera,
+            DVec3::new(2.0, 0.0, -1.0),
+            DVec3::new(0.2, -0.2, 0.1),
+        ),
+        ..scene.plates[0].clone()
+    };
+    scene.plates.push(shaken);
+    let mut aligner = Aligner::new(scene);
+    aligner.align(&input).unwrap();
+    let [first, second] = &aligner.scene().plates[..] else {
+        panic!("two plates");
+    };
+    assert_eq!(first.camera, SESSION.0.plates[0].camera);
+    let cameras = [first, second].map(|plate| plate.camera.world_from_camera);
+    let apart_px = cameras_apart_px(&cameras[0], &cameras[1]);
+    assert!(apart_px < 0.02, "{apart_px} px off");
+}
+
+#[test]
+fn a_plate_of_another_table_moves_no_camera() {
+    let (mut scene, input) = SESSION.clone();
+    let mut mirrored = Image::clone(&scene.plates[0].image);
+    let row_bytes = 4 * mirrored.width_px as usize;
+    for row in mirrored.rgba8.chunks_exact_mut(row_bytes) {
+        row.as_chunks_mut::<4>().0.reverse();
+    }
+    scene.plates[0].image = Arc::new(mirrored);
+    let found = Aligner::new(scene).align(&input).unwrap();
+    assert_eq!(found.camera, input.camera);
 }
 
 #[test]

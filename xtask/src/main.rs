@@ -37,7 +37,7 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
-    /// Write a session anew with pose and lights aligned by its pictures (`align --help` tells more)
+    /// Write a session anew with cameras, pose and lights aligned by its pictures (`align --help` tells more)
     #[command(disable_help_flag = true)]
     Align {
         /// Handed on to the harness

@@ -1,22 +1,25 @@
-//! Alignment: the toy's pose and the lights, corrected by what the photograph shows.
+//! Alignment: camera, toy and lights, corrected by what the photograph shows.
 //!
 //! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
-//! the picture at once. Frame against plate is the best segmentation there is. The **outline** of the toy gives its pose
-//! (`pose`); the outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
+//! the picture at once. The **table** beside the toy gives the camera (`camera`), since plates say what it looks like. Frame against
+//! plate is the best segmentation there is: the **outline** of the toy gives its pose (`pose`); the outline of its **shadow**, a
+//! second view of the toy from the light, gives the light (`lights`).
 //! Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
-//! frame, plate ─► pyramid ─┐
-//! physical pose ─► shape ──┴► pose ─► lights ─► Alignment
+//! frame, plates ─► camera ─► pyramid ─┐
+//! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
 //! ```
 //!
-//! What is held fixed, since pictures of one view do not tell it: the camera with its intrinsics, and the receivers.
+//! What is held fixed, since pictures do not tell it from the rest: the first plate's camera, to which all others are relative, the
+//! intrinsics, and the receivers.
 //! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out, but for the last of them.
 //! A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
 //!
 //! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
 //! lights, once a session: more the more triangles and lights there are.
 
+mod camera;
 mod error;
 mod lights;
 mod outlines;
@@ -35,16 +38,18 @@ use glam::DMat4;
 
 use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
-use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Scene};
+use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use photograph::{FoundLights, FoundPose, MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
 pub use outlines::Outlines;
-pub use report::{AlignmentReport, LightAlignment, PoseAlignment, PoseDeviation};
+pub use report::{AlignmentReport, CameraAlignment, LightAlignment, PoseAlignment, PoseDeviation};
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
 pub struct Alignment {
+    /// The camera: as given, where it was not corrected.
+    pub camera: Camera,
     /// Transform of the real toy, from object space to world: as given, where it was not corrected.
     pub world_from_object: DMat4,
     /// The lights; none where those that were given stay.
@@ -60,6 +65,7 @@ impl Alignment {
     #[must_use]
     pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
         FrameInput {
+            camera: self.camera,
             world_from_object: self.world_from_object,
             lights: self.lights.clone().or_else(|| input.lights.clone()),
             ..input.clone()
@@ -74,6 +80,8 @@ impl Alignment {
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
+    are_plates_aligned: bool,
+    cameras: camera::Finder,
     pose: Option<AlignedPose>,
     lights: Option<AlignedLights>,
 }
@@ -82,8 +90,10 @@ pub struct Aligner {
 #[derive(Debug)]
 struct AlignedPose {
     image: Arc<Image>,
-    camera: Camera,
+    given_camera: Camera,
     given: DMat4,
+    camera: Camera,
+    camera_report: Option<CameraAlignment>,
     world_from_object: DMat4,
     report: Option<PoseAlignment>,
 }
@@ -105,12 +115,20 @@ impl Aligner {
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,
+            are_plates_aligned: false,
+            cameras: camera::Finder::default(),
             pose: None,
             lights: None,
         }
     }
 
-    /// Finds the pose of the toy in a frame and the lights, and corrects both where the picture is explained better by more than
+    /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects both where the picture is explained better by more than
     /// noise and the model's own errors do: the loss of the outline must halve, that of the shadows must fall by a
     /// twenty-fifth and a light move by enough to show.
     ///
@@ -129,10 +147,25 @@ impl Aligner {
             .take()
             .filter(|lights| lights.given == given && (is_view_known || lights.errors.is_some()));
         if !is_view_known || self.lights.is_none() {
+            self.align_plates();
+            let known = self.pose.take().filter(|_| is_view_known);
+            let camera = match &known {
+                Some(pose) => (pose.camera, pose.camera_report),
+                None => self.camera_of(&input.image, &input.camera, &self.scene.plates.clone()),
+            };
+            let given_camera = input.camera;
+            let input = &FrameInput {
+                camera: camera.0,
+                ..input.clone()
+            };
             let photograph = Photograph::new(&self.scene, input);
-            let pose = match self.pose.take().filter(|_| is_view_known) {
+            let pose = match known {
                 Some(pose) => pose,
-                None => AlignedPose::new(input, photograph.pose(&self.scene, input)?),
+                None => AlignedPose::new(
+                    input,
+                    (given_camera, camera.1),
+                    photograph.pose(&self.scene, input)?,
+                ),
             };
             if self.lights.is_none() {
                 let found = match pose.is_trusted() && self.can_look_for(&given) {
@@ -146,6 +179,39 @@ impl Aligner {
         Ok(self.aligned(input))
     }
 
+    /// Corrects the plates' cameras, each against those before it, once.
+    fn align_plates(&mut self) {
+        if std::mem::replace(&mut self.are_plates_aligned, true) {
+            return;
+        }
+        let mut aligned: Vec<Plate> = Vec::new();
+        for plate in self.scene.plates.clone() {
+            let (camera, _) = self.camera_of(&plate.image, &plate.camera, &aligned);
+            aligned.push(Plate { camera, ..plate });
+        }
+        self.scene.plates = aligned;
+    }
+
+    /// The camera of a picture, by the plates: as given, where it is not corrected.
+    fn camera_of(
+        &mut self,
+        image: &Arc<Image>,
+        given: &Camera,
+        plates: &[Plate],
+    ) -> (Camera, Option<CameraAlignment>) {
+        let found = self.cameras.find((image, given), plates, &self.scene.receivers);
+        let Some(found) = found else {
+            return (*given, None);
+        };
+        let corrected = Camera {
+            world_from_camera: found.world_from_camera,
+            ..*given
+        };
+        let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
+        let report = found.report(is_applied);
+        (if is_applied { corrected } else { *given }, Some(report))
+    }
+
     fn can_look_for(&self, lights: &[Light]) -> bool {
         (1..=MAX_LIGHTS).contains(&lights.len()) && !self.scene.plates.is_empty()
     }
@@ -153,6 +219,7 @@ impl Aligner {
     fn aligned(&self, input: &FrameInput) -> Alignment {
         let (pose, lights) = (self.pose.as_ref(), self.lights.as_ref());
         let report = AlignmentReport {
+            camera: pose.and_then(|pose| pose.camera_report),
             pose: pose.and_then(|pose| pose.report),
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
             light_errors: lights.and_then(|lights| lights.errors),
@@ -164,6 +231,7 @@ impl Aligner {
             outline_px: pose.given_outline_px,
         });
         Alignment {
+            camera: pose.map_or(input.camera, |pose| pose.camera),
             world_from_object: pose.map_or(input.world_from_object, |pose| pose.world_from_object),
             lights: lights.and_then(|lights| lights.applied.clone()),
             report,
@@ -173,10 +241,17 @@ impl Aligner {
 }
 
 impl AlignedPose {
-    fn new(input: &FrameInput, found: FoundPose) -> Self {
+    /// `input` has the corrected camera.
+    fn new(
+        input: &FrameInput,
+        (given_camera, camera_report): (Camera, Option<CameraAlignment>),
+        found: FoundPose,
+    ) -> Self {
         Self {
             image: Arc::clone(&input.image),
+            given_camera,
             camera: input.camera,
+            camera_report,
             given: input.world_from_object,
             world_from_object: found.world_from_object,
             report: found.report,
@@ -185,7 +260,7 @@ impl AlignedPose {
 
     fn is_of(&self, input: &FrameInput) -> bool {
         Arc::ptr_eq(&self.image, &input.image)
-            && self.camera == input.camera
+            && self.given_camera == input.camera
             && self.given == input.world_from_object
     }
 

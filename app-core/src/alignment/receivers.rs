@@ -26,11 +26,17 @@ impl SeenReceiver {
         };
         let mut receivers: Vec<&Receiver> = receivers.iter().collect();
         receivers.sort_by(|a, b| away_m(a).total_cmp(&away_m(b)));
-        let seen = receivers.iter().take(MAX_RECEIVERS).map(|receiver| Self {
+        let seen = receivers.iter().take(MAX_RECEIVERS);
+        seen.map(|receiver| Self::new(receiver, camera_from_world))
+            .collect()
+    }
+
+    /// One of them.
+    pub(super) fn new(receiver: &Receiver, camera_from_world: &DMat4) -> Self {
+        Self {
             plane_from_camera: (*camera_from_world * receiver.world_from_plane).inverse(),
             half_extent_m: receiver.half_extent_m,
-        });
-        seen.collect()
+        }
     }
 
     /// Depth in metres at which a ray of depth 1 from the camera meets its front; none where it does not.
@@ -62,15 +68,22 @@ pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2)
     nearest.map(|(index, depth_m)| (index, depth_m * ray))
 }
 
-/// The plate taken nearest to the camera, carried over by the receivers' planes where it is from elsewhere; none where there is
-/// no plate.
-pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &Camera) -> Option<Picture> {
+/// Plates, from the one taken nearest to a camera: metres away, and less the more it looks the same way.
+pub(super) fn nearest<'a>(plates: &'a [Plate], camera: &Camera) -> Vec<&'a Plate> {
     let distance = |plate: &Plate| {
         let (there, here) = (&plate.camera.world_from_camera, &camera.world_from_camera);
         let turn = there.z_axis.dot(here.z_axis);
         (there.w_axis - here.w_axis).length() - turn
     };
-    let plate = plates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let mut plates: Vec<&Plate> = plates.iter().collect();
+    plates.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    plates
+}
+
+/// The plate taken nearest to the camera, carried over by the receivers' planes where it is from elsewhere; none where there is
+/// no plate.
+pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &Camera) -> Option<Picture> {
+    let plate = nearest(plates, camera).into_iter().next()?;
     let picture = Picture::decode(&plate.image);
     let is_same = plate.camera.intrinsics == camera.intrinsics
         && plate

@@ -3,6 +3,8 @@
 /// What was aligned in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlignmentReport {
+    /// The camera; none where there is no plate or what it shows has too little texture.
+    pub camera: Option<CameraAlignment>,
     /// The toy's pose; none where too little of its outline is seen.
     pub pose: Option<PoseAlignment>,
     /// The lights, in the order of the list; empty where they were not found: none or more than four are listed, there is no plate,
@@ -11,6 +13,21 @@ pub struct AlignmentReport {
     /// Error of the shadows that the given lights predict, and of those that were found: mean squares over receivers, in units of
     /// what noise and the model of light are expected to leave. None where lights were not looked at.
     pub light_errors: Option<[f64; 2]>,
+}
+
+/// The camera, by what the receivers look like in the plates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraAlignment {
+    /// Whether the camera was moved: only where that explains the picture better by more than noise does.
+    pub is_applied: bool,
+    /// Root mean square that points of the receivers moved in the picture, in pixels.
+    pub moved_px: f64,
+    /// How far the camera was found from where it was given, in metres.
+    pub moved_m: f64,
+    /// How far it was found turned, in radians.
+    pub turned_rad: f64,
+    /// Part of the points that the given camera does not explain, by brightness, and that the found one does not.
+    pub errors: [f64; 2],
 }
 
 /// The toy's pose, by its outline.

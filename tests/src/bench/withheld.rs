@@ -66,7 +66,7 @@ fn rebuild_with(
     preset: Preset,
 ) -> Result<Vec<Rebuilt>, ReplayError> {
     let scene = session.scene();
-    core.set_scene(scene.clone(), preset)?;
+    core.set_scene(alignments.scene(scene), preset)?;
     core.withhold_shadow()?;
     let mut latest: Option<Arc<Image>> = None;
     let mut rebuilt = Vec::new();

@@ -1,4 +1,4 @@
-//! Writes a session anew, with the toy's pose and the lights as its pictures show them.
+//! Writes a session anew, with the cameras, the toy's pose and the lights as its pictures show them.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use harness::check::aligned_session;
 use harness::files::Folder;
 use harness::program::exit_code;
 
-/// Write a session anew with pose and lights aligned by its pictures; all else stays as it is.
+/// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it is.
 #[derive(Parser)]
 #[command(name = "align", bin_name = "cargo xtask align")]
 struct Args {
@@ -32,7 +32,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let alignments = Alignments::find(&capture, 0..capture.n_frames())?;
     let n_corrected = aligned_session::write(&args.session, &args.out, &alignments)?;
     println!(
-        "{n_corrected} of {} frames have a corrected pose or lights: {}",
+        "{n_corrected} of {} frames have a corrected camera, pose or lights: {}",
         capture.n_frames(),
         args.out.display()
     );

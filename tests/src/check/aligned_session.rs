@@ -1,10 +1,11 @@
-//! A session's folder with corrected poses and lights.
+//! A session's folder with corrected cameras, poses and lights.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use app_core::scene::Light;
+use glam::DMat4;
 use serde_json::{Value, json};
 
 use crate::alignment::Alignments;
@@ -57,6 +58,9 @@ fn files_below(session: &Path, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 fn correct(index: &mut Value, alignments: &Alignments) -> usize {
     let mut n_corrected = 0;
+    for (plate, camera) in alignments.moved_plates() {
+        index["backgrounds"][plate]["world_from_camera"] = matrix(&camera.world_from_camera);
+    }
     let n_frames = index["frames"].as_array().map_or(0, Vec::len);
     for frame in 0..n_frames {
         let Some(aligned) = alignments.of(frame) else {
@@ -65,16 +69,24 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
         let alignment = &aligned.alignment;
         let is_moved = alignment.report.pose.is_some_and(|pose| pose.is_applied);
         if is_moved {
-            index["frames"][frame]["world_from_object"] = json!(alignment.world_from_object.to_cols_array());
+            index["frames"][frame]["world_from_object"] = matrix(&alignment.world_from_object);
+        }
+        let is_camera_moved = alignment.report.camera.is_some_and(|camera| camera.is_applied);
+        if is_camera_moved {
+            index["frames"][frame]["world_from_camera"] = matrix(&alignment.camera.world_from_camera);
         }
         if let Some(lights) = &alignment.lights {
             for (place, light) in lights.iter().enumerate() {
                 merge(&mut index["lights"][place], light);
             }
         }
-        n_corrected += usize::from(is_moved || alignment.lights.is_some());
+        n_corrected += usize::from(is_moved || is_camera_moved || alignment.lights.is_some());
     }
     n_corrected
+}
+
+fn matrix(matrix: &DMat4) -> Value {
+    json!(matrix.to_cols_array())
 }
 
 /// Writes a light over the numbers of an entry; keys that are not its own stay.

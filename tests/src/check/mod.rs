@@ -87,8 +87,26 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
 }
 
 impl Findings {
+    fn tell(&mut self, told: String, is_wrong: bool) {
+        let list = if is_wrong {
+            &mut self.wrong
+        } else {
+            &mut self.facts
+        };
+        list.push(told);
+    }
+
     fn aligned(&mut self, alignment: &Alignment) {
         let report = &alignment.report;
+        if let Some(camera) = &report.camera {
+            let told = format!(
+                "world_from_camera: the table moves by {:.2} px in the picture where the camera is moved by {:.2} mm and turned by {:.2} degrees",
+                camera.moved_px,
+                1e3 * camera.moved_m,
+                camera.turned_rad.to_degrees(),
+            );
+            self.tell(told, camera.is_applied);
+        }
         match &report.pose {
             None => self.wrong.push(
                 "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
@@ -102,11 +120,7 @@ impl Findings {
                     1e3 * pose.moved_m,
                     pose.turned_rad.to_degrees(),
                 );
-                if pose.is_applied {
-                    self.wrong.push(told);
-                } else {
-                    self.facts.push(told);
-                }
+                self.tell(told, pose.is_applied);
             }
         }
         for (index, light) in report.lights.iter().enumerate() {
@@ -118,11 +132,7 @@ impl Findings {
                 light.turned_rad.to_degrees(),
                 light.distance_ratio
             );
-            if light.is_applied && light.is_moved {
-                self.wrong.push(told);
-            } else {
-                self.facts.push(told);
-            }
+            self.tell(told, light.is_applied && light.is_moved);
         }
         self.wrong.extend(
             alignment

@@ -1,6 +1,6 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{LightAlignment, PoseAlignment};
+use app_core::alignment::{CameraAlignment, LightAlignment, PoseAlignment};
 use serde::Serialize;
 
 use crate::alignment::Aligned;
@@ -10,12 +10,29 @@ use crate::alignment::Aligned;
 pub struct AlignmentEntry {
     /// Time that it took on the processor.
     pub cpu_ms: f64,
+    /// The camera; none where there is no plate or too little texture.
+    pub camera: Option<CameraEntry>,
     /// The toy's pose; none where too little of its outline is seen.
     pub pose: Option<PoseEntry>,
     /// The lights, in the order of the list; empty where their shadows were not looked at.
     pub lights: Vec<LightEntry>,
     /// Error of the predicted shadows over what noise and model are expected to leave, with the given lights and with those found.
     pub light_errors: Option<[f64; 2]>,
+}
+
+/// The camera.
+#[derive(Clone, Debug, Serialize)]
+pub struct CameraEntry {
+    /// Whether it was corrected.
+    pub is_applied: bool,
+    /// Root mean square that points of the receivers moved in the picture.
+    pub moved_px: f64,
+    /// From given to found.
+    pub moved_mm: f64,
+    /// From given to found.
+    pub turned_deg: f64,
+    /// Part of the points that the given and the found camera do not explain.
+    pub errors: [f64; 2],
 }
 
 /// The toy's pose.
@@ -59,9 +76,22 @@ impl From<&Aligned> for AlignmentEntry {
         let report = &aligned.alignment.report;
         Self {
             cpu_ms: aligned.cpu_ms,
+            camera: report.camera.as_ref().map(CameraEntry::from),
             pose: report.pose.as_ref().map(PoseEntry::from),
             lights: report.lights.iter().map(LightEntry::from).collect(),
             light_errors: report.light_errors,
+        }
+    }
+}
+
+impl From<&CameraAlignment> for CameraEntry {
+    fn from(camera: &CameraAlignment) -> Self {
+        Self {
+            is_applied: camera.is_applied,
+            moved_px: camera.moved_px,
+            moved_mm: 1e3 * camera.moved_m,
+            turned_deg: camera.turned_rad.to_degrees(),
+            errors: camera.errors,
         }
     }
 }

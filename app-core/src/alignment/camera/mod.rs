@@ -1,0 +1,149 @@
+//! The camera of a photograph, by what the receivers look like beside the toy.
+//!
+//! A plate says how bright each point of a receiver is. Those points are projected into the photograph, and its camera is moved
+//! until they meet pixels as bright: direct alignment of a known surface, coarse to fine, by Gauss-Newton steps on the
+//! camera's six numbers (`step`). Toy and shadow are outliers. The first plate's camera is held; those of the other plates and
+//! of frames are relative to it.
+//!
+//! Source: Lucas and Kanade 1981; in the taxonomy of Baker and Matthews 2004 the forward additive form, with the photograph's
+//! gradient.
+
+mod brightness;
+mod points;
+mod step;
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use super::receivers::nearest;
+use super::report::CameraAlignment;
+use crate::scene::{Camera, Image, Plate, Receiver};
+use brightness::Brightness;
+use points::{Point, points_of};
+use step::{Rigid, Search};
+
+/// Plates that a camera is aligned to: those taken nearest to it.
+const N_PLATES: usize = 2;
+/// Most rounds in a level.
+const N_ROUNDS: usize = 15;
+/// Scale of Cauchy's weights, in square roots of linear light: in the largest level, and how much more in each smaller one.
+const ROBUST: f64 = 0.04;
+const ROBUST_STEP: f64 = 0.02;
+/// Most points of a plate: in the largest level, and in those where starts are tried.
+const MOST_POINTS: usize = 20_000;
+const MOST_POINTS_BELOW: usize = 5_000;
+/// Fewer points with texture than that, in the largest level, tell no camera.
+const LEAST_POINTS: usize = 500;
+/// A found camera is applied where points of the receivers move by more, in pixels,
+const LEAST_PX: f64 = 0.1;
+/// and the loss falls by that part or more, once they move by so many pixels; by less in proportion where they move less. Tiles
+/// that meet the next ones fall by .13 and less, those that meet themselves by a third.
+const FALL: f64 = 0.25;
+const FALL_PX: f64 = 1.5;
+
+/// A camera that was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// The pose that was found.
+    pub(super) world_from_camera: DMat4,
+    /// Root mean square that points of the receivers move in the picture, in pixels.
+    pub(super) moved_px: f64,
+    /// Distance in metres that the camera moved.
+    pub(super) moved_m: f64,
+    /// Angle in radians that it turned.
+    pub(super) turned_rad: f64,
+    /// Mean robust loss with the given and with the found camera, of the same points.
+    pub(super) losses: [f64; 2],
+}
+
+impl Found {
+    /// Whether it moves the picture by enough to show, and explains it better by more than noise.
+    pub(super) fn is_better(&self) -> bool {
+        let [given, found] = self.losses;
+        let fall = FALL * (self.moved_px / FALL_PX).min(1.0);
+        self.moved_px > LEAST_PX && found < (1.0 - fall) * given
+    }
+
+    pub(super) fn report(&self, is_applied: bool) -> CameraAlignment {
+        CameraAlignment {
+            is_applied,
+            moved_px: self.moved_px,
+            moved_m: self.moved_m,
+            turned_rad: self.turned_rad,
+            errors: self.losses,
+        }
+    }
+}
+
+/// Finds cameras in one scene, one after the other; remembers the plates used last.
+#[derive(Debug, Default)]
+pub(super) struct Finder {
+    decoded: Vec<(Arc<Image>, Arc<Brightness>)>,
+}
+
+impl Finder {
+    /// Finds the camera of `image`, starting from the one given; none where there is no plate or too little texture.
+    pub(super) fn find(
+        &mut self,
+        (image, camera): (&Arc<Image>, &Camera),
+        plates: &[Plate],
+        receivers: &[Receiver],
+    ) -> Option<Found> {
+        let near = nearest(plates, camera).into_iter().take(N_PLATES);
+        let plates: Vec<(&Plate, Arc<Brightness>)> =
+            near.map(|plate| (plate, self.brightness(&plate.image))).collect();
+        let photograph = self.brightness(image);
+        // Rounded to 32 bits, which are mostly the same wherever the world's origin is.
+        let camera_from_world = camera.world_from_camera.inverse();
+        let mut motion = Rigid::default();
+        let mut losses = None;
+        for (level, picture) in photograph.levels().iter().enumerate().rev() {
+            let most = if level == 0 {
+                MOST_POINTS
+            } else {
+                MOST_POINTS_BELOW
+            };
+            let templates: Vec<Vec<Point>> = plates
+                .iter()
+                .filter_map(|(plate, brightness)| {
+                    let of_level = (&plate.camera, brightness.levels().get(level)?);
+                    Some(points_of(of_level, receivers, &camera_from_world, most))
+                })
+                .collect();
+            #[allow(clippy::cast_precision_loss, reason = "a handful of levels")]
+            let robust = ROBUST + ROBUST_STEP * level as f64;
+            let search = Search::new((camera, picture), &templates, robust);
+            if level == 0 && search.n_points() < LEAST_POINTS {
+                return None;
+            }
+            motion = match losses {
+                None => search.run_from(&search.starts(), N_ROUNDS),
+                Some(_) => search.run(motion, N_ROUNDS),
+            };
+            let given = search.loss(&Rigid::default());
+            losses = Some((given, search.loss(&motion), search.moved_px(&motion)));
+        }
+        let (given, found, moved_px) = losses?;
+        Some(Found {
+            // Points are moved within camera space; the camera moves the other way.
+            world_from_camera: camera.world_from_camera * motion.matrix().inverse(),
+            moved_px,
+            moved_m: motion.moved_m(),
+            turned_rad: motion.turned_rad(),
+            losses: [given, found],
+        })
+    }
+
+    fn brightness(&mut self, image: &Arc<Image>) -> Arc<Brightness> {
+        if let Some((_, known)) = self.decoded.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
+            return Arc::clone(known);
+        }
+        let brightness = Arc::new(Brightness::of(image));
+        if self.decoded.len() > N_PLATES {
+            self.decoded.remove(0);
+        }
+        self.decoded.push((Arc::clone(image), Arc::clone(&brightness)));
+        brightness
+    }
+}
