@@ -164,19 +164,12 @@ fn licence_expressions_are_weighed() {
     }
 }
 
-/// Name and version of every package that is compiled for a target.
+/// Name and version of every package that is compiled for a target, of `--workspace` or of one `--package=…`.
 ///
 /// Metadata lists more: packages, too, that features name only for the case that something else asks for them.
-fn compiled(target: &str) -> Vec<(String, String)> {
+fn compiled(of: &str, target: &str) -> Vec<(String, String)> {
     let tree = [
-        "tree",
-        "--workspace",
-        "--prefix",
-        "none",
-        "--format",
-        "{p}",
-        "--target",
-        target,
+        "tree", of, "--prefix", "none", "--format", "{p}", "--target", target,
     ];
     let packages = String::from_utf8(cargo(&tree)).unwrap();
     let named = packages.lines().filter_map(|line| line.split_once(" v"));
@@ -189,7 +182,10 @@ fn compiled(target: &str) -> Vec<(String, String)> {
 #[test]
 fn no_package_is_compiled_twice_without_a_reason() {
     let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for (name, version) in TARGETS.into_iter().flat_map(compiled) {
+    for (name, version) in TARGETS
+        .into_iter()
+        .flat_map(|target| compiled("--workspace", target))
+    {
         versions.entry(name).or_default().insert(version);
     }
     assert!(
@@ -205,6 +201,20 @@ fn no_package_is_compiled_twice_without_a_reason() {
         versions.values().all(|versions| versions.len() == 2),
         "{versions:?}"
     );
+}
+
+/// The core has a feature for the harness, which must not come with an app that is built from the same workspace.
+#[test]
+fn apps_know_no_schema() {
+    let has_schema = |package: &str, target| {
+        let packages = compiled(&format!("--package={package}"), target);
+        assert!(packages.iter().any(|(name, _)| name == "app-core"));
+        packages.iter().any(|(name, _)| name == "schemars")
+    };
+    let [desktop, ios, android] = TARGETS;
+    assert!(has_schema("tests", desktop));
+    assert!(!has_schema("app-ios", ios));
+    assert!(!has_schema("app-android", android));
 }
 
 #[test]

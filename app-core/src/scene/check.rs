@@ -102,10 +102,12 @@ pub(crate) const EXTENT_M: RangeInclusive<f64> = 1e-6..=1e6;
 /// Lengths of things that may be points, in metres.
 pub(crate) const RADIUS_M: RangeInclusive<f64> = 0.0..=1e9;
 /// Coordinates of lights, in metres: beyond the moon.
-const LIGHT_M: RangeInclusive<f64> = -1e9..=1e9;
+pub(crate) const LIGHT_M: RangeInclusive<f64> = -1e9..=1e9;
 /// Pixels of one picture: a still of 4096 x 3072, larger than those of the cameras that track, which give at most
 /// 4032 x 3024. Maps of the whole picture take some 140 bytes a pixel.
 pub(crate) const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
+/// Width and height of a session's pictures, in pixels.
+pub(crate) const SIDE_PX: RangeInclusive<f64> = 1.0..=16384.0;
 /// Focal lengths, in pixels.
 pub(crate) const FOCAL_PX: RangeInclusive<f64> = 1e-3..=1e6;
 /// Positions in a picture or beside it, in pixels.

@@ -4,6 +4,10 @@ mod convert;
 mod field;
 mod place;
 mod record;
+#[cfg(feature = "schema")]
+mod rules;
+#[cfg(feature = "schema")]
+mod schema;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,15 +15,16 @@ use glam::DMat4;
 use serde::Deserialize;
 
 use self::field::{INDEX_FILE, WHOLE_FILE, frame_field, in_index, read_named};
-use self::record::{CaptureRecord, Header};
+use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::Files;
 use super::picture::{PictureSize, decode_mask, decode_photo};
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
 use crate::scene::{Camera, Image, Pose, Scene};
 
-const FORMAT: &str = "shadow-capture";
-const VERSION: u64 = 1;
+#[cfg(feature = "schema")]
+pub use schema::schema;
+
 const MAX_INDEX_BYTES: u64 = 16 << 20;
 
 /// A `shadow-capture` folder.

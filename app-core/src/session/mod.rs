@@ -19,6 +19,8 @@ use crate::words::Number;
 
 pub use crate::scene::FieldError;
 pub use capture::Capture;
+#[cfg(feature = "schema")]
+pub use capture::schema;
 pub use error::{PictureError, SessionError, SessionErrorKind};
 pub use files::{FileError, Files, PathError, check_path};
 

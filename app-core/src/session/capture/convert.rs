@@ -15,7 +15,6 @@ use crate::toy::Toy;
 use glam::DMat4;
 
 const MAX_TOY_BYTES: u64 = 256 << 20;
-const MAX_SIDE_PX: f64 = 16384.0;
 
 /// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.
 pub(super) fn capture_from_record(
@@ -75,14 +74,8 @@ pub(super) fn capture_from_record(
 }
 
 fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
-    at(
-        "width",
-        check::number(f64::from(record.width), &(1.0..=MAX_SIDE_PX)),
-    )?;
-    at(
-        "height",
-        check::number(f64::from(record.height), &(1.0..=MAX_SIDE_PX)),
-    )?;
+    at("width", check::number(f64::from(record.width), &check::SIDE_PX))?;
+    at("height", check::number(f64::from(record.height), &check::SIDE_PX))?;
     at("width, height", check::picture_size(record.width, record.height))?;
     Ok(PictureSize {
         width_px: record.width,
