@@ -71,6 +71,7 @@
 //!
 //! [glossary]: #glossary
 //! [passes]: #passes
+//! [session format]: session/index.html#the-session-format
 //! [spaces]: #spaces-and-units
 #![doc = include_str!("../doc/architecture.md")]
 #![doc = include_str!("../doc/spaces.md")]

@@ -20,4 +20,5 @@ pub mod progress;
 pub mod reference;
 pub mod replay;
 pub mod report;
+pub mod session_format;
 pub mod stability;

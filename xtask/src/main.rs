@@ -58,7 +58,7 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
-    /// Rewrite the golden pictures (`bless --help` tells more)
+    /// Rewrite the golden pictures and the schema of sessions (`bless --help` tells more)
     #[command(disable_help_flag = true)]
     Bless {
         /// Handed on to the harness
@@ -122,7 +122,8 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Rewrites the goldens of the bundled session and, unless some of those are named, of the scenes that only tests know.
+/// Rewrites the goldens of the bundled session, the schema of sessions and, unless some of those are named, the goldens
+/// of the scenes that only tests know.
 fn bless(toolchain: &Toolchain, args: &[OsString]) -> anyhow::Result<ExitCode> {
     if args.is_empty() {
         let mut test = toolchain.cargo("test");

@@ -2,6 +2,8 @@
 //!
 //! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that is available at once
 //! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself.
+//!
+#![doc = include_str!("../../doc/session.md")]
 
 mod capture;
 mod error;

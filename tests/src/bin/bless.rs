@@ -1,5 +1,7 @@
-//! Makes the picture that each preset makes now the one that is expected of it. Never ends in success.
+//! Makes the picture that each preset makes now the one that is expected of it, and the schema that the session reader
+//! has now the one that is kept. Never ends in success.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
@@ -9,19 +11,21 @@ use app_core::preset::Preset;
 use app_core::wgpu;
 use clap::Parser;
 use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
+use harness::output::write_whole;
+use harness::session_format::{SCHEMA_FILE, SCHEMA_NAME, schema_text};
 
-/// Rewrite the golden pictures from what the presets make on the software adapter.
+/// Rewrite the golden pictures from what the presets make on the software adapter, and session.schema.json.
 #[derive(Parser)]
 #[command(name = "bless", bin_name = "cargo xtask bless")]
 struct Args {
-    /// Only goldens whose name contains this [default: all]
+    /// Only those whose name contains this [default: all]
     #[arg(default_value = "")]
     filter: String,
 }
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
-        Ok(()) => eprintln!("blessed, look at the pictures, then run the tests again"),
+        Ok(()) => eprintln!("blessed, look at what has changed, then run the tests again"),
         Err(error) => eprintln!("error: {error:#}"),
     }
     // Success would let a script bless and go on, with no one having looked.
@@ -29,16 +33,32 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let adapter = AdapterChoice::Named(SOFTWARE_ADAPTER.to_owned());
-    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))
-        .context("goldens are made on the software adapter alone")?;
-    let goldens = Goldens::of_project();
+    let is_schema_named = SCHEMA_NAME.contains(&args.filter);
     let named: Vec<(Preset, String)> = Preset::ALL
         .iter()
         .map(|&preset| (preset, name_of(preset)))
         .filter(|(_, name)| name.contains(&args.filter))
         .collect();
-    ensure!(!named.is_empty(), "no golden's name contains \"{}\"", args.filter);
+    ensure!(
+        is_schema_named || !named.is_empty(),
+        "no golden's name contains \"{}\"",
+        args.filter
+    );
+    if is_schema_named {
+        write_whole(Path::new(SCHEMA_FILE), schema_text().as_bytes())?;
+        eprintln!("{SCHEMA_FILE}");
+    }
+    if named.is_empty() {
+        return Ok(());
+    }
+    bless_pictures(named)
+}
+
+fn bless_pictures(named: Vec<(Preset, String)>) -> anyhow::Result<()> {
+    let adapter = AdapterChoice::Named(SOFTWARE_ADAPTER.to_owned());
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))
+        .context("goldens are made on the software adapter alone")?;
+    let goldens = Goldens::of_project();
     for (preset, name) in named {
         let rendered = render(&mut core, preset).with_context(|| name.clone())?;
         goldens.write(&name, &rendered.golden)?;

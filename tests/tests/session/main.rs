@@ -2,8 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod document;
 mod folder;
+mod follows;
 mod parts;
+mod schema;
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
