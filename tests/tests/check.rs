@@ -10,7 +10,8 @@ use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
 use harness::alignment::Alignments;
 use harness::check::{aligned_session, check};
-use harness::files::{BUNDLED_SESSION, Folder};
+use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
+use harness::session_format::example;
 use serde_json::{Value, json};
 
 /// A new folder, which goes with it.
@@ -130,6 +131,54 @@ fn each_wrong_session_is_told_by_its_field() {
             "{name}: {wrong:?}"
         );
     }
+}
+
+/// Keys that are told as unknown in an index without files.
+fn unknown(index: &Value) -> Vec<String> {
+    let session = Temporary::new("keys");
+    fs::write(session.0.join(SESSION_FILE), index.to_string()).unwrap();
+    let mut wrong = wrong(&session.0);
+    wrong.retain(|line| line.ends_with("the key is not known"));
+    wrong
+}
+
+/// Puts a key into each object of a value; returns where.
+fn misspell(value: &mut Value, path: &str) -> Vec<String> {
+    match value {
+        Value::Object(entries) => {
+            let below = |key: &str| format!("{path}{}{key}", if path.is_empty() { "" } else { "." });
+            let mut places: Vec<String> = entries
+                .iter_mut()
+                .flat_map(|(key, value)| misspell(value, &below(key)))
+                .collect();
+            places.push(below("misspelt"));
+            entries.insert("misspelt".to_owned(), json!({ "any": 1 }));
+            places
+        }
+        Value::Array(entries) => {
+            let entries = entries.iter_mut().enumerate();
+            entries
+                .flat_map(|(index, value)| misspell(value, &format!("{path}[{index}]")))
+                .collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The example of the document has every key that the reader has.
+#[test]
+fn every_key_of_the_format_is_known_and_no_other() {
+    let mut index: Value = serde_json::from_str(example().unwrap()).unwrap();
+    assert_eq!(unknown(&index), Vec::<String>::new());
+    let mut expected: Vec<String> = misspell(&mut index, "")
+        .iter()
+        .map(|place| format!("{SESSION_FILE} ({place}): the key is not known"))
+        .collect();
+    let mut told = unknown(&index);
+    told.sort();
+    expected.sort();
+    assert!(expected.len() > 10, "{expected:?}");
+    assert_eq!(told, expected);
 }
 
 #[test]
