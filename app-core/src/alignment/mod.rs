@@ -39,7 +39,8 @@ use glam::DMat4;
 use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
-use photograph::{FoundLights, FoundPose, MOST_OUTLINE_PX, Photograph};
+use crate::toy::ToyError;
+use photograph::{FoundLights, MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
 pub use outlines::Outlines;
@@ -75,20 +76,23 @@ impl Alignment {
 
 /// Aligns the frames of one scene, one after the other.
 ///
-/// A frame with the same picture, camera, pose and lights as the one before costs nothing. Lights are found in the first frame that
-/// shows their shadow, and kept while the listed ones stay as they are.
+/// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
+/// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
+/// the first frame that shows their shadow, and kept while the listed ones stay as they are.
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
     are_plates_aligned: bool,
     cameras: camera::Finder,
-    pose: Option<AlignedPose>,
+    view: Option<AlignedView>,
+    /// The pose in the latest view that showed where the toy is.
+    held: Option<DMat4>,
     lights: Option<AlignedLights>,
 }
 
-/// The pose in the latest view.
+/// Camera and pose in the latest view.
 #[derive(Debug)]
-struct AlignedPose {
+struct AlignedView {
     image: Arc<Image>,
     given_camera: Camera,
     given: DMat4,
@@ -117,7 +121,8 @@ impl Aligner {
             scene,
             are_plates_aligned: false,
             cameras: camera::Finder::default(),
-            pose: None,
+            view: None,
+            held: None,
             lights: None,
         }
     }
@@ -140,7 +145,7 @@ impl Aligner {
             Some(lights) => Arc::clone(lights),
             None => self.scene.lights.as_slice().into(),
         };
-        let is_view_known = self.pose.as_ref().is_some_and(|pose| pose.is_of(input));
+        let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         // Other lights than those that were found; and those that were not found are looked for in each view.
         self.lights = self
             .lights
@@ -148,35 +153,60 @@ impl Aligner {
             .filter(|lights| lights.given == given && (is_view_known || lights.errors.is_some()));
         if !is_view_known || self.lights.is_none() {
             self.align_plates();
-            let known = self.pose.take().filter(|_| is_view_known);
-            let camera = match &known {
-                Some(pose) => (pose.camera, pose.camera_report),
-                None => self.camera_of(&input.image, &input.camera, &self.scene.plates.clone()),
-            };
-            let given_camera = input.camera;
-            let input = &FrameInput {
-                camera: camera.0,
-                ..input.clone()
-            };
-            let photograph = Photograph::new(&self.scene, input);
-            let pose = match known {
-                Some(pose) => pose,
-                None => AlignedPose::new(
-                    input,
-                    (given_camera, camera.1),
-                    photograph.pose(&self.scene, input)?,
-                ),
+            let view = match self.view.take().filter(|_| is_view_known) {
+                Some(view) => view,
+                None => self.view(input)?,
             };
             if self.lights.is_none() {
-                let found = match pose.is_trusted() && self.can_look_for(&given) {
-                    true => photograph.lights(&self.scene, input, &pose.world_from_object, &given)?,
-                    false => None,
-                };
-                self.lights = Some(AlignedLights::new(given, found));
+                self.lights = Some(self.find_lights(given, &view, input)?);
             }
-            self.pose = Some(pose);
+            if view.is_trusted() {
+                self.held = Some(view.world_from_object);
+            }
+            self.view = Some(view);
         }
         Ok(self.aligned(input))
+    }
+
+    /// Camera and pose in a view that is not known.
+    fn view(&mut self, input: &FrameInput) -> Result<AlignedView, ToyError> {
+        let plates = self.scene.plates.clone();
+        let (camera, camera_report) = self.camera_of(&input.image, &input.camera, &plates);
+        let seen = FrameInput {
+            camera,
+            ..input.clone()
+        };
+        let photograph = Photograph::new(&self.scene, &seen);
+        let found = photograph.pose(&self.scene, &seen, self.held)?;
+        Ok(AlignedView {
+            image: Arc::clone(&input.image),
+            given_camera: input.camera,
+            given: input.world_from_object,
+            camera,
+            camera_report,
+            world_from_object: found.world_from_object,
+            report: found.report,
+        })
+    }
+    /// The lights in a view, as far as it can tell.
+    fn find_lights(
+        &self,
+        given: Arc<[Light]>,
+        view: &AlignedView,
+        input: &FrameInput,
+    ) -> Result<AlignedLights, ToyError> {
+        let can_tell = (1..=MAX_LIGHTS).contains(&given.len()) && !self.scene.plates.is_empty();
+        let found = if can_tell && view.is_trusted() {
+            let seen = FrameInput {
+                camera: view.camera,
+                world_from_object: view.world_from_object,
+                ..input.clone()
+            };
+            Photograph::new(&self.scene, &seen).lights(&self.scene, &seen, &given)?
+        } else {
+            None
+        };
+        Ok(AlignedLights::new(given, found))
     }
 
     /// Corrects the plates' cameras, each against those before it, once.
@@ -212,27 +242,21 @@ impl Aligner {
         (if is_applied { corrected } else { *given }, Some(report))
     }
 
-    fn can_look_for(&self, lights: &[Light]) -> bool {
-        (1..=MAX_LIGHTS).contains(&lights.len()) && !self.scene.plates.is_empty()
-    }
-
     fn aligned(&self, input: &FrameInput) -> Alignment {
-        let (pose, lights) = (self.pose.as_ref(), self.lights.as_ref());
+        let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
         let report = AlignmentReport {
-            camera: pose.and_then(|pose| pose.camera_report),
-            pose: pose.and_then(|pose| pose.report),
+            camera: view.and_then(|view| view.camera_report),
+            pose: view.and_then(|view| view.report),
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
             light_errors: lights.and_then(|lights| lights.errors),
         };
-        let off = report
-            .pose
-            .filter(|pose| !pose.is_applied && pose.given_outline_px > MOST_OUTLINE_PX);
+        let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
         let warnings = off.map(|pose| Warning::Misaligned {
-            outline_px: pose.given_outline_px,
+            outline_px: pose.shown_px(),
         });
         Alignment {
-            camera: pose.map_or(input.camera, |pose| pose.camera),
-            world_from_object: pose.map_or(input.world_from_object, |pose| pose.world_from_object),
+            camera: view.map_or(input.camera, |view| view.camera),
+            world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: lights.and_then(|lights| lights.applied.clone()),
             report,
             warnings: warnings.into_iter().collect(),
@@ -240,24 +264,7 @@ impl Aligner {
     }
 }
 
-impl AlignedPose {
-    /// `input` has the corrected camera.
-    fn new(
-        input: &FrameInput,
-        (given_camera, camera_report): (Camera, Option<CameraAlignment>),
-        found: FoundPose,
-    ) -> Self {
-        Self {
-            image: Arc::clone(&input.image),
-            given_camera,
-            camera: input.camera,
-            camera_report,
-            given: input.world_from_object,
-            world_from_object: found.world_from_object,
-            report: found.report,
-        }
-    }
-
+impl AlignedView {
     fn is_of(&self, input: &FrameInput) -> bool {
         Arc::ptr_eq(&self.image, &input.image)
             && self.given_camera == input.camera
@@ -266,16 +273,7 @@ impl AlignedPose {
 
     /// Whether the outline is where the picture has it.
     fn is_trusted(&self) -> bool {
-        let outline_px = |pose: &PoseAlignment| {
-            if pose.is_applied {
-                pose.outline_px
-            } else {
-                pose.given_outline_px
-            }
-        };
-        self.report
-            .as_ref()
-            .is_some_and(|pose| outline_px(pose) <= MOST_OUTLINE_PX)
+        self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::lights::FoundLight;
 use super::picture::{Picture, Pyramid};
@@ -58,46 +58,63 @@ impl Photograph {
         (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
     }
 
-    /// Where the toy is, for a given pose; that stays where no better one is found.
-    pub(super) fn pose(&self, scene: &Scene, input: &FrameInput) -> Result<FoundPose, ToyError> {
+    /// Where the toy is, starting from where it was before and else from where it is given; the start stays where nothing better is
+    /// found.
+    pub(super) fn pose(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        held: Option<DMat4>,
+    ) -> Result<FoundPose, ToyError> {
         let given = input.world_from_object;
-        let camera_from_object = self.camera_from_object(&given);
-        let shape = Shape::new(scene, &camera_from_object)?;
-        let found = pose::find(&shape, &self.pyramid);
-        let mut aligned = FoundPose {
-            world_from_object: given,
-            report: None,
-        };
-        if let Some(found) = found {
-            let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
-            let is_applied = found.is_better(POSE_GAIN)
-                && found.found.outline_px() <= MOST_OUTLINE_PX
-                && check::similarity(corrected.to_cols_array()).is_ok();
-            if is_applied {
-                aligned.world_from_object = corrected;
+        if let Some(held) = held.filter(|held| *held != given) {
+            let found = self.pose_from(scene, input, &held)?;
+            if found.is_seen() {
+                return Ok(found);
             }
-            let picture_px = self.pyramid.picture_px();
-            aligned.report = Some(PoseAlignment {
-                is_applied,
-                moved_m: found.moved_m,
-                turned_rad: found.turned_rad,
+        }
+        self.pose_from(scene, input, &given)
+    }
+
+    fn pose_from(&self, scene: &Scene, input: &FrameInput, start: &DMat4) -> Result<FoundPose, ToyError> {
+        let camera_from_object = self.camera_from_object(start);
+        let shape = Shape::new(scene, &camera_from_object)?;
+        let Some(found) = pose::find(&shape, &self.pyramid) else {
+            return Ok(FoundPose {
+                world_from_object: *start,
+                report: None,
+            });
+        };
+        let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
+        let is_better = found.is_better(POSE_GAIN)
+            && found.found.outline_px() <= MOST_OUTLINE_PX
+            && check::similarity(corrected.to_cols_array()).is_ok();
+        let world_from_object = if is_better { corrected } else { *start };
+        let middle = camera_from_object.inverse().transform_point3(shape.centre);
+        let (moved_m, turned_rad) = apart(&input.world_from_object, &corrected, middle);
+        let picture_px = self.pyramid.picture_px();
+        Ok(FoundPose {
+            world_from_object,
+            report: Some(PoseAlignment {
+                is_applied: world_from_object != input.world_from_object,
+                is_held: !is_better && *start != input.world_from_object,
+                moved_m,
+                turned_rad,
                 given_outline_px: picture_px * found.given.outline_px(),
                 outline_px: picture_px * found.found.outline_px(),
                 deviation: found.deviation,
-            });
-        }
-        Ok(aligned)
+            }),
+        })
     }
 
-    /// Where the lights are, for a pose of the toy; none where too little of their shadows is seen.
+    /// Where the lights are, by the toy in its place; none where too little of their shadows is seen.
     pub(super) fn lights(
         &self,
         scene: &Scene,
         input: &FrameInput,
-        world_from_object: &DMat4,
         given: &[Light],
     ) -> Result<Option<FoundLights>, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(world_from_object))?;
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let world_from_camera = &input.camera.world_from_camera;
         let found = lights::find(given, &shape, &self.receivers, &self.pyramid, world_from_camera);
         Ok(found.map(|found| {
@@ -119,12 +136,26 @@ impl Photograph {
     }
 }
 
-/// A pose, as given or corrected.
+/// Between two poses: metres that a point of the object moves, and the angle in radians.
+fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
+    let moved_m = a.transform_point3(point).distance(b.transform_point3(point));
+    let [a, b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
+    (moved_m, (b * a.inverse()).to_scaled_axis().length())
+}
+
+/// A pose, as given, as held or corrected.
 pub(super) struct FoundPose {
     /// From object space.
     pub(super) world_from_object: DMat4,
     /// None where too little of the outline is seen.
     pub(super) report: Option<PoseAlignment>,
+}
+
+impl FoundPose {
+    /// Whether the outline is where the picture has it.
+    pub(super) fn is_seen(&self) -> bool {
+        self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
+    }
 }
 
 /// Lights that were looked for.

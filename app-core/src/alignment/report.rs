@@ -33,19 +33,34 @@ pub struct CameraAlignment {
 /// The toy's pose, by its outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseAlignment {
-    /// Whether the pose was moved: only where that brings the outline nearer by more than noise explains.
+    /// Whether the toy is shown elsewhere than it was given: where it was found, which brings the outline nearer by more than noise
+    /// explains, or where it was found before.
     pub is_applied: bool,
+    /// Whether it is shown where it was before: this view tells nothing better.
+    pub is_held: bool,
     /// How far the middle of the toy was found from where it was given, in metres.
     pub moved_m: f64,
     /// How far it was found turned, in radians.
     pub turned_rad: f64,
-    /// Root mean square distance from the outline as given to that in the picture, in pixels; a piece that is far off counts as
-    /// two pixels.
+    /// Root mean square distance from the outline, as given or as held, to that in the picture, in pixels; a piece that is far off
+    /// counts as two pixels.
     pub given_outline_px: f64,
     /// The same for the pose that was found.
     pub outline_px: f64,
     /// One deviation of what was found, by noise alone: errors of the model come on top.
     pub deviation: PoseDeviation,
+}
+
+impl PoseAlignment {
+    /// The outline's distance as the toy is shown, in pixels.
+    #[must_use]
+    pub fn shown_px(&self) -> f64 {
+        if self.is_applied && !self.is_held {
+            self.outline_px
+        } else {
+            self.given_outline_px
+        }
+    }
 }
 
 /// One deviation of a pose.

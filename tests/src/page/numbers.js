@@ -92,12 +92,12 @@ function showAlignment() {
   at("alignment").hidden = !alignment;
   if (!alignment) return;
   const { camera, pose, lights, cpu_ms } = alignment;
-  const verdict = found => found.is_applied ? "corrected" : "left as given";
+  const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
   const rows = [];
   if (camera) rows.push(row("the camera", [verdict(camera), `${camera.moved_mm.toFixed(2)} mm, ${camera.turned_deg.toFixed(2)}\u00b0`,
     `the table by ${camera.moved_px.toFixed(2)} px in the picture`]));
   if (pose) rows.push(row("the toy's pose", [verdict(pose), `${pose.moved_mm.toFixed(2)} mm, ${pose.turned_deg.toFixed(2)}\u00b0`,
-    `outline ${pose.given_outline_px.toFixed(2)} px off as given, ${pose.outline_px.toFixed(2)} px as found`]));
+    `outline ${pose.given_outline_px.toFixed(2)} px off ${pose.is_held ? "as held" : "as given"}, ${pose.outline_px.toFixed(2)} px as found`]));
   lights.forEach((light, i) => rows.push(row(`light ${i}`, [verdict(light), `${light.turned_deg.toFixed(2)}\u00b0`,
     `distance \u00d7 ${light.distance_ratio.toFixed(2)}` + (light.size_ratio ? `, angular size \u00d7 ${light.size_ratio.toFixed(2)}` : "")])));
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),

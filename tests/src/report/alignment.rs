@@ -38,13 +38,15 @@ pub struct CameraEntry {
 /// The toy's pose.
 #[derive(Clone, Debug, Serialize)]
 pub struct PoseEntry {
-    /// Whether it was corrected.
+    /// Whether the toy is shown elsewhere than it was given.
     pub is_applied: bool,
+    /// Whether it is shown where an earlier view has it.
+    pub is_held: bool,
     /// From given to found.
     pub moved_mm: f64,
     /// From given to found.
     pub turned_deg: f64,
-    /// Root mean square distance between the outline as given and that in the picture.
+    /// Root mean square distance between the outline as given, or as held, and that in the picture.
     pub given_outline_px: f64,
     /// The same as found.
     pub outline_px: f64,
@@ -101,6 +103,7 @@ impl From<&PoseAlignment> for PoseEntry {
         let mm = |metres: f64| 1e3 * metres;
         Self {
             is_applied: pose.is_applied,
+            is_held: pose.is_held,
             moved_mm: mm(pose.moved_m),
             turned_deg: pose.turned_rad.to_degrees(),
             given_outline_px: pose.given_outline_px,

@@ -102,10 +102,6 @@ impl Fit {
 pub(super) struct Found {
     /// Moves the toy from where it was given, in camera space.
     pub(super) motion: DMat4,
-    /// Distance that the toy's middle moved, in metres.
-    pub(super) moved_m: f64,
-    /// Angle in radians.
-    pub(super) turned_rad: f64,
     /// As given.
     pub(super) given: Fit,
     /// As found.
@@ -153,8 +149,6 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
     let found = search.fit(&motion)?;
     Some(Found {
         motion: motion.matrix(),
-        moved_m: motion.translation.length(),
-        turned_rad: motion.rotation.to_scaled_axis().length(),
         given,
         deviation: deviation(&information, mean_weight * found.loss_px2, shape.radius_m),
         found,

@@ -18,9 +18,9 @@ pub(super) struct Motion {
     /// Turns six lengths into angles: the toy's radius, in metres.
     radius_m: f64,
     /// About the pivot.
-    pub(super) rotation: DQuat,
+    rotation: DQuat,
     /// In metres.
-    pub(super) translation: DVec3,
+    translation: DVec3,
 }
 
 impl Motion {
