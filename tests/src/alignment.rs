@@ -1,17 +1,30 @@
 //! The frames of a session as the core is given them: as recorded, or aligned by their pictures.
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Instant;
 
 use app_core::alignment::{Aligner, Alignment};
 use app_core::frame::FrameInput;
-use app_core::scene::{Camera, Scene};
+use app_core::scene::{Camera, Light, Scene};
 use app_core::session::{Session, SessionFrame};
+use glam::{DMat4, DVec3};
 
 use crate::replay::ReplayError;
 
+/// Where lights come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Lights {
+    /// From the session's list; where that is empty they are looked for.
+    #[default]
+    Given,
+    /// From the pictures alone: the list is put aside, and compared with.
+    Found,
+}
+
 /// Corrections of frames, found once for all presets.
 pub struct Alignments {
+    lights: Lights,
     first: usize,
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
@@ -24,6 +37,47 @@ pub struct Aligned {
     pub alignment: Alignment,
     /// What finding it took on the processor.
     pub cpu_ms: f64,
+    /// The lights that were put aside, as seen from the toy's middle.
+    pub listed: Vec<SeenLight>,
+}
+
+/// A light as it is seen from a place.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenLight {
+    /// Unit vector to its middle.
+    pub direction_in_world: DVec3,
+    /// None for a light without end.
+    pub distance_m: Option<f64>,
+    /// Half the angle that it fills.
+    pub angular_radius_rad: f64,
+}
+
+impl SeenLight {
+    /// From a place in the world.
+    #[must_use]
+    pub fn from(place: DVec3, light: &Light) -> Self {
+        match *light {
+            Light::Sphere {
+                position_in_world,
+                radius_m,
+            } => {
+                let to = position_in_world - place;
+                Self {
+                    direction_in_world: to.normalize(),
+                    distance_m: Some(to.length()),
+                    angular_radius_rad: (radius_m / to.length()).atan(),
+                }
+            }
+            Light::Directional {
+                direction_to_light_in_world,
+                angular_radius_rad,
+            } => Self {
+                direction_in_world: direction_to_light_in_world,
+                distance_m: None,
+                angular_radius_rad,
+            },
+        }
+    }
 }
 
 impl Alignments {
@@ -31,6 +85,7 @@ impl Alignments {
     #[must_use]
     pub fn none() -> Self {
         Self {
+            lights: Lights::Given,
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
@@ -41,22 +96,34 @@ impl Alignments {
     ///
     /// # Errors
     /// When a frame cannot be read or aligned.
-    pub fn find(session: &dyn Session, frames: Range<usize>) -> Result<Self, ReplayError> {
-        let mut aligner = Aligner::new(session.scene().clone());
+    pub fn find(session: &dyn Session, frames: Range<usize>, lights: Lights) -> Result<Self, ReplayError> {
+        let scene = session.scene();
+        let listed = match lights {
+            Lights::Given => &[],
+            Lights::Found => &scene.lights[..],
+        };
+        let mut aligner = Aligner::new(scene.clone());
         let mut found = Vec::with_capacity(frames.len());
         for index in frames.clone() {
-            let input = FrameInput::from(&session.frame(index)?);
+            let input = lights.input(&session.frame(index)?);
             let start = Instant::now();
             let alignment = aligner.align(&input).map_err(|reason| ReplayError::Align {
                 index,
                 reason: Box::new(reason),
             })?;
+            let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
+            let middle = middle(scene, &alignment.world_from_object);
             found.push(Aligned {
                 alignment,
-                cpu_ms: start.elapsed().as_secs_f64() * 1e3,
+                cpu_ms,
+                listed: listed
+                    .iter()
+                    .map(|light| SeenLight::from(middle, light))
+                    .collect(),
             });
         }
         Ok(Self {
+            lights,
             first: frames.start,
             found,
             moved_plates: moved_plates(session.scene(), aligner.scene()),
@@ -88,7 +155,7 @@ impl Alignments {
     /// What the core is given of a frame.
     #[must_use]
     pub fn input(&self, index: usize, frame: &SessionFrame) -> FrameInput {
-        let input = FrameInput::from(frame);
+        let input = self.lights.input(frame);
         match self.of(index) {
             Some(aligned) => aligned.alignment.applied_to(&input),
             None => input,
@@ -102,4 +169,24 @@ fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {
     moved
         .map(|(index, (_, aligned))| (index, aligned.camera))
         .collect()
+}
+
+impl Lights {
+    fn input(self, frame: &SessionFrame) -> FrameInput {
+        let input = FrameInput::from(frame);
+        match self {
+            Self::Given => input,
+            Self::Found => FrameInput {
+                lights: Some(Arc::new([])),
+                ..input
+            },
+        }
+    }
+}
+
+/// Middle of the box around the real toy, in the world.
+fn middle(scene: &Scene, world_from_object: &DMat4) -> DVec3 {
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose);
+    let middle = bounds.map_or(DVec3::ZERO, |bounds| 0.5 * (bounds.min + bounds.max).as_dvec3());
+    world_from_object.transform_point3(middle)
 }

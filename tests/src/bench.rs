@@ -14,7 +14,7 @@ use app_core::internals::{InjectedVisibility, Inspect};
 use app_core::preset::Preset;
 use app_core::session::Capture;
 
-use crate::alignment::Alignments;
+use crate::alignment::{Alignments, Lights};
 use crate::metrics::Scores;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
@@ -40,6 +40,8 @@ pub struct Options {
     pub with_exact: bool,
     /// Whether toy and lights are first aligned by the pictures; with exact visibility they never are.
     pub is_aligned: bool,
+    /// Where the lights come from then.
+    pub lights: Lights,
 }
 
 /// One preset on one session.
@@ -139,6 +141,7 @@ fn replay_options(options: &Options) -> replay::Options {
         frames: options.frames.clone(),
         out: None,
         is_aligned: options.is_aligned,
+        lights: options.lights,
     }
 }
 

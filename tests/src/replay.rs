@@ -13,7 +13,7 @@ use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
-use crate::alignment::Alignments;
+use crate::alignment::{Alignments, Lights};
 use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
 use crate::metrics::{SizeError, score};
@@ -40,6 +40,8 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Whether toy and lights are first aligned by the pictures.
     pub is_aligned: bool,
+    /// Where the lights come from then.
+    pub lights: Lights,
 }
 
 impl Default for Options {
@@ -49,6 +51,7 @@ impl Default for Options {
             frames: None,
             out: None,
             is_aligned: true,
+            lights: Lights::default(),
         }
     }
 }
@@ -118,7 +121,7 @@ pub fn picture_file(index: usize) -> String {
 /// When there are no such frames, or one cannot be read or aligned.
 pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments, ReplayError> {
     if options.is_aligned {
-        Alignments::find(session, frames_of(session, options)?)
+        Alignments::find(session, frames_of(session, options)?, options.lights)
     } else {
         Ok(Alignments::none())
     }

@@ -5,6 +5,7 @@ use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
+use harness::alignment::Lights;
 use harness::bench::{Options, bench, csv};
 use harness::files::{BUNDLED_SESSION, Folder};
 
@@ -19,6 +20,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         frames: Some(0..1),
         with_exact: false,
         is_aligned: true,
+        lights: Lights::Given,
     };
     let text = csv(&bench(&session, &mut core, &options).unwrap());
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();

@@ -8,7 +8,7 @@ use std::{fs, process};
 
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::Alignments;
+use harness::alignment::{Alignments, Lights};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
@@ -190,7 +190,7 @@ fn an_aligned_session_is_right() {
     let parent = Temporary::new("aligned");
     let out = parent.0.join("session");
     let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
-    let alignments = Alignments::find(&capture, 0..capture.n_frames()).unwrap();
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), Lights::Given).unwrap();
     assert_eq!(
         aligned_session::write(&session.0, &out, &alignments).unwrap(),
         capture.n_frames()

@@ -40,11 +40,19 @@ use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
-use photograph::{FoundLights, MOST_OUTLINE_PX, Photograph};
+use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
 pub use outlines::Outlines;
-pub use report::{AlignmentReport, CameraAlignment, LightAlignment, PoseAlignment, PoseDeviation};
+pub use report::{
+    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, NoLight,
+    PoseAlignment, PoseDeviation,
+};
+
+/// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
+///
+/// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
+const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
@@ -78,7 +86,8 @@ impl Alignment {
 ///
 /// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
 /// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
-/// the first frame that shows their shadow, and kept while the listed ones stay as they are.
+/// the first frame that shows their shadow, and kept while the listed ones stay as they are. Where none are listed they are looked
+/// for all over the hemisphere.
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
@@ -111,6 +120,8 @@ struct AlignedLights {
     /// Empty where they were not found in the latest view.
     report: Vec<LightAlignment>,
     errors: Option<[f64; 2]>,
+    /// None where lights were given.
+    discovered: Option<Discovered>,
 }
 
 impl Aligner {
@@ -150,7 +161,7 @@ impl Aligner {
         self.lights = self
             .lights
             .take()
-            .filter(|lights| lights.given == given && (is_view_known || lights.errors.is_some()));
+            .filter(|lights| lights.given == given && (is_view_known || lights.are_found()));
         if !is_view_known || self.lights.is_none() {
             self.align_plates();
             let view = match self.view.take().filter(|_| is_view_known) {
@@ -160,7 +171,7 @@ impl Aligner {
             if self.lights.is_none() {
                 self.lights = Some(self.find_lights(given, &view, input)?);
             }
-            if view.is_trusted() {
+            if view.is_trusted(MOST_OUTLINE_PX) {
                 self.held = Some(view.world_from_object);
             }
             self.view = Some(view);
@@ -188,6 +199,7 @@ impl Aligner {
             report: found.report,
         })
     }
+
     /// The lights in a view, as far as it can tell.
     fn find_lights(
         &self,
@@ -195,14 +207,24 @@ impl Aligner {
         view: &AlignedView,
         input: &FrameInput,
     ) -> Result<AlignedLights, ToyError> {
-        let can_tell = (1..=MAX_LIGHTS).contains(&given.len()) && !self.scene.plates.is_empty();
-        let found = if can_tell && view.is_trusted() {
-            let seen = FrameInput {
-                camera: view.camera,
-                world_from_object: view.world_from_object,
-                ..input.clone()
+        let seen = FrameInput {
+            camera: view.camera,
+            world_from_object: view.world_from_object,
+            ..input.clone()
+        };
+        let photograph = || Photograph::new(&self.scene, &seen);
+        if given.is_empty() {
+            let found = match &view.report {
+                Some(pose) if view.is_trusted(DISCOVERY_OUTLINE_PX) => {
+                    photograph().discover(&self.scene, &seen, &pose.deviation)?
+                }
+                _ => Err(NoLight::PoseUnknown),
             };
-            Photograph::new(&self.scene, &seen).lights(&self.scene, &seen, &given)?
+            return Ok(AlignedLights::discovered(given, found));
+        }
+        let can_tell = given.len() <= MAX_LIGHTS && !self.scene.plates.is_empty();
+        let found = if can_tell && view.is_trusted(MOST_OUTLINE_PX) {
+            photograph().lights(&self.scene, &seen, &given)?
         } else {
             None
         };
@@ -244,22 +266,28 @@ impl Aligner {
 
     fn aligned(&self, input: &FrameInput) -> Alignment {
         let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
+        let discovered = lights.and_then(|lights| lights.discovered.as_ref());
         let report = AlignmentReport {
             camera: view.and_then(|view| view.camera_report),
             pose: view.and_then(|view| view.report),
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
             light_errors: lights.and_then(|lights| lights.errors),
+            discovered: discovered
+                .and_then(|found| found.clone().ok())
+                .unwrap_or_default(),
+            no_light: discovered.and_then(|found| found.as_ref().err().copied()),
         };
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
         let warnings = off.map(|pose| Warning::Misaligned {
             outline_px: pose.shown_px(),
         });
+        let none = report.no_light.map(|reason| Warning::LightNotFound { reason });
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: lights.and_then(|lights| lights.applied.clone()),
             report,
-            warnings: warnings.into_iter().collect(),
+            warnings: warnings.into_iter().chain(none).collect(),
         }
     }
 }
@@ -271,27 +299,39 @@ impl AlignedView {
             && self.given == input.world_from_object
     }
 
-    /// Whether the outline is where the picture has it.
-    fn is_trusted(&self) -> bool {
-        self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
+    /// Whether the outline is where the picture has it, within some pixels.
+    fn is_trusted(&self, most_px: f64) -> bool {
+        self.report.is_some_and(|pose| pose.shown_px() <= most_px)
     }
 }
 
 impl AlignedLights {
     fn new(given: Arc<[Light]>, found: Option<FoundLights>) -> Self {
-        match found {
-            Some(found) => Self {
-                given,
-                applied: found.applied,
-                report: found.report,
-                errors: Some(found.errors),
-            },
-            None => Self {
-                given,
-                applied: None,
-                report: Vec::new(),
-                errors: None,
-            },
+        let (applied, report, errors) = match found {
+            Some(found) => (found.applied, found.report, Some(found.errors)),
+            None => (None, Vec::new(), None),
+        };
+        Self {
+            given,
+            applied,
+            report,
+            errors,
+            discovered: None,
         }
+    }
+
+    fn discovered(given: Arc<[Light]>, found: Discovered) -> Self {
+        let lights = found.iter().flatten().map(|found| found.light).collect();
+        Self {
+            given,
+            applied: found.is_ok().then_some(lights),
+            report: Vec::new(),
+            errors: None,
+            discovered: Some(found),
+        }
+    }
+
+    fn are_found(&self) -> bool {
+        self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
 }

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::lights::FoundLight;
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
-use super::report::{LightAlignment, PoseAlignment};
+use super::report::{DiscoveredLight, LightAlignment, NoLight, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::frame::FrameInput;
@@ -134,6 +134,32 @@ impl Photograph {
             }
         }))
     }
+
+    /// Lights of which nothing is known, by the toy in its place, which is known as well as `pose` says.
+    pub(super) fn discover(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        pose: &PoseDeviation,
+    ) -> Result<Discovered, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+        let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
+        let middle_in_world = input.world_from_object.transform_point3(middle);
+        let found = lights::discover(&shape, &self.receivers, &self.pyramid, world_from_camera, pose);
+        Ok(found.and_then(|mut found| {
+            for found in &mut found {
+                found.seen_from(middle_in_world);
+            }
+            let can_be = |found: &DiscoveredLight| check::light("lights", &found.light).is_ok();
+            if found.iter().all(can_be) {
+                Ok(found)
+            } else {
+                Err(NoLight::NoneDominant)
+            }
+        }))
+    }
 }
 
 /// Between two poses: metres that a point of the object moves, and the angle in radians.
@@ -142,6 +168,9 @@ fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
     let [a, b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
     (moved_m, (b * a.inverse()).to_scaled_axis().length())
 }
+
+/// Lights of which nothing was known, or why there are none.
+pub(super) type Discovered = Result<Vec<DiscoveredLight>, NoLight>;
 
 /// A pose, as given, as held or corrected.
 pub(super) struct FoundPose {
@@ -166,6 +195,22 @@ pub(super) struct FoundLights {
     pub(super) report: Vec<LightAlignment>,
     /// Mean losses with the given and with the found ones.
     pub(super) errors: [f64; 2],
+}
+
+impl DiscoveredLight {
+    /// Tells its direction, distance and size as seen from a place.
+    fn seen_from(&mut self, place_in_world: DVec3) {
+        if let Light::Sphere {
+            position_in_world,
+            radius_m,
+        } = self.light
+        {
+            let to = position_in_world - place_in_world;
+            self.direction_in_world = to.normalize_or(self.direction_in_world);
+            self.distance_m = Some(to.length());
+            self.angular_radius_rad = (radius_m / to.length()).min(1.0).asin();
+        }
+    }
 }
 
 impl FoundLight {

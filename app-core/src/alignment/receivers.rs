@@ -54,6 +54,13 @@ impl SeenReceiver {
     }
 }
 
+/// Normal of the first receiver, in camera space.
+pub(super) fn up(receivers: &[SeenReceiver]) -> DVec3 {
+    receivers.first().map_or(DVec3::Y, |receiver| {
+        receiver.plane_from_camera.inverse().y_axis.truncate()
+    })
+}
+
 /// The nearest receiver that a pixel shows: its index, and the point in camera space.
 pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2) -> Option<(usize, DVec3)> {
     let centre = at.as_dvec2() + 0.5;

@@ -1,5 +1,11 @@
 //! What alignment found, and what it did with it.
 
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::scene::Light;
+
 /// What was aligned in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlignmentReport {
@@ -13,6 +19,10 @@ pub struct AlignmentReport {
     /// Error of the shadows that the given lights predict, and of those that were found: mean squares over receivers, in units of
     /// what noise and the model of light are expected to leave. None where lights were not looked at.
     pub light_errors: Option<[f64; 2]>,
+    /// The lights that were looked for where none are listed, strongest first; empty where they are listed, or none was found.
+    pub discovered: Vec<DiscoveredLight>,
+    /// Why none was found; none where lights are listed or were found.
+    pub no_light: Option<NoLight>,
 }
 
 /// The camera, by what the receivers look like in the plates.
@@ -89,4 +99,54 @@ pub struct LightAlignment {
     pub size_ratio: Option<f64>,
     /// One deviation of the direction, in radians, by noise alone.
     pub deviation_rad: f64,
+}
+
+/// A light that nobody listed, by its shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscoveredLight {
+    /// As a scene lists it.
+    pub light: Light,
+    /// Unit vector from the middle of the toy's box.
+    pub direction_in_world: DVec3,
+    /// From there, in metres; none where it is too far away to be told.
+    pub distance_m: Option<f64>,
+    /// Half the angle that it fills as seen from there, in radians.
+    pub angular_radius_rad: f64,
+    /// Its part of the light on the receiver that is nearest to the toy, at the toy's foot: 0 to 1.
+    pub share: f64,
+    /// How well it is known.
+    pub deviation: LightDeviation,
+}
+
+/// One deviation of a light that was found: what residuals and the pose's deviation leave open, and a receiver that is not flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightDeviation {
+    /// Of the direction, in radians.
+    pub direction_rad: f64,
+    /// Of one over the distance, in 1/m, which unlike that of the distance has a meaning for far lights too.
+    pub nearness_per_m: f64,
+    /// Of half the angle that it fills, in radians.
+    pub angular_radius_rad: f64,
+}
+
+/// Why no light was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoLight {
+    /// The toy's pose is not known well enough.
+    PoseUnknown,
+    /// Too little of the receivers is seen beside the toy.
+    ReceiversUnseen,
+    /// No light explains enough of the picture: it comes from all around, or too little of a shadow is seen.
+    NoneDominant,
+}
+
+impl fmt::Display for NoLight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::PoseUnknown => "the toy's pose is not known well enough",
+            Self::ReceiversUnseen => "too little of the receivers is seen beside the toy",
+            Self::NoneDominant => "none stands out of the surroundings, or too little of its shadow is seen",
+        })
+    }
 }

@@ -1,5 +1,7 @@
 //! The physical toy as a shape in camera space.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat4, DVec3};
 
 use crate::geometry::bounds::Bounds;
@@ -49,5 +51,39 @@ impl Shape {
             radius_m: 0.5 * (bounds.max - bounds.min).length(),
             points,
         })
+    }
+
+    /// The same shape with the vertices within each cell of a side merged to their mean, and without triangles that collapse.
+    ///
+    /// Source: Rossignac and Borrel 1993.
+    pub(super) fn merged(&self, cell_m: f64) -> Self {
+        let mut cells: BTreeMap<[i64; 3], u32> = BTreeMap::new();
+        let mut sums: Vec<(DVec3, f64)> = Vec::new();
+        let places: Vec<u32> = self
+            .points
+            .iter()
+            .map(|point| {
+                let cell = ((*point - self.centre) / cell_m).floor().as_i64vec3().to_array();
+                let next = sums.len();
+                #[allow(clippy::cast_possible_truncation, reason = "no more than there are points")]
+                let place = *cells.entry(cell).or_insert(next as u32);
+                if place as usize == next {
+                    sums.push((DVec3::ZERO, 0.0));
+                }
+                let (sum, n) = &mut sums[place as usize];
+                *sum += *point;
+                *n += 1.0;
+                place
+            })
+            .collect();
+        let merged = self
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|corner| places[corner as usize]));
+        Self {
+            points: sums.into_iter().map(|(sum, n)| sum / n).collect(),
+            triangles: merged.filter(|[a, b, c]| a != b && b != c && c != a).collect(),
+            ..*self
+        }
     }
 }

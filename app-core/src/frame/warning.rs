@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::alignment::NoLight;
 use crate::frame::mismatch::Mismatch;
 use crate::words::Listed;
 
@@ -79,6 +80,11 @@ pub enum Warning {
         /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
         outline_px: f64,
     },
+    /// No light is listed, and none was found by its shadow.
+    LightNotFound {
+        /// Why.
+        reason: NoLight,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -146,6 +152,7 @@ impl fmt::Display for Warning {
             Self::ToyOutOfPicture => f.write_str(
                 "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose",
             ),
+            Self::LightNotFound { reason } => write!(f, "no light is listed, and none is found by its shadow: {reason}"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }

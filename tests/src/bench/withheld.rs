@@ -12,7 +12,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use glam::Vec4;
 
-use crate::alignment::Alignments;
+use crate::alignment::{Alignments, Lights};
 use crate::false_color::srgb_from_linear;
 use crate::replay::ReplayError;
 
@@ -46,7 +46,7 @@ pub fn rebuild(
     is_aligned: bool,
 ) -> Result<Vec<Rebuilt>, ReplayError> {
     let alignments = if is_aligned {
-        Alignments::find(session, 0..session.n_frames())?
+        Alignments::find(session, 0..session.n_frames(), Lights::Given)?
     } else {
         Alignments::none()
     };

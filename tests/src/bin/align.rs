@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use app_core::session::{Capture, Session};
 use clap::Parser;
-use harness::alignment::Alignments;
+use harness::alignment::{Alignments, Lights};
 use harness::check::aligned_session;
 use harness::files::Folder;
 use harness::program::exit_code;
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> anyhow::Result<()> {
     let capture =
         Capture::open(Folder::open(&args.session)?).with_context(|| args.session.display().to_string())?;
-    let alignments = Alignments::find(&capture, 0..capture.n_frames())?;
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), Lights::Given)?;
     let n_corrected = aligned_session::write(&args.session, &args.out, &alignments)?;
     println!(
         "{n_corrected} of {} frames have a corrected camera, pose or lights: {}",

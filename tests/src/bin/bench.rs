@@ -12,6 +12,7 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
+use harness::alignment::Lights;
 use harness::bench::{Options, Row, bench, csv, rebuild, rebuilt_table, table};
 use harness::files::{BUNDLED_SESSION, Folder};
 use harness::output::{make_folder, remove_file, write_png, write_whole};
@@ -49,6 +50,9 @@ struct Args {
     /// Take poses and lights as recorded, without aligning them by the pictures
     #[arg(long)]
     as_given: bool,
+    /// Put the session's list of lights aside, and find them by their shadows
+    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
+    lights: Lights,
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -131,6 +135,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
         }),
         with_exact: args.exact,
         is_aligned: !args.as_given,
+        lights: args.lights,
     };
     Ok(bench(&capture, core, &options)?)
 }

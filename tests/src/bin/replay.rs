@@ -12,6 +12,7 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
+use harness::alignment::Lights;
 use harness::files::{BUNDLED_SESSION, Folder};
 use harness::page::PAGE_FILE;
 use harness::program::exit_code;
@@ -44,6 +45,9 @@ struct Args {
     /// Take poses and lights as recorded, without aligning them by the pictures
     #[arg(long)]
     as_given: bool,
+    /// Put the session's list of lights aside, and find them by their shadows
+    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
+    lights: Lights,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -70,6 +74,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         frames: args.frames.clone(),
         out: Some(out.clone()),
         is_aligned: !args.as_given,
+        lights: args.lights,
     };
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
     let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;

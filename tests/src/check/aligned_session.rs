@@ -76,9 +76,12 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             index["frames"][frame]["world_from_camera"] = matrix(&alignment.camera.world_from_camera);
         }
         if let Some(lights) = &alignment.lights {
-            for (place, light) in lights.iter().enumerate() {
-                merge(&mut index["lights"][place], light);
+            let mut entries = index["lights"].as_array().cloned().unwrap_or_default();
+            entries.resize(lights.len(), json!({}));
+            for (entry, light) in entries.iter_mut().zip(lights.iter()) {
+                merge(entry, light);
             }
+            index["lights"] = entries.into();
         }
         n_corrected += usize::from(is_moved || is_camera_moved || alignment.lights.is_some());
     }
@@ -96,6 +99,7 @@ fn merge(entry: &mut Value, light: &Light) {
             position_in_world,
             radius_m,
         } => {
+            entry["kind"] = json!("sphere");
             entry["position"] = json!(position_in_world.to_array());
             entry["radius"] = json!(radius_m);
         }
@@ -103,6 +107,7 @@ fn merge(entry: &mut Value, light: &Light) {
             direction_to_light_in_world,
             angular_radius_rad,
         } => {
+            entry["kind"] = json!("directional");
             entry["direction_to_light"] = json!(direction_to_light_in_world.to_array());
             entry["angular_radius_deg"] = json!(angular_radius_rad.to_degrees());
         }

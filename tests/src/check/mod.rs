@@ -13,7 +13,7 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::Alignments;
+use crate::alignment::{Alignments, Lights};
 use crate::files::Folder;
 use crate::output::{remove_file, write_png};
 
@@ -70,7 +70,7 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
     }
     if let Ok(first) = capture.frame(0) {
         let given = FrameInput::from(&first);
-        match Alignments::find(&capture, 0..1) {
+        match Alignments::find(&capture, 0..1, Lights::Given) {
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
                     findings.aligned(&aligned.alignment);
@@ -133,6 +133,17 @@ impl Findings {
                 light.distance_ratio
             );
             self.tell(told, light.is_applied && light.is_moved);
+        }
+        for (index, light) in report.discovered.iter().enumerate() {
+            let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
+                format!("{distance_m:.2} m away")
+            });
+            self.facts.push(format!(
+                "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees",
+                2.0 * light.angular_radius_rad.to_degrees(),
+                100.0 * light.share,
+                light.deviation.direction_rad.to_degrees()
+            ));
         }
         self.wrong.extend(
             alignment

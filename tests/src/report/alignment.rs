@@ -1,9 +1,9 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{CameraAlignment, LightAlignment, PoseAlignment};
+use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment};
 use serde::Serialize;
 
-use crate::alignment::Aligned;
+use crate::alignment::{Aligned, SeenLight};
 
 /// Of one frame.
 #[derive(Clone, Debug, Serialize)]
@@ -18,6 +18,46 @@ pub struct AlignmentEntry {
     pub lights: Vec<LightEntry>,
     /// Error of the predicted shadows over what noise and model are expected to leave, with the given lights and with those found.
     pub light_errors: Option<[f64; 2]>,
+    /// Lights found by their shadows alone, strongest first.
+    pub discovered: Vec<DiscoveredEntry>,
+    /// Why none was.
+    pub no_light: Option<String>,
+    /// Lights on the session's list, where that was put aside.
+    pub n_listed: usize,
+}
+
+/// A light that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct DiscoveredEntry {
+    /// Unit vector from the toy's middle, in the world.
+    pub direction: [f64; 3],
+    /// None where it is too far away to be told.
+    pub distance_m: Option<f64>,
+    /// Half the angle that it fills.
+    pub angular_radius_deg: f64,
+    /// Its part of the light at the toy's foot.
+    pub share: f64,
+    /// One deviation of the direction.
+    pub direction_deviation_deg: f64,
+    /// One deviation of one over the distance.
+    pub nearness_deviation_per_m: f64,
+    /// One deviation of the angular radius.
+    pub angular_radius_deviation_deg: f64,
+    /// Against the nearest light of the session's list, where that was put aside.
+    pub against_listed: Option<ErrorEntry>,
+}
+
+/// Error of a light that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct ErrorEntry {
+    /// Its place in the list.
+    pub index: usize,
+    /// Between the directions.
+    pub direction_deg: f64,
+    /// Found distance over the listed; none where one of them has none.
+    pub distance_ratio: Option<f64>,
+    /// Found angular radius over the listed; none for a point light.
+    pub size_ratio: Option<f64>,
 }
 
 /// The camera.
@@ -82,6 +122,40 @@ impl From<&Aligned> for AlignmentEntry {
             pose: report.pose.as_ref().map(PoseEntry::from),
             lights: report.lights.iter().map(LightEntry::from).collect(),
             light_errors: report.light_errors,
+            discovered: report
+                .discovered
+                .iter()
+                .map(|light| DiscoveredEntry::new(light, &aligned.listed))
+                .collect(),
+            no_light: report.no_light.map(|reason| reason.to_string()),
+            n_listed: aligned.listed.len(),
+        }
+    }
+}
+
+impl DiscoveredEntry {
+    fn new(light: &DiscoveredLight, listed: &[SeenLight]) -> Self {
+        let off_rad = |seen: &SeenLight| light.direction_in_world.angle_between(seen.direction_in_world);
+        let nearest = listed.iter().enumerate();
+        let nearest = nearest.min_by(|(_, a), (_, b)| off_rad(a).total_cmp(&off_rad(b)));
+        Self {
+            direction: light.direction_in_world.to_array(),
+            distance_m: light.distance_m,
+            angular_radius_deg: light.angular_radius_rad.to_degrees(),
+            share: light.share,
+            direction_deviation_deg: light.deviation.direction_rad.to_degrees(),
+            nearness_deviation_per_m: light.deviation.nearness_per_m,
+            angular_radius_deviation_deg: light.deviation.angular_radius_rad.to_degrees(),
+            against_listed: nearest.map(|(index, seen)| ErrorEntry {
+                index,
+                direction_deg: off_rad(seen).to_degrees(),
+                distance_ratio: light
+                    .distance_m
+                    .zip(seen.distance_m)
+                    .map(|(found, listed)| found / listed),
+                size_ratio: (seen.angular_radius_rad > 0.0)
+                    .then(|| light.angular_radius_rad / seen.angular_radius_rad),
+            }),
         }
     }
 }

@@ -12,6 +12,12 @@ use crate::scene::Intrinsics;
 /// No direction of ambient light is lower, as a sine: its shadow would have no end.
 const LOWEST: f64 = 0.1;
 
+/// Parts of the light from all around: even, and rising along each axis of a receiver.
+pub(super) const N_AMBIENT: usize = 3;
+
+/// What the toy takes of each.
+pub(super) type Ambient = [f32; N_AMBIENT];
+
 /// A toy that casts shadows, and the picture that they are seen in.
 pub(super) struct Caster<'a> {
     pub(super) shape: &'a Shape,
@@ -35,6 +41,19 @@ impl<'a> Caster<'a> {
         }
     }
 
+    /// With another toy.
+    pub(super) fn of_shape<'b>(&self, shape: &'b Shape) -> Caster<'b>
+    where
+        'a: 'b,
+    {
+        Caster {
+            shape,
+            receivers: self.receivers,
+            intrinsics: self.intrinsics,
+            size_px: self.size_px,
+        }
+    }
+
     /// The part of a lamp's light that the toy takes from each pixel.
     pub(super) fn lamp(
         &self,
@@ -43,15 +62,37 @@ impl<'a> Caster<'a> {
         lamp: &Lamp,
         disc: &[DVec2],
     ) -> Vec<f32> {
-        let mut taken = vec![0.0; pixels.len()];
+        let mut taken = vec![[0.0]; pixels.len()];
         for (index, receiver) in self.receivers.iter().enumerate() {
             let plane_from_camera = &receiver.plane_from_camera;
             let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
             let points = lamp.points(plane_from_camera, self.shape.centre, disc);
-            let weighted = points.into_iter().map(|point| (point, irradiance(point, foot)));
+            let weighted = points.into_iter().map(|point| (point, [irradiance(point, foot)]));
             self.add(raster, pixels, index, weighted.collect(), &mut taken);
         }
-        taken
+        taken.into_iter().map(|[taken]| taken).collect()
+    }
+
+    /// Irradiance of each pixel's receiver from a lamp, over that at the foot of the toy there.
+    pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
+        let seen = self.receivers.iter().map(|receiver| {
+            let plane_from_camera = receiver.plane_from_camera;
+            let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
+            let middle = lamp.points(&plane_from_camera, self.shape.centre, &[DVec2::ZERO])[0];
+            (plane_from_camera, middle, irradiance(middle, foot))
+        });
+        let seen: Vec<_> = seen.collect();
+        let lit = pixels.iter().map(|pixel| {
+            let (plane_from_camera, middle, at_foot) = seen[pixel.receiver];
+            if lamp.is_far() || at_foot <= 0.0 {
+                return 1.0;
+            }
+            let at = plane_from_camera.transform_point3(pixel.point);
+            #[allow(clippy::cast_possible_truncation, reason = "a ratio, to 7 digits")]
+            let lit = (irradiance(middle, at) / at_foot) as f32;
+            lit
+        });
+        lit.collect()
     }
 
     /// Rectangles of pixels around the hard shadows from each point of a lamp, as the first and the last.
@@ -69,19 +110,20 @@ impl<'a> Caster<'a> {
         rects
     }
 
-    /// The part of the light from all around that the toy takes from each pixel.
+    /// The parts of the light from all around that the toy takes from each pixel: of an even one, and of ones that rise along
+    /// each axis of the receiver.
     pub(super) fn ambient(
         &self,
         raster: &mut Rasterizer,
         pixels: &[FloorPixel],
         n_directions: usize,
-    ) -> Vec<f32> {
+    ) -> Vec<Ambient> {
         // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
         let lifted = |at: DVec2| {
             let sine = (1.0 - at.length_squared()).max(0.0).sqrt().max(LOWEST);
-            (DVec4::new(at.x, sine, at.y, 0.0), 1.0)
+            (DVec4::new(at.x, sine, at.y, 0.0), [1.0, at.x, at.y])
         };
-        let mut taken = vec![0.0; pixels.len()];
+        let mut taken = vec![[0.0; N_AMBIENT]; pixels.len()];
         for index in 0..self.receivers.len() {
             let directions = disc(n_directions).into_iter().map(lifted);
             self.add(raster, pixels, index, directions.collect(), &mut taken);
@@ -89,24 +131,28 @@ impl<'a> Caster<'a> {
         taken
     }
 
-    fn add(
+    /// Each point with a weight for each part; the first is that of its light.
+    fn add<const N: usize>(
         &self,
         raster: &mut Rasterizer,
         pixels: &[FloorPixel],
         receiver: usize,
-        points: Vec<(DVec4, f64)>,
-        taken: &mut [f32],
+        points: Vec<(DVec4, [f64; N])>,
+        taken: &mut [[f32; N]],
     ) {
-        let total: f64 = points.iter().map(|(_, weight)| weight).sum();
-        for (point, weight) in points.into_iter().filter(|(_, weight)| *weight > 0.0) {
+        let total: f64 = points.iter().map(|(_, weights)| weights[0]).sum();
+        for (point, weights) in points.into_iter().filter(|(_, weights)| weights[0] > 0.0) {
             let coverage = self.hard(raster, receiver, point);
             #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
-            let weight = (weight / total) as f32;
+            let weights = weights.map(|weight| (weight / total) as f32);
             let [first, end] = [coverage.origin_px.y, coverage.origin_px.y + coverage.size_px.y]
                 .map(|row| pixels.partition_point(|pixel| pixel.at.y < row));
             let rows = taken[first..end].iter_mut().zip(&pixels[first..end]);
             for (taken, pixel) in rows.filter(|(_, pixel)| pixel.receiver == receiver) {
-                *taken += weight * coverage.at(pixel.at);
+                let covered = coverage.at(pixel.at);
+                for (taken, weight) in taken.iter_mut().zip(weights) {
+                    *taken += weight * covered;
+                }
             }
         }
     }

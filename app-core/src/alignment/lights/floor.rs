@@ -1,7 +1,8 @@
 //! Pixels of the receivers beside the toy, which the shadow is read from.
 
-use glam::IVec2;
+use glam::{DVec3, IVec2};
 
+use super::backdrop::Backdrop;
 use crate::alignment::picture::{Color, Level, noise_deviation};
 use crate::alignment::raster::Coverage;
 use crate::alignment::receivers::{SeenReceiver, receiver_at};
@@ -22,6 +23,8 @@ pub(super) struct FloorPixel {
     pub(super) at: IVec2,
     /// Index of the receiver.
     pub(super) receiver: usize,
+    /// The receiver's point there, in camera space.
+    pub(super) point: DVec3,
     /// Of the photograph.
     pub(super) frame: Color,
     /// Of the plate.
@@ -30,21 +33,27 @@ pub(super) struct FloorPixel {
     pub(super) precision: Color,
 }
 
-/// Pixels clear of the toy that show a receiver, row by row.
+/// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate.
 pub(super) fn floor_pixels(
     level: &Level,
-    coverage: &Coverage,
+    (coverage, backdrop): (&Coverage, Option<&Backdrop>),
     receivers: &[SeenReceiver],
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {
     let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
     let pixels = clear.filter_map(|at| {
-        let (receiver, _) = receiver_at(receivers, &level.intrinsics, at)?;
-        let (frame, plate) = (level.frame.get(at)?, level.plate.as_ref()?.get(at)?);
-        let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel]));
+        let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
+        let frame = level.frame.get(at)?;
+        let (plate, texture) = match (&level.plate, backdrop) {
+            (Some(plate), _) => (plate.get(at)?, 0.0),
+            (None, backdrop) => backdrop?.at(receivers, receiver, point)?,
+        };
+        let unexplained = UNEXPLAINED.hypot(texture);
+        let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel], unexplained));
         Some(FloorPixel {
             at,
             receiver,
+            point,
             frame,
             plate,
             precision,
@@ -53,10 +62,10 @@ pub(super) fn floor_pixels(
     pixels.collect()
 }
 
-fn precision(frame: f32, plate: f32) -> f32 {
+fn precision(frame: f32, plate: f32, unexplained: f32) -> f32 {
     let is_useful = |value: f32| value > DARKEST && value < BRIGHTEST;
     if is_useful(frame) && is_useful(plate) {
-        let deviation = noise_deviation(frame).hypot(UNEXPLAINED * plate);
+        let deviation = noise_deviation(frame).hypot(unexplained * plate);
         1.0 / (deviation * deviation)
     } else {
         0.0

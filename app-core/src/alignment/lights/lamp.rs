@@ -5,10 +5,10 @@ use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use crate::geometry::light_points::{outline_radius_m, vogel_disc};
 use crate::scene::Light;
 
-/// Numbers of a lamp: two angles, the logarithm of its distance, and its spread.
+/// Numbers of a lamp: two angles, its nearness, and its spread.
 pub(super) const N_PARTS: usize = 4;
-/// Index of the distance among them.
-pub(super) const DISTANCE: usize = 2;
+/// Index of the nearness among them.
+pub(super) const NEARNESS: usize = 2;
 /// Index of the spread.
 pub(super) const SPREAD: usize = 3;
 
@@ -17,8 +17,8 @@ pub(super) const SPREAD: usize = 3;
 pub(super) struct Lamp {
     /// Unit vector from the toy.
     pub(super) direction: DVec3,
-    /// None for a light too far away for it to matter.
-    pub(super) distance_m: Option<f64>,
+    /// One over its distance in metres; 0 for a light too far away for that to matter.
+    pub(super) nearness: f64,
     /// Tangent of the angular radius.
     pub(super) spread: f64,
 }
@@ -54,35 +54,39 @@ impl Lamp {
         };
         Some(Self {
             direction: to.try_normalize()?,
-            distance_m: radius_m.map(|_| distance_m),
+            nearness: radius_m.map_or(0.0, |_| distance_m.recip()),
             spread,
         })
     }
 
     /// Back in the world.
     pub(super) fn light(&self, world_from_camera: &DMat4, toy: DVec3) -> Light {
-        match self.distance_m {
-            Some(distance_m) => Light::Sphere {
-                position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
-                radius_m: self.spread.atan().sin() * distance_m,
-            },
-            None => Light::Directional {
+        if self.is_far() {
+            Light::Directional {
                 direction_to_light_in_world: world_from_camera.transform_vector3(self.direction).normalize(),
                 angular_radius_rad: self.spread.atan(),
-            },
+            }
+        } else {
+            let distance_m = self.nearness.recip();
+            Light::Sphere {
+                position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
+                radius_m: self.spread.atan().sin() * distance_m,
+            }
         }
     }
 
-    /// Turned by two angles in radians about axes across its direction, its distance times the power of the third number, its
-    /// spread more by the fourth.
+    /// Whether its distance does not matter.
+    pub(super) fn is_far(&self) -> bool {
+        self.nearness <= 0.0
+    }
+
+    /// Turned by two angles in radians about axes across its direction, nearer by the third number, its spread more by the fourth.
     pub(super) fn moved(&self, step: &[f64; N_PARTS]) -> Self {
         let (across, along) = self.direction.any_orthonormal_pair();
         let turn = DQuat::from_scaled_axis(step[0] * across + step[1] * along);
         Self {
             direction: (turn * self.direction).normalize(),
-            distance_m: self
-                .distance_m
-                .map(|distance_m| distance_m * step[DISTANCE].exp()),
+            nearness: (self.nearness + step[NEARNESS]).max(0.0),
             spread: (self.spread + step[SPREAD]).max(0.0),
         }
     }
@@ -92,11 +96,11 @@ impl Lamp {
         let (across, along) = self.direction.any_orthonormal_pair();
         let point = |at: &DVec2| {
             let to = self.direction + self.spread * (at.x * across + at.y * along);
-            match self.distance_m {
-                Some(distance_m) => space_from_camera
-                    .transform_point3(toy + distance_m * to)
-                    .extend(1.0),
-                None => space_from_camera.transform_vector3(to).extend(0.0),
+            if self.is_far() {
+                space_from_camera.transform_vector3(to).extend(0.0)
+            } else {
+                let place = toy + to / self.nearness;
+                space_from_camera.transform_point3(place).extend(1.0)
             }
         };
         disc.iter().map(point).collect()

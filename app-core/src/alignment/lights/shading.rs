@@ -5,13 +5,14 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::cast::{Ambient, N_AMBIENT};
 use super::floor::FloorPixel;
 use crate::scene::MAX_LIGHTS;
 
-/// Gain, ambient factor, and one factor a lamp.
-pub(super) const N_FACTORS: usize = 2 + MAX_LIGHTS;
+/// Gain, ambient factors, and one factor a lamp.
+pub(super) const N_FACTORS: usize = FIRST_LAMP + MAX_LIGHTS;
 /// Index of the first lamp's.
-pub(super) const FIRST_LAMP: usize = 2;
+pub(super) const FIRST_LAMP: usize = 1 + N_AMBIENT;
 
 pub(super) type Factors = SVector<f64, N_FACTORS>;
 type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
@@ -24,7 +25,7 @@ const N_ROUNDS: usize = 3;
 /// The pixels that a shading explains, with what the toy takes of each light there.
 pub(super) struct Shaded<'a> {
     pub(super) pixels: &'a [FloorPixel],
-    pub(super) ambient: &'a [f32],
+    pub(super) ambient: &'a [Ambient],
     pub(super) lamps: &'a [Vec<f32>],
 }
 
@@ -36,6 +37,13 @@ pub(super) struct Shading {
 }
 
 impl Shading {
+    /// The part of the light on a receiver that a lamp gives, in the mean over the channels.
+    pub(super) fn share(&self, receiver: usize, lamp: usize) -> f64 {
+        let of_channels = self.factors[receiver].iter();
+        let shares = of_channels.map(|factors| factors[FIRST_LAMP + lamp] / factors[0].max(PRIOR));
+        shares.sum::<f64>() / 3.0
+    }
+
     /// Whether each of the lamps gives light, over all receivers and channels.
     pub(super) fn has_light_of_all(&self, n_lamps: usize) -> bool {
         let given = |lamp: usize| -> f64 {
@@ -62,7 +70,9 @@ impl Shaded<'_> {
     pub(super) fn columns(&self, index: usize) -> Factors {
         let mut columns = Factors::zeros();
         columns[0] = 1.0;
-        columns[1] = -f64::from(self.ambient[index]);
+        for (part, taken) in self.ambient[index].iter().enumerate() {
+            columns[1 + part] = -f64::from(*taken);
+        }
         for (lamp, taken) in self.lamps.iter().enumerate() {
             columns[FIRST_LAMP + lamp] = -f64::from(taken[index]);
         }
@@ -145,7 +155,7 @@ impl Shaded<'_> {
 }
 
 /// Adds `weight` times the outer product of the first `n` entries.
-fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
+pub(super) fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
     for i in 0..n {
         let scaled = weight * row[i];
         for j in 0..n {

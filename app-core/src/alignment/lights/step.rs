@@ -2,33 +2,28 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Shadows;
-use super::lamp::{DISTANCE, Lamp, N_PARTS, SPREAD};
+use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
+use super::prior::Prior;
 use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading};
+use super::shadows::{LEAST_PENUMBRA_PX, Shadows};
 use crate::alignment::raster::Rasterizer;
 
 /// Differences are taken over this part of the penumbra: less stalls on wide ones, where single samples would count.
 const OF_PENUMBRA: f64 = 0.3;
 /// And over no less, in pixels.
 const LEAST_PX: f64 = 0.5;
-/// Difference of a logarithm of distance.
-const DISTANCE_STEP: f64 = 0.05;
-/// A penumbra narrower than that tells no size, in pixels.
-const LEAST_PENUMBRA_PX: f64 = 0.6;
-/// Deviations of what is given: directions in radians, the logarithm of distance, and the spread over the given one.
-const GIVEN_RAD: f64 = 0.2;
-const GIVEN_DISTANCE: f64 = 0.3;
-const GIVEN_SPREAD: f64 = 0.7;
-/// The least deviation of a spread, and its least step; a point light stays one.
-const GIVEN_POINT: f64 = 0.003;
 /// The longest step of each part; of the spread as a fraction of it.
 const LONGEST_RAD: f64 = 0.06;
-const LONGEST_DISTANCE: f64 = 0.2;
+/// Of a nearness as a fraction of the larger of itself and this, over the toy's radius.
+const LONGEST_NEARING: f64 = 0.2;
+const USUAL_NEARNESS: f64 = 0.1;
 const LONGEST_GROWTH: f64 = 1.0;
 const LONGEST_SHRINKING: f64 = 0.5;
+/// The least of a spread.
+const LEAST_GROWTH: f64 = 0.003;
 
 /// How what a lamp takes changes with one of its parts, at each pixel.
-type Slope = Option<Vec<f32>>;
+pub(super) type Slope = Option<Vec<f32>>;
 
 impl Shadows<'_> {
     /// Moves all lamps by one step; returns one deviation of each direction. None where there is nothing to go by.
@@ -36,20 +31,23 @@ impl Shadows<'_> {
         &self,
         raster: &mut Rasterizer,
         lamps: &mut [Lamp],
-        given: &[Lamp],
+        priors: &[Prior],
         robust: f64,
     ) -> Option<Vec<f64>> {
         let taken = self.taken_of_all(raster, lamps);
-        let slopes: Vec<Slope> = lamps.iter().flat_map(|lamp| self.slopes(raster, lamp)).collect();
+        let slopes: Vec<Slope> = lamps
+            .iter()
+            .zip(priors)
+            .flat_map(|(lamp, prior)| self.slopes(raster, lamp, prior))
+            .collect();
         let shaded = self.shaded(&taken);
         let shading = shaded.fit(self.caster.receivers.len(), robust);
         let mut system = System::new(slopes.len(), shading.factors.len());
         self.gather(&mut system, &shaded, &shading, &slopes, robust);
         let (mut normal, mut side) = system.without_factors();
-        for (index, (lamp, given)) in lamps.iter().zip(given).enumerate() {
-            for (part, (away, deviation)) in prior(lamp, given).into_iter().enumerate() {
+        for (index, (lamp, prior)) in lamps.iter().zip(priors).enumerate() {
+            for (part, (away, information)) in prior.pull(lamp).into_iter().enumerate() {
                 let place = N_PARTS * index + part;
-                let information = 1.0 / (deviation * deviation);
                 normal[(place, place)] += information;
                 side[place] -= information * away;
             }
@@ -59,7 +57,8 @@ impl Shadows<'_> {
         let covariance = factor.inverse();
         for (index, lamp) in lamps.iter_mut().enumerate() {
             let part = |part: usize| step[N_PARTS * index + part];
-            *lamp = lamp.moved(&bounded(lamp, [part(0), part(1), part(2), part(3)]));
+            let step = [part(0), part(1), part(2), part(3)];
+            *lamp = lamp.moved(&bounded(lamp, step, self.caster.shape.radius_m));
         }
         let deviations = (0..lamps.len()).map(|index| {
             let variance = |part: usize| covariance[(N_PARTS * index + part, N_PARTS * index + part)];
@@ -69,20 +68,20 @@ impl Shadows<'_> {
     }
 
     /// Central differences of what a lamp takes; none for a part that the picture does not tell.
-    fn slopes(&self, raster: &mut Rasterizer, lamp: &Lamp) -> [Slope; N_PARTS] {
+    pub(super) fn slopes(&self, raster: &mut Rasterizer, lamp: &Lamp, prior: &Prior) -> [Slope; N_PARTS] {
         let disc = self.disc(lamp);
         let penumbra_px = self.penumbra_px(lamp);
         let turn_rad = (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX) / self.px_per_rad;
-        [0, 1, DISTANCE, SPREAD].map(|part| {
-            let is_told = match part {
-                DISTANCE => lamp.distance_m.is_some(),
-                SPREAD => penumbra_px >= LEAST_PENUMBRA_PX,
-                _ => true,
-            };
-            if !is_told {
+        [0, 1, NEARNESS, SPREAD].map(|part| {
+            let is_told = part != SPREAD || penumbra_px >= 0.999 * LEAST_PENUMBRA_PX;
+            if !is_told || prior.holds(part) {
                 return None;
             }
-            let by = if part == DISTANCE { DISTANCE_STEP } else { turn_rad };
+            // A lamp that comes nearer turns as seen from the toy's rim.
+            let by = match part {
+                NEARNESS => turn_rad / self.caster.shape.radius_m,
+                _ => turn_rad,
+            };
             let mut step = [0.0; N_PARTS];
             step[part] = by;
             let more = lamp.moved(&step);
@@ -90,6 +89,7 @@ impl Shadows<'_> {
             let less = lamp.moved(&step);
             let span = match part {
                 SPREAD => more.spread - less.spread,
+                NEARNESS => more.nearness - less.nearness,
                 _ => 2.0 * by,
             };
             let [more, less] = [more, less].map(|lamp| self.taken(raster, &lamp, &disc));
@@ -195,26 +195,14 @@ impl System {
     }
 }
 
-/// How far each part is from what was given, and the deviation of that; directions are free within theirs.
-fn prior(lamp: &Lamp, given: &Lamp) -> [(f64, f64); N_PARTS] {
-    let distances = lamp.distance_m.zip(given.distance_m);
-    let farther = distances.map_or(0.0, |(lamp, given)| (lamp / given).ln());
-    let spread = GIVEN_SPREAD * given.spread + GIVEN_POINT;
-    [
-        (0.0, GIVEN_RAD),
-        (0.0, GIVEN_RAD),
-        (farther, GIVEN_DISTANCE),
-        (lamp.spread - given.spread, spread),
-    ]
-}
-
 /// A step no longer than the model is nearly linear for.
-fn bounded(lamp: &Lamp, step: [f64; N_PARTS]) -> [f64; N_PARTS] {
-    let growth = (LONGEST_GROWTH * lamp.spread).max(GIVEN_POINT);
+fn bounded(lamp: &Lamp, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
+    let growth = (LONGEST_GROWTH * lamp.spread).max(LEAST_GROWTH);
+    let nearing = LONGEST_NEARING * lamp.nearness.max(USUAL_NEARNESS / radius_m);
     [
         step[0].clamp(-LONGEST_RAD, LONGEST_RAD),
         step[1].clamp(-LONGEST_RAD, LONGEST_RAD),
-        step[DISTANCE].clamp(-LONGEST_DISTANCE, LONGEST_DISTANCE),
+        step[NEARNESS].clamp(-nearing, nearing),
         step[SPREAD].clamp(-LONGEST_SHRINKING * lamp.spread, growth),
     ]
 }

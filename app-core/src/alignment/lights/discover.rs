@@ -1,0 +1,201 @@
+//! Lights of which nothing is known: found one after the other, each where it explains most of what is left.
+//!
+//! A small picture tells how many there are: point lights all over the hemisphere are tried (`hemisphere`), the best of them
+//! become lamps of any distance and size by Gauss-Newton steps (`step`), and stay as long as there is `evidence`. Larger pictures make
+//! them exact, and tell how exact (`uncertainty`).
+
+use glam::DVec2;
+
+use super::evidence::{doubtful, is_gain, outshines};
+use super::hemisphere::{climb, lamps as hemisphere, peaks};
+use super::lamp::{Lamp, disc};
+use super::leftover::Leftover;
+use super::prior::Prior;
+use super::refine::{Discovered, Refined};
+use super::shading::Shading;
+use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
+use crate::alignment::picture::Pyramid;
+use crate::alignment::raster::Rasterizer;
+use crate::alignment::receivers::{SeenReceiver, up};
+use crate::alignment::report::PoseDeviation;
+use crate::alignment::shape::Shape;
+use crate::frame::NoLight;
+use crate::scene::MAX_LIGHTS;
+
+/// The smallest picture with as many pixels is searched: a toy of a third of its width is some 50 pixels wide.
+const SEARCHED_PIXELS: i32 = 9000;
+/// Directions that are followed for each further lamp; fewer where the best explains as much more.
+const N_STARTS: usize = 3;
+const OF_BEST: f64 = 0.25;
+/// Spreads that are tried there, with as many points over the lamp.
+const SPREADS: [f64; 4] = [0.01, 0.05, 0.15, 0.35];
+const N_SPREAD_POINTS: usize = 12;
+/// A start that explains less of what is left is none.
+const LEAST_EXPLAINED: f64 = 0.01;
+/// Rounds of one more lamp alone, and of all together.
+const N_ALONE: usize = 5;
+const N_TOGETHER: usize = 3;
+/// Most points over a lamp.
+const SEARCH_POINTS: f64 = 16.0;
+/// Larger pictures than the one that was searched.
+const N_LARGER_LEVELS: usize = 2;
+/// Sides of the cells that vertices are merged in, in pixels: while lamps are counted, and then.
+const SEARCH_CELL_PX: f64 = 0.5;
+const CELL_PX: f64 = 0.1;
+/// A lamp's middle alone.
+const POINT: [DVec2; 1] = [DVec2::ZERO];
+
+/// Finds the lamps that a picture shows the shadows of; `pose` is how well the toy's is known.
+pub(super) fn discover(
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    pyramid: &Pyramid,
+    pose: &PoseDeviation,
+) -> Result<Vec<Discovered>, NoLight> {
+    let searched = (0..=Pyramid::SMALLEST).rev().find(|level| {
+        let size_px = pyramid.level(*level).frame.size_px;
+        size_px.x * size_px.y >= SEARCHED_PIXELS
+    });
+    let searched = searched.unwrap_or(0);
+    let px_m = |level: usize| shape.centre.length() / pyramid.level(level).intrinsics.fx_px;
+    let coarse = shape.merged(SEARCH_CELL_PX * px_m(searched));
+    let mut raster = Rasterizer::default();
+    let mut shadows = Shadows::new(&mut raster, (&coarse, receivers), pyramid.level(searched), None);
+    shadows.most_points = SEARCH_POINTS;
+    if shadows.pixels.len() < LEAST_PIXELS {
+        return Err(NoLight::ReceiversUnseen);
+    }
+    let mut lamps = Search::new(shadows, &mut raster).all_lamps();
+    for level in (searched.saturating_sub(N_LARGER_LEVELS)..=searched).rev() {
+        let fine = shape.merged(CELL_PX * px_m(level));
+        let is_last = level == searched.saturating_sub(N_LARGER_LEVELS);
+        let level = pyramid.level(level);
+        let mut refined = Refined {
+            shadows: Shadows::new(&mut raster, (&fine, receivers), level, Some(&lamps)),
+            lamps,
+        };
+        refined.refine(&mut raster);
+        if refined.lamps.is_empty() {
+            break;
+        }
+        if refined.is_wide() || is_last {
+            return Ok(refined.measured(&mut raster, pose));
+        }
+        lamps = refined.lamps;
+    }
+    Err(NoLight::NoneDominant)
+}
+
+/// Counts the lamps, in a small picture.
+struct Search<'a> {
+    shadows: Shadows<'a>,
+    raster: &'a mut Rasterizer,
+    /// Point lights, and what the toy takes of them.
+    candidates: Vec<(Lamp, Vec<f32>)>,
+}
+
+impl<'a> Search<'a> {
+    fn new(shadows: Shadows<'a>, raster: &'a mut Rasterizer) -> Self {
+        let candidates = hemisphere(&shadows.caster).into_iter().map(|lamp| {
+            let taken = shadows.taken(raster, &lamp, &POINT);
+            (lamp, taken)
+        });
+        let candidates = candidates.collect();
+        Self {
+            shadows,
+            raster,
+            candidates,
+        }
+    }
+
+    fn all_lamps(mut self) -> Vec<Lamp> {
+        let mut lamps = Vec::new();
+        while lamps.len() < MAX_LIGHTS {
+            match self.one_more(&lamps) {
+                Some(more) => lamps = more,
+                None => break,
+            }
+        }
+        lamps
+    }
+
+    /// The best lamps that are one more; none where there is no evidence for it.
+    fn one_more(&mut self, lamps: &[Lamp]) -> Option<Vec<Lamp>> {
+        let shading = self.shading(lamps);
+        self.shadows.light(lamps, &shading);
+        let before = self.shading(lamps);
+        let starts = self.starts(lamps);
+        let followed = starts.iter().filter_map(|start| {
+            let more = self.follow(lamps, start)?;
+            let shading = self.shading(&more);
+            let (up, radius_m) = (
+                up(self.shadows.caster.receivers),
+                self.shadows.caster.shape.radius_m,
+            );
+            let is_told = is_gain(lamps.len(), before.loss, shading.loss)
+                && doubtful(&more, &shading, up, radius_m).is_none();
+            is_told.then_some((shading.loss, more))
+        });
+        let best = followed.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, more)| more)
+    }
+
+    /// One more lamp from a start, first alone and then with the others; none where it is part of the surroundings.
+    fn follow(&mut self, lamps: &[Lamp], start: &Lamp) -> Option<Vec<Lamp>> {
+        let radius_m = self.shadows.caster.shape.radius_m;
+        let mut more = [lamps, &[*start]].concat();
+        let mut priors: Vec<Prior> = lamps.iter().map(Prior::held).collect();
+        priors.push(Prior::free(start, radius_m));
+        self.shadows
+            .rounds(self.raster, (&mut more, &priors), (N_ALONE, ROBUST_FAR))?;
+        let shading = self.shading(&more);
+        if !outshines(&more, lamps.len(), &shading, up(self.shadows.caster.receivers)) {
+            return None;
+        }
+        if !lamps.is_empty() {
+            let priors: Vec<Prior> = more.iter().map(|lamp| Prior::free(lamp, radius_m)).collect();
+            self.shadows
+                .rounds(self.raster, (&mut more, &priors), (N_TOGETHER, ROBUST_FAR))?;
+        }
+        Some(more)
+    }
+
+    fn shading(&mut self, lamps: &[Lamp]) -> Shading {
+        self.shadows.shading(self.raster, lamps, ROBUST_FAR)
+    }
+
+    /// Lamps that explain most of what is left.
+    fn starts(&mut self, lamps: &[Lamp]) -> Vec<Lamp> {
+        let Self {
+            shadows,
+            raster,
+            candidates,
+        } = self;
+        let taken = shadows.taken_of_all(raster, lamps);
+        let shaded = shadows.shaded(&taken);
+        let shading = shaded.fit(shadows.caster.receivers.len(), ROBUST_FAR);
+        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
+        let scores: Vec<f64> = candidates
+            .iter()
+            .map(|(_, taken)| leftover.explained(taken))
+            .collect();
+        let tried: Vec<Lamp> = candidates.iter().map(|(lamp, _)| *lamp).collect();
+        let mut explained =
+            |lamp: &Lamp, points: &[DVec2]| leftover.explained(&shadows.taken(raster, lamp, points));
+        let points = disc(N_SPREAD_POINTS);
+        let climbed = peaks(&tried, &scores).into_iter().take(N_STARTS).map(|peak| {
+            let (score, lamp) = climb(&peak, |lamp| explained(lamp, &POINT));
+            SPREADS.into_iter().fold((score, lamp), |best, spread| {
+                let wide = Lamp { spread, ..lamp };
+                let score = explained(&wide, &points);
+                if score > best.0 { (score, wide) } else { best }
+            })
+        });
+        let mut climbed: Vec<(f64, Lamp)> = climbed.collect();
+        climbed.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let most = climbed.first().map_or(0.0, |(score, _)| *score);
+        let least = LEAST_EXPLAINED.max(OF_BEST * most);
+        let followed = climbed.into_iter().filter(|(score, _)| *score >= least);
+        followed.map(|(_, lamp)| lamp).collect()
+    }
+}
