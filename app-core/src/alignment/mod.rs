@@ -36,8 +36,8 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use crate::frame::FrameInput;
 use crate::frame::warning::Warning;
+use crate::frame::{FrameInput, NoLight};
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
@@ -45,8 +45,8 @@ use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
 pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, NoLight,
-    PoseAlignment, PoseDeviation,
+    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, PoseAlignment,
+    PoseDeviation,
 };
 
 /// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.

@@ -7,10 +7,10 @@ use glam::{DMat4, DVec3};
 use super::lights::FoundLight;
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
-use super::report::{DiscoveredLight, LightAlignment, NoLight, PoseAlignment, PoseDeviation};
+use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
-use crate::frame::FrameInput;
+use crate::frame::{FrameInput, NoLight};
 use crate::scene::{Light, Scene, check};
 use crate::toy::ToyError;
 

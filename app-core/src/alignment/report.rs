@@ -1,9 +1,8 @@
 //! What alignment found, and what it did with it.
 
-use std::fmt;
-
 use glam::DVec3;
 
+use crate::frame::NoLight;
 use crate::scene::Light;
 
 /// What was aligned in a frame.
@@ -127,26 +126,4 @@ pub struct LightDeviation {
     pub nearness_per_m: f64,
     /// Of half the angle that it fills, in radians.
     pub angular_radius_rad: f64,
-}
-
-/// Why no light was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum NoLight {
-    /// The toy's pose is not known well enough.
-    PoseUnknown,
-    /// Too little of the receivers is seen beside the toy.
-    ReceiversUnseen,
-    /// No light explains enough of the picture: it comes from all around, or too little of a shadow is seen.
-    NoneDominant,
-}
-
-impl fmt::Display for NoLight {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::PoseUnknown => "the toy's pose is not known well enough",
-            Self::ReceiversUnseen => "too little of the receivers is seen beside the toy",
-            Self::NoneDominant => "none stands out of the surroundings, or too little of its shadow is seen",
-        })
-    }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod input;
 pub(crate) mod mismatch;
+pub(crate) mod no_light;
 pub(crate) mod report;
 pub(crate) mod warning;
 
@@ -10,5 +11,6 @@ pub use crate::gpu::pass_run::{PassRun, PassTime, Path};
 pub use crate::plan::LeftOut;
 pub use input::FrameInput;
 pub use mismatch::Mismatch;
+pub use no_light::NoLight;
 pub use report::FrameReport;
 pub use warning::{Outlier, UnseenShadow, Warning};

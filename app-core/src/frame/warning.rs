@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::alignment::NoLight;
+use super::no_light::NoLight;
 use crate::frame::mismatch::Mismatch;
 use crate::words::Listed;
 
