@@ -6,8 +6,8 @@
 
 use std::sync::{Arc, LazyLock};
 
-use app_core::alignment::{Aligner, Alignment, DiscoveredLight, NoLight};
-use app_core::frame::{FrameInput, Warning};
+use app_core::alignment::{Aligner, Alignment, DiscoveredLight};
+use app_core::frame::{FrameInput, NoLight, Warning};
 use app_core::scene::Scene;
 use app_core::session::{Capture, Session};
 use glam::DVec3;
