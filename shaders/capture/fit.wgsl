@@ -146,6 +146,7 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
     eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i];
   }
   let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
+  // A clipped toy is at least as bright, where nothing else tells how it is lit.
   eq.weight = evidence_of(f, f)[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
   return eq;

@@ -18,7 +18,7 @@ const CAUCHY_SCALE: f32 = 0.03;
 struct Sums {
   product: vec3f,
   energy: vec3f,
-  // Number of usable points, outliers such as a hand included.
+  // Points by their evidence, outliers such as a hand included.
   n_points: f32,
 }
 
@@ -38,12 +38,12 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   // At the pixel's centre, where the visibilities were sampled.
   let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
-  let usable = seen * evidence_of(f, b.rgb);
-  let weight = usable / (1.0 + relative);
+  let evidence = seen * evidence_of(f, b.rgb);
+  let weight = evidence / (1.0 + relative);
   return Sums(
     sums.product + weight * b.rgb * e,
     sums.energy + weight * b.rgb * b.rgb,
-    sums.n_points + dot(usable, vec3f(1.0 / 3.0)),
+    sums.n_points + dot(evidence, vec3f(1.0 / 3.0)),
   );
 }
 

@@ -63,9 +63,9 @@ impl SeenLight {
             } => {
                 let to = position_in_world - place;
                 Self {
-                    direction_in_world: to.normalize(),
+                    direction_in_world: to.normalize_or(DVec3::Y),
                     distance_m: Some(to.length()),
-                    angular_radius_rad: (radius_m / to.length()).atan(),
+                    angular_radius_rad: (radius_m / to.length()).min(1.0).asin(),
                 }
             }
             Light::Directional {
@@ -140,6 +140,13 @@ impl Alignments {
         scene
     }
 
+    /// Lights that the core is given with the last frame.
+    #[must_use]
+    pub fn n_lights(&self, given: &Scene) -> usize {
+        let found = self.found.last().and_then(|last| last.alignment.lights.as_ref());
+        found.map_or(self.lights.listed(given).len(), |lights| lights.len())
+    }
+
     /// Plates whose camera was corrected, by their index.
     #[must_use]
     pub fn moved_plates(&self) -> &[(usize, Camera)] {
@@ -172,6 +179,14 @@ fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {
 }
 
 impl Lights {
+    /// Those of a scene's list that are not put aside.
+    fn listed(self, scene: &Scene) -> &[Light] {
+        match self {
+            Self::Given => &scene.lights,
+            Self::Found => &[],
+        }
+    }
+
     fn input(self, frame: &SessionFrame) -> FrameInput {
         let input = FrameInput::from(frame);
         match self {

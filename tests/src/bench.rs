@@ -38,7 +38,7 @@ pub struct Options {
     pub frames: Option<Range<usize>>,
     /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
     pub with_exact: bool,
-    /// Whether toy and lights are first aligned by the pictures; with exact visibility they never are.
+    /// Whether cameras, toy and lights are first aligned by the pictures; with exact visibility they never are.
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,

@@ -38,7 +38,7 @@ pub struct Options {
     ///
     /// One preset writes its pictures and report right there, several each into a folder of its name.
     pub out: Option<PathBuf>,
-    /// Whether toy and lights are first aligned by the pictures.
+    /// Whether cameras, toy and lights are first aligned by the pictures.
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
@@ -239,7 +239,7 @@ impl Run<'_> {
             fit: self
                 .core
                 .read_fit()?
-                .map(|fit| FitEntry::new(&fit, scene.lights.len())),
+                .map(|fit| FitEntry::new(&fit, self.alignments.n_lights(scene))),
             frames,
         };
         if let Some(out) = &self.out {

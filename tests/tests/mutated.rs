@@ -187,6 +187,29 @@ proptest! {
     }
 }
 
+/// A scale whose square is no number of full precision any more.
+#[test]
+fn a_toy_that_is_flattened_to_nothing_has_unit_normals() {
+    let toy = Toy::from_glb("toy.glb", TOY).unwrap();
+    for scale in [1e-150, 1.5597805497951474e-161, 5e-324] {
+        let flattened = Trs {
+            translation: DVec3::ZERO,
+            rotation: DQuat::from_xyzw(0.0, 1.0, 0.0, 1.0),
+            scale: DVec3::new(0.0, 0.0, scale),
+        };
+        let pose = NodePose {
+            parent_from_node: ["body", "a", "b"]
+                .map(|name| (toy.find_node(name).unwrap(), flattened))
+                .into(),
+            morph_weights: Vec::new(),
+        };
+        assert!(
+            fuzz::pose(&toy, &Pose::Nodes(Arc::new(pose)), &DMat4::IDENTITY),
+            "{scale}"
+        );
+    }
+}
+
 /// The seeds themselves are accepted: mutations of files that are refused anyway would prove nothing.
 #[test]
 fn the_seeds_are_good() {

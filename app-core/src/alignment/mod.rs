@@ -49,6 +49,8 @@ pub use report::{
     PoseDeviation,
 };
 
+/// Each plate takes as long as a frame; more than so many stay as they are given.
+const MOST_ALIGNED_PLATES: usize = 32;
 /// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
 ///
 /// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
@@ -144,9 +146,10 @@ impl Aligner {
         &self.scene
     }
 
-    /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects both where the picture is explained better by more than
-    /// noise and the model's own errors do: the loss of the outline must halve, that of the shadows must fall by a
-    /// twenty-fifth and a light move by enough to show.
+    /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
+    /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
+    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and a light move by enough to
+    /// show. Where the picture shows the toy nowhere near, it is where the input says.
     ///
     /// # Errors
     /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
@@ -231,17 +234,26 @@ impl Aligner {
         Ok(AlignedLights::new(given, found))
     }
 
-    /// Corrects the plates' cameras, each against those before it, once.
+    /// Corrects the cameras of the first plates, each against those before it, once.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
             return;
         }
         let mut aligned: Vec<Plate> = Vec::new();
-        for plate in self.scene.plates.clone() {
+        for plate in self
+            .scene
+            .plates
+            .iter()
+            .take(MOST_ALIGNED_PLATES)
+            .cloned()
+            .collect::<Vec<_>>()
+        {
             let (camera, _) = self.camera_of(&plate.image, &plate.camera, &aligned);
             aligned.push(Plate { camera, ..plate });
         }
-        self.scene.plates = aligned;
+        for (plate, aligned) in self.scene.plates.iter_mut().zip(aligned) {
+            *plate = aligned;
+        }
     }
 
     /// The camera of a picture, by the plates: as given, where it is not corrected.

@@ -94,7 +94,7 @@ pub struct LightAlignment {
     pub turned_rad: f64,
     /// Found distance over the given; 1 for a directional light.
     pub distance_ratio: f64,
-    /// Found radius over distance, over the same as given; none for a point light.
+    /// Tangent of the angular radius as found, over that as given; none for a point light.
     pub size_ratio: Option<f64>,
     /// One deviation of the direction, in radians, by noise alone.
     pub deviation_rad: f64,

@@ -10,7 +10,7 @@ use crate::words::Listed;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// No light is listed, and none is estimated: the camera frame passes through.
+    /// No light is listed, and none was found: the camera frame passes through.
     NoLight,
     /// There is no plate, and the preset cannot do without: the camera frame passes through.
     NoPlate,
@@ -80,7 +80,7 @@ pub enum Warning {
         /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
         outline_px: f64,
     },
-    /// No light is listed, and none was found by its shadow.
+    /// None was found by the toy's shadow.
     LightNotFound {
         /// Why.
         reason: NoLight,
@@ -90,7 +90,7 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoLight => f.write_str("no light is listed: the camera frame passes through"),
+            Self::NoLight => f.write_str("no light is known: the camera frame passes through"),
             Self::NoPlate => {
                 f.write_str("there is no plate, which this preset needs: the camera frame passes through")
             }
@@ -152,7 +152,7 @@ impl fmt::Display for Warning {
             Self::ToyOutOfPicture => f.write_str(
                 "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose",
             ),
-            Self::LightNotFound { reason } => write!(f, "no light is listed, and none is found by its shadow: {reason}"),
+            Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }

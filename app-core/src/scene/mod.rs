@@ -42,7 +42,7 @@ pub struct Scene {
     pub physical_pose: Pose,
     /// Planes that catch the shadow; at least one, in any order.
     pub receivers: Vec<Receiver>,
-    /// Known lights, unless a frame brings its own. Without any, frames pass through.
+    /// Known lights, unless a frame brings its own. Without any, alignment looks for them; frames pass through where it finds none.
     pub lights: Vec<Light>,
     /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
     pub plates: Vec<Plate>,

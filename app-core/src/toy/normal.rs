@@ -9,17 +9,23 @@ pub(super) fn carried_normal(linear: &DMat3, normal: DVec3) -> Vec3 {
     let [a, b, c] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
     let candidates = [cofactors * normal * handedness(linear), *linear * normal, normal];
-    unit(candidates.into_iter().find_map(DVec3::try_normalize))
+    unit(candidates.into_iter().find_map(direction))
 }
 
 /// The normal of a triangle transformed by `linear`; before, its corners ran counter-clockwise seen from outside.
 pub(super) fn face_normal(linear: &DMat3, [a, b, c]: [DVec3; 3]) -> Vec3 {
-    unit((handedness(linear) * (b - a).cross(c - a)).try_normalize())
+    unit(direction(handedness(linear) * (b - a).cross(c - a)))
 }
 
 /// Minus one for a mirror, which turns triangles around while the outside stays outside.
 fn handedness(linear: &DMat3) -> f64 {
     if linear.determinant() < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// A vector's direction, however short it is: squares of what is shorter than 1e-154 are no longer numbers of full precision.
+fn direction(vector: DVec3) -> Option<DVec3> {
+    let longest = vector.abs().max_element();
+    (vector / longest).try_normalize()
 }
 
 /// Any unit vector serves where the direction vanishes.

@@ -45,9 +45,9 @@ struct Args {
     #[arg(long)]
     exact: bool,
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first"])]
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights"])]
     withheld: bool,
-    /// Take poses and lights as recorded, without aligning them by the pictures
+    /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long)]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows

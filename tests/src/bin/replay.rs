@@ -42,7 +42,7 @@ struct Args {
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Take poses and lights as recorded, without aligning them by the pictures
+    /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long)]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows

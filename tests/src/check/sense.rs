@@ -15,7 +15,7 @@ const CAMERA_M: [f64; 2] = [0.03, 30.0];
 pub(super) fn without(scene: &Scene) -> Vec<String> {
     let mut facts = Vec::new();
     if scene.lights.is_empty() {
-        facts.push("lights: none is listed, so that no shadow is moved".to_owned());
+        facts.push("lights: none is listed, so that they are looked for by the toy's shadow".to_owned());
     }
     if scene.plates.is_empty() {
         facts.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());

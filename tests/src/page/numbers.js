@@ -104,7 +104,7 @@ function showAlignment() {
     + (error.distance_ratio ? `, distance \u00d7 ${error.distance_ratio.toFixed(2)}` : "")
     + (error.size_ratio ? `, angular size \u00d7 ${error.size_ratio.toFixed(2)}` : "") : "";
   discovered.forEach((light, i) => rows.push(row(`light ${i}`, ["found by its shadow",
-    `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${(2 * light.angular_radius_deg).toFixed(2)}\u00b0 wide, direction \u00b1 ${light.direction_deviation_deg.toFixed(2)}\u00b0`,
+    `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${(2 * light.angular_radius_deg).toFixed(2)}\u00b0 wide, direction \u00b1 ${light.direction_deviation_deg?.toFixed(2) ?? "?"}\u00b0`,
     against(light.against_listed)])));
   if (no_light) rows.push(row("lights", ["none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),

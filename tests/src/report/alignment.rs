@@ -37,12 +37,12 @@ pub struct DiscoveredEntry {
     pub angular_radius_deg: f64,
     /// Its part of the light at the toy's foot.
     pub share: f64,
-    /// One deviation of the direction.
-    pub direction_deviation_deg: f64,
+    /// One deviation of the direction; none where nothing tells it, as for those below.
+    pub direction_deviation_deg: Option<f64>,
     /// One deviation of one over the distance.
-    pub nearness_deviation_per_m: f64,
+    pub nearness_deviation_per_m: Option<f64>,
     /// One deviation of the angular radius.
-    pub angular_radius_deviation_deg: f64,
+    pub angular_radius_deviation_deg: Option<f64>,
     /// Against the nearest light of the session's list, where that was put aside.
     pub against_listed: Option<ErrorEntry>,
 }
@@ -143,9 +143,9 @@ impl DiscoveredEntry {
             distance_m: light.distance_m,
             angular_radius_deg: light.angular_radius_rad.to_degrees(),
             share: light.share,
-            direction_deviation_deg: light.deviation.direction_rad.to_degrees(),
-            nearness_deviation_per_m: light.deviation.nearness_per_m,
-            angular_radius_deviation_deg: light.deviation.angular_radius_rad.to_degrees(),
+            direction_deviation_deg: told(light.deviation.direction_rad.to_degrees()),
+            nearness_deviation_per_m: told(light.deviation.nearness_per_m),
+            angular_radius_deviation_deg: told(light.deviation.angular_radius_rad.to_degrees()),
             against_listed: nearest.map(|(index, seen)| ErrorEntry {
                 index,
                 direction_deg: off_rad(seen).to_degrees(),
@@ -199,4 +199,9 @@ impl From<&LightAlignment> for LightEntry {
             deviation_deg: light.deviation_rad.to_degrees(),
         }
     }
+}
+
+/// A deviation that is not without end.
+fn told(deviation: f64) -> Option<f64> {
+    deviation.is_finite().then_some(deviation)
 }

@@ -25,9 +25,12 @@ use step::{Rigid, Search};
 
 /// Plates that a camera is aligned to: those taken nearest to it.
 const N_PLATES: usize = 2;
+/// Pictures whose brightness is remembered: those plates, and the photograph.
+const N_REMEMBERED: usize = N_PLATES + 1;
 /// Most rounds in a level.
 const N_ROUNDS: usize = 15;
-/// Scale of Cauchy's weights, in square roots of linear light: in the largest level, and how much more in each smaller one.
+/// Scale of Cauchy's weights, by which points pull, and of Geman and McClure's loss, which stays the same for all outliers, in
+/// square roots of linear light: in the largest level, and how much more in each smaller one.
 const ROBUST: f64 = 0.04;
 const ROBUST_STEP: f64 = 0.02;
 /// Most points of a plate: in the largest level, and in those where starts are tried.
@@ -90,11 +93,13 @@ impl Finder {
         plates: &[Plate],
         receivers: &[Receiver],
     ) -> Option<Found> {
+        if plates.is_empty() {
+            return None;
+        }
         let near = nearest(plates, camera).into_iter().take(N_PLATES);
         let plates: Vec<(&Plate, Arc<Brightness>)> =
             near.map(|plate| (plate, self.brightness(&plate.image))).collect();
         let photograph = self.brightness(image);
-        // Rounded to 32 bits, which are mostly the same wherever the world's origin is.
         let camera_from_world = camera.world_from_camera.inverse();
         let mut motion = Rigid::default();
         let mut losses = None;
@@ -136,14 +141,16 @@ impl Finder {
     }
 
     fn brightness(&mut self, image: &Arc<Image>) -> Arc<Brightness> {
-        if let Some((_, known)) = self.decoded.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
-            return Arc::clone(known);
-        }
-        let brightness = Arc::new(Brightness::of(image));
-        if self.decoded.len() > N_PLATES {
+        let known = self.decoded.iter().position(|(of, _)| Arc::ptr_eq(of, image));
+        let latest = match known {
+            Some(place) => self.decoded.remove(place),
+            None => (Arc::clone(image), Arc::new(Brightness::of(image))),
+        };
+        let brightness = Arc::clone(&latest.1);
+        self.decoded.push(latest);
+        if self.decoded.len() > N_REMEMBERED {
             self.decoded.remove(0);
         }
-        self.decoded.push((Arc::clone(image), Arc::clone(&brightness)));
         brightness
     }
 }

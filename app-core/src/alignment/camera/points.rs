@@ -31,24 +31,26 @@ pub(super) fn points_of(
         .iter()
         .map(|receiver| SeenReceiver::new(receiver, &plate_camera_from_world))
         .collect();
+    // Rounded to 32 bits, which are mostly the same wherever the world's origin is.
     let camera_from_plate = (*camera_from_world * camera.world_from_camera)
         .as_mat4()
         .as_dmat4();
-    let textured: Vec<IVec2> = places(picture.size_px)
-        .filter(|at| {
-            picture
-                .gradient(*at)
-                .is_some_and(|change| change.length() > LEAST_GRADIENT)
+    let intrinsics = picture.intrinsics(&camera.intrinsics);
+    let is_textured = |at: IVec2| {
+        picture
+            .gradient(at)
+            .is_some_and(|change| change.length() > LEAST_GRADIENT)
+    };
+    let points: Vec<Point> = places(picture.size_px)
+        .filter(|at| is_textured(*at))
+        .filter_map(|at| {
+            let (_, in_plate) = receiver_at(&seen, &intrinsics, at)?;
+            Some(Point {
+                in_camera: camera_from_plate.transform_point3(in_plate),
+                brightness: f64::from(picture.get(at)?),
+            })
         })
         .collect();
-    let stride = textured.len().div_ceil(most).max(1);
-    let intrinsics = picture.intrinsics(&camera.intrinsics);
-    let points = textured.into_iter().step_by(stride).filter_map(|at| {
-        let (_, in_plate) = receiver_at(&seen, &intrinsics, at)?;
-        Some(Point {
-            in_camera: camera_from_plate.transform_point3(in_plate),
-            brightness: f64::from(picture.get(at)?),
-        })
-    });
-    points.collect()
+    let stride = points.len().div_ceil(most).max(1);
+    points.into_iter().step_by(stride).collect()
 }

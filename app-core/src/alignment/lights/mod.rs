@@ -57,7 +57,7 @@ pub(super) struct FoundLight {
     pub(super) turned_rad: f64,
     /// Over the given distance.
     pub(super) distance_ratio: f64,
-    /// Radius over distance, as given.
+    /// Tangent of the angular radius, as given.
     pub(super) given_spread: f64,
     /// As found.
     pub(super) spread: f64,
@@ -93,7 +93,7 @@ pub(super) fn find(
     let mut losses = None;
     let mut deviations_rad = Vec::new();
     for (level, n_rounds, robust) in ROUNDS {
-        let shadows = Shadows::new(
+        let mut shadows = Shadows::new(
             &mut raster,
             (shape, receivers),
             pyramid.level(level),
@@ -102,6 +102,8 @@ pub(super) fn find(
         if shadows.pixels.len() < LEAST_PIXELS {
             return None;
         }
+        let shading = shadows.shading(&mut raster, &lamps, robust);
+        shadows.light(&lamps, &shading);
         for _ in 0..n_rounds {
             deviations_rad = shadows.step(&mut raster, &mut lamps, &priors, robust)?;
         }
@@ -219,7 +221,7 @@ pub(super) fn discover(
             deviation: LightDeviation {
                 direction_rad: across.hypot(along),
                 nearness_per_m,
-                angular_radius_rad: spread,
+                angular_radius_rad: spread / (1.0 + lamp.spread * lamp.spread),
             },
         }
     });

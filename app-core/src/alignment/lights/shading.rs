@@ -1,7 +1,7 @@
 //! The light on the receivers for given shadows: linear in what each lamp and the ambient light give.
 //!
-//! Frame over plate = gain - ambient factor x (1 - A) - sum over lamps of factor x (1 - V), for each receiver and channel:
-//! the additive model of `fit`, without the toy's bounce, which the ambient factor takes up.
+//! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x what the toy takes of it, for each receiver
+//! and channel: the additive model of `fit`, without the toy's bounce, which the ambient factors take up. They rise to a side.
 
 use nalgebra::{SMatrix, SVector};
 

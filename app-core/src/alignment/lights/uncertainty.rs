@@ -223,11 +223,12 @@ fn sandwich<'a>(
     n_parts: usize,
 ) -> Option<DMatrix<f64>> {
     let mut of_lamps = normal.view((0, 0), (n_parts, n_parts)).into_owned();
-    for part in 0..n_parts {
-        // What is not told has no slope.
-        if of_lamps[(part, part)] <= 0.0 {
-            of_lamps[(part, part)] = 1.0;
-        }
+    // What is not told has no slope.
+    let untold: Vec<usize> = (0..n_parts)
+        .filter(|part| of_lamps[(*part, *part)] <= 0.0)
+        .collect();
+    for part in &untold {
+        of_lamps[(*part, *part)] = 1.0;
     }
     let inverse = of_lamps.cholesky()?.inverse();
     let mut spread = DMatrix::<f64>::zeros(n_parts, n_parts);
@@ -239,6 +240,9 @@ fn sandwich<'a>(
     for place in n_parts..normal.ncols() {
         let by_pose = &inverse * normal.view((0, place), (n_parts, 1));
         covariance += &by_pose * by_pose.transpose();
+    }
+    for part in untold {
+        covariance[(part, part)] = f64::INFINITY;
     }
     Some(covariance)
 }

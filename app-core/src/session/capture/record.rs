@@ -51,7 +51,7 @@ pub(super) struct CaptureRecord {
     /// Planes that catch the shadow, in any order.
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub(super) receivers: Vec<ReceiverRecord>,
-    /// Lights whose shadows are moved, in any order. Without any, frames pass through with a warning.
+    /// Lights whose shadows are moved, in any order. Without any, alignment looks for them, or frames pass through.
     #[serde(default)]
     pub(super) lights: Vec<LightRecord>,
     /// Plates: photographs of the place before the toy was put there, in any order. What none shows is estimated, or
