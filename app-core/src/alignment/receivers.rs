@@ -4,6 +4,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Picture, UNKNOWN};
 use super::rectangle::places;
+use crate::geometry::nearest_receivers::nearest_receivers;
 use crate::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 
 /// Cameras whose matrices differ by less are one.
@@ -20,14 +21,9 @@ pub(super) struct SeenReceiver {
 impl SeenReceiver {
     /// The receivers nearest to the toy, no more than shadows are moved on.
     pub(super) fn near(receivers: &[Receiver], toy_in_world: DVec3, camera_from_world: &DMat4) -> Vec<Self> {
-        let away_m = |receiver: &Receiver| {
-            let toy = receiver.world_from_plane.inverse().transform_point3(toy_in_world);
-            toy.y.abs()
-        };
-        let mut receivers: Vec<&Receiver> = receivers.iter().collect();
-        receivers.sort_by(|a, b| away_m(a).total_cmp(&away_m(b)));
-        let seen = receivers.iter().take(MAX_RECEIVERS);
-        seen.map(|receiver| Self::new(receiver, camera_from_world))
+        let nearest = nearest_receivers(receivers, &[toy_in_world]);
+        let seen = nearest.into_iter().take(MAX_RECEIVERS);
+        seen.map(|index| Self::new(&receivers[index], camera_from_world))
             .collect()
     }
 

@@ -8,6 +8,7 @@ pub(crate) mod displacement;
 pub(crate) mod extent;
 pub(crate) mod inside;
 pub(crate) mod light_points;
+pub(crate) mod nearest_receivers;
 pub(crate) mod outline;
 pub(crate) mod reach;
 pub(crate) mod rect;

@@ -1,12 +1,11 @@
 //! Selects the receivers and lights that a preset can use; the others become warnings that stand for all frames.
 
-use std::cmp::Ordering;
-
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DMat4, DVec3};
 
 use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::light_points::light_in_plane;
+use crate::geometry::nearest_receivers::nearest_receivers;
 use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
 
 /// Supported receivers.
@@ -22,16 +21,7 @@ pub(crate) struct Receivers {
 impl Receivers {
     /// Selects for a toy around `toy_in_world`, within a box of `corners_in_world`. In which order the receivers are listed makes no difference.
     pub(crate) fn new(receivers: &[Receiver], toy_in_world: DVec3, corners_in_world: &[DVec3]) -> Self {
-        let mut indices: Vec<usize> = (0..receivers.len()).collect();
-        indices.sort_by(|a, b| {
-            let [a, b] = [a, b].map(|index| rank(&receivers[*index], corners_in_world));
-            let unequal = a
-                .iter()
-                .zip(&b)
-                .map(|(a, b)| a.total_cmp(b))
-                .find(|order| order.is_ne());
-            unequal.unwrap_or(Ordering::Equal)
-        });
+        let mut indices = nearest_receivers(receivers, corners_in_world);
         let left_out: Vec<usize> = indices.drain(MAX_RECEIVERS.min(receivers.len())..).collect();
         let anchored = indices
             .iter()
@@ -47,26 +37,6 @@ impl Receivers {
             indices,
         }
     }
-}
-
-/// What receivers are ordered by: how far the toy is from it, in metres, and of several as far something that tells them apart.
-fn rank(receiver: &Receiver, corners_in_world: &[DVec3]) -> Vec<f64> {
-    let plane_from_world = receiver.world_from_plane.inverse();
-    let distance_m = |corner: &DVec3| {
-        let at = plane_from_world.transform_point3(*corner);
-        let beyond = DVec2::new(at.x, at.z).abs() - receiver.half_extent_m;
-        beyond.max(DVec2::ZERO).extend(at.y).length()
-    };
-    let nearest_m = corners_in_world
-        .iter()
-        .map(distance_m)
-        .fold(f64::INFINITY, f64::min);
-    let own = receiver.world_from_plane.to_cols_array();
-    [nearest_m]
-        .into_iter()
-        .chain(own)
-        .chain(receiver.half_extent_m.to_array())
-        .collect()
 }
 
 /// Supported lights.

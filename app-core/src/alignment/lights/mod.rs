@@ -1,8 +1,9 @@
 //! The lights, by the shadows of the toy on the receivers.
 //!
-//! Where none are listed they are looked for (`discover`). Each light's direction, distance and size move the shadow that the mesh
-//! predicts (`cast`) until frame over plate shows it. What the lights give is linear and fitted along (`shading`): variable projection. Directions around the given one are
-//! tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`).
+//! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
+//! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
+//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed they are looked for
+//! all over the hemisphere (`discover`).
 
 mod backdrop;
 mod cast;

@@ -63,6 +63,11 @@ impl Prior {
         }
     }
 
+    /// Whether the lamp was given at a distance.
+    pub(super) fn is_near(&self) -> bool {
+        self.lamp.nearness > 0.0
+    }
+
     /// Whether a part stays as it is.
     pub(super) fn holds(&self, part: usize) -> bool {
         self.deviations[part] <= 0.0

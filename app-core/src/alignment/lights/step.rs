@@ -58,7 +58,7 @@ impl Shadows<'_> {
         for (index, lamp) in lamps.iter_mut().enumerate() {
             let part = |part: usize| step[N_PARTS * index + part];
             let step = [part(0), part(1), part(2), part(3)];
-            *lamp = lamp.moved(&bounded(lamp, step, self.caster.shape.radius_m));
+            *lamp = lamp.moved(&bounded(lamp, &priors[index], step, self.caster.shape.radius_m));
         }
         let deviations = (0..lamps.len()).map(|index| {
             let variance = |part: usize| covariance[(N_PARTS * index + part, N_PARTS * index + part)];
@@ -195,14 +195,19 @@ impl System {
     }
 }
 
-/// A step no longer than the model is nearly linear for.
-fn bounded(lamp: &Lamp, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
+/// A step no longer than the model is nearly linear for; a lamp that is known to be near stays so.
+fn bounded(lamp: &Lamp, prior: &Prior, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
     let growth = (LONGEST_GROWTH * lamp.spread).max(LEAST_GROWTH);
     let nearing = LONGEST_NEARING * lamp.nearness.max(USUAL_NEARNESS / radius_m);
+    let receding = if prior.is_near() {
+        0.5 * lamp.nearness
+    } else {
+        nearing
+    };
     [
         step[0].clamp(-LONGEST_RAD, LONGEST_RAD),
         step[1].clamp(-LONGEST_RAD, LONGEST_RAD),
-        step[NEARNESS].clamp(-nearing, nearing),
+        step[NEARNESS].clamp(-receding.min(nearing), nearing),
         step[SPREAD].clamp(-LONGEST_SHRINKING * lamp.spread, growth),
     ]
 }
