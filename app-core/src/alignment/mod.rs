@@ -186,8 +186,13 @@ impl Aligner {
 
     /// Camera and pose in a view that is not known.
     fn view(&mut self, input: &FrameInput) -> Result<AlignedView, ToyError> {
-        let plates = self.scene.plates.clone();
-        let (camera, camera_report) = self.camera_of(&input.image, &input.camera, &plates);
+        let Scene {
+            plates, receivers, ..
+        } = &self.scene;
+        let found = self
+            .cameras
+            .find((&input.image, &input.camera), plates, receivers);
+        let (camera, camera_report) = corrected(&input.camera, found);
         let seen = FrameInput {
             camera,
             ..input.clone()
@@ -241,41 +246,12 @@ impl Aligner {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
             return;
         }
-        let mut aligned: Vec<Plate> = Vec::new();
-        for plate in self
-            .scene
-            .plates
-            .iter()
-            .take(MOST_ALIGNED_PLATES)
-            .cloned()
-            .collect::<Vec<_>>()
-        {
-            let (camera, _) = self.camera_of(&plate.image, &plate.camera, &aligned);
-            aligned.push(Plate { camera, ..plate });
+        for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
+            let (aligned, rest) = self.scene.plates.split_at_mut(index);
+            let Plate { image, camera } = &mut rest[0];
+            let found = self.cameras.find((image, camera), aligned, &self.scene.receivers);
+            (*camera, _) = corrected(camera, found);
         }
-        for (plate, aligned) in self.scene.plates.iter_mut().zip(aligned) {
-            *plate = aligned;
-        }
-    }
-
-    /// The camera of a picture, by the plates: as given, where it is not corrected.
-    fn camera_of(
-        &mut self,
-        image: &Arc<Image>,
-        given: &Camera,
-        plates: &[Plate],
-    ) -> (Camera, Option<CameraAlignment>) {
-        let found = self.cameras.find((image, given), plates, &self.scene.receivers);
-        let Some(found) = found else {
-            return (*given, None);
-        };
-        let corrected = Camera {
-            world_from_camera: found.world_from_camera,
-            ..*given
-        };
-        let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
-        let report = found.report(is_applied);
-        (if is_applied { corrected } else { *given }, Some(report))
     }
 
     fn aligned(&self, input: &FrameInput) -> Alignment {
@@ -348,4 +324,18 @@ impl AlignedLights {
     fn are_found(&self) -> bool {
         self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
+}
+
+/// A camera as found: as given, where that explains the picture no better.
+fn corrected(given: &Camera, found: Option<camera::Found>) -> (Camera, Option<CameraAlignment>) {
+    let Some(found) = found else {
+        return (*given, None);
+    };
+    let corrected = Camera {
+        world_from_camera: found.world_from_camera,
+        ..*given
+    };
+    let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
+    let camera = if is_applied { corrected } else { *given };
+    (camera, Some(found.report(is_applied)))
 }

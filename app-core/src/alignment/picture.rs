@@ -138,14 +138,8 @@ impl Pyramid {
 
 impl Level {
     fn halved(&self) -> Self {
-        let k = &self.intrinsics;
         Self {
-            intrinsics: Intrinsics {
-                fx_px: 0.5 * k.fx_px,
-                fy_px: 0.5 * k.fy_px,
-                cx_px: 0.5 * k.cx_px,
-                cy_px: 0.5 * k.cy_px,
-            },
+            intrinsics: self.intrinsics.scaled(0.5),
             frame: self.frame.halved(),
             plate: self.plate.as_ref().map(Picture::halved),
         }

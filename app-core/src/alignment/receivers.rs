@@ -102,15 +102,10 @@ pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &C
 
 fn carried(picture: &Picture, from: &Camera, receivers: &[SeenReceiver], to: &Camera) -> Picture {
     let plate_camera_from_camera = from.world_from_camera.inverse() * to.world_from_camera;
-    let k = &from.intrinsics;
     let color = |at: IVec2| {
         let (_, point) = receiver_at(receivers, &to.intrinsics, at)?;
         let point = plate_camera_from_camera.transform_point3(point);
-        let at_px = DVec2::new(
-            k.cx_px - k.fx_px * point.x / point.z,
-            k.cy_px + k.fy_px * point.y / point.z,
-        );
-        (point.z < 0.0).then(|| picture.sample(at_px)).flatten()
+        picture.sample(from.intrinsics.pixel_of(point)?)
     };
     let pixels = places(picture.size_px).map(|at| color(at).unwrap_or(UNKNOWN));
     Picture::of(picture.size_px, pixels.collect())

@@ -143,6 +143,30 @@ pub struct Intrinsics {
     pub cy_px: f64,
 }
 
+impl Intrinsics {
+    /// The same projection, in pixels of a picture that is `factor` times as large.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self {
+            fx_px: factor * self.fx_px,
+            fy_px: factor * self.fy_px,
+            cx_px: factor * self.cx_px,
+            cy_px: factor * self.cy_px,
+        }
+    }
+
+    /// Where a point in camera space is seen, in pixels; none behind the camera.
+    #[must_use]
+    pub fn pixel_of(&self, point: DVec3) -> Option<DVec2> {
+        let depth_m = -point.z;
+        (depth_m > 0.0).then(|| {
+            DVec2::new(
+                self.cx_px + self.fx_px * point.x / depth_m,
+                self.cy_px - self.fy_px * point.y / depth_m,
+            )
+        })
+    }
+}
+
 /// A pinhole camera in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -156,9 +156,8 @@ impl Findings {
 
 /// Where a point of the world is in a camera's picture; none behind the camera.
 fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
-    let k = &camera.intrinsics;
     let at = camera.world_from_camera.inverse().transform_point3(world);
-    (at.z < 0.0).then(|| DVec2::new(k.cx_px - k.fx_px * at.x / at.z, k.cy_px + k.fy_px * at.y / at.z))
+    camera.intrinsics.pixel_of(at)
 }
 
 fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {

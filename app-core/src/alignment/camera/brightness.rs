@@ -90,12 +90,7 @@ impl Plane {
 
     /// The picture's projection, in pixels of this level.
     pub(super) fn intrinsics(&self, k: &Intrinsics) -> Intrinsics {
-        Intrinsics {
-            fx_px: self.scale * k.fx_px,
-            fy_px: self.scale * k.fy_px,
-            cx_px: self.scale * k.cx_px,
-            cy_px: self.scale * k.cy_px,
-        }
+        k.scaled(self.scale)
     }
 
     /// A pixel; none outside the picture.

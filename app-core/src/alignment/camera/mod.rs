@@ -101,8 +101,7 @@ impl Finder {
             near.map(|plate| (plate, self.brightness(&plate.image))).collect();
         let photograph = self.brightness(image);
         let camera_from_world = camera.world_from_camera.inverse();
-        let mut motion = Rigid::default();
-        let mut losses = None;
+        let mut motion = None;
         for (level, picture) in photograph.levels().iter().enumerate().rev() {
             let most = if level == 0 {
                 MOST_POINTS
@@ -122,22 +121,23 @@ impl Finder {
             if level == 0 && search.n_points() < LEAST_POINTS {
                 return None;
             }
-            motion = match losses {
+            let found = match motion {
                 None => search.run_from(&search.starts(), N_ROUNDS),
-                Some(_) => search.run(motion, N_ROUNDS),
+                Some(motion) => search.run(motion, N_ROUNDS),
             };
-            let given = search.loss(&Rigid::default());
-            losses = Some((given, search.loss(&motion), search.moved_px(&motion)));
+            if level == 0 {
+                return Some(Found {
+                    // Points are moved within camera space; the camera moves the other way.
+                    world_from_camera: camera.world_from_camera * found.matrix().inverse(),
+                    moved_px: search.moved_px(&found),
+                    moved_m: found.moved_m(),
+                    turned_rad: found.turned_rad(),
+                    losses: [Rigid::default(), found].map(|motion| search.loss(&motion)),
+                });
+            }
+            motion = Some(found);
         }
-        let (given, found, moved_px) = losses?;
-        Some(Found {
-            // Points are moved within camera space; the camera moves the other way.
-            world_from_camera: camera.world_from_camera * motion.matrix().inverse(),
-            moved_px,
-            moved_m: motion.moved_m(),
-            turned_rad: motion.turned_rad(),
-            losses: [given, found],
-        })
+        None
     }
 
     fn brightness(&mut self, image: &Arc<Image>) -> Arc<Brightness> {

@@ -178,22 +178,11 @@ impl<'a> Search<'a> {
     fn between_px(&self, a: &Rigid, b: &Rigid) -> f64 {
         let points = self.templates.iter().flatten();
         let moved = points.filter_map(|point| {
-            let [a, b] = [a, b].map(|motion| self.project(motion.apply(point.in_camera)));
+            let [a, b] = [a, b].map(|motion| self.intrinsics.pixel_of(motion.apply(point.in_camera)));
             Some((b? - a?).length_squared())
         });
         let (sum, n) = moved.fold((0.0, 0.0), |(sum, n), moved| (sum + moved, n + 1.0));
         if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
-    }
-
-    fn project(&self, point: DVec3) -> Option<DVec2> {
-        let k = &self.intrinsics;
-        let depth_m = -point.z;
-        (depth_m > 0.0).then(|| {
-            DVec2::new(
-                k.cx_px + k.fx_px * point.x / depth_m,
-                k.cy_px - k.fy_px * point.y / depth_m,
-            )
-        })
     }
 
     fn met(&self, motion: &Rigid, stride: usize) -> Vec<Met> {
@@ -201,7 +190,7 @@ impl<'a> Search<'a> {
         let points = templates.flat_map(|(index, points)| points.iter().map(move |point| (index, point)));
         let met = points.step_by(stride).filter_map(|(template, point)| {
             let moved = motion.apply(point.in_camera);
-            let (value, gradient) = self.photograph.sample(self.project(moved)?)?;
+            let (value, gradient) = self.photograph.sample(self.intrinsics.pixel_of(moved)?)?;
             Some(Met {
                 template,
                 brightness: [point.brightness, value],

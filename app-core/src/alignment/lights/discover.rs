@@ -132,8 +132,8 @@ impl<'a> Search<'a> {
                 up(self.shadows.caster.receivers),
                 self.shadows.caster.shape.radius_m,
             );
-            let is_told = is_gain(lamps.len(), before.loss, shading.loss)
-                && doubtful(&more, &shading, up, radius_m).is_none();
+            let is_told =
+                is_gain(before.loss, shading.loss) && doubtful(&more, &shading, up, radius_m).is_none();
             is_told.then_some((shading.loss, more))
         });
         let best = followed.min_by(|a, b| a.0.total_cmp(&b.0));

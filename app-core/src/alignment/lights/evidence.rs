@@ -22,17 +22,15 @@ const MOST_OF_ALL: f64 = 1.05;
 /// No lamp is lower, as a sine; its share is of little light.
 const LOWEST: f64 = 0.1;
 
-/// The part of the loss that the first lamp explains, and any further one of what is then left.
+/// The part of the loss that a lamp explains, of what those before it leave.
 ///
 /// Measured: uneven skies fell by .6, but to what does not outshine them; bulbs of a share of .06 by .3, of more by .5 to .99, what is
 /// none by .05 to .24.
-const FIRST_GAIN: f64 = 0.2;
-const NEXT_GAIN: f64 = 0.2;
+const GAIN: f64 = 0.2;
 
 /// Whether one more lamp explains enough.
-pub(super) fn is_gain(n_before: usize, loss_before: f64, loss: f64) -> bool {
-    let gain = if n_before == 0 { FIRST_GAIN } else { NEXT_GAIN };
-    loss < (1.0 - gain) * loss_before
+pub(super) fn is_gain(loss_before: f64, loss: f64) -> bool {
+    loss < (1.0 - GAIN) * loss_before
 }
 
 /// Whether a lamp shines out of its surroundings; `up` is the normal of the receiver nearest to the toy.
