@@ -140,6 +140,19 @@ impl Alignments {
         scene
     }
 
+    /// The scene from a frame on: its plates in another light, once lights were moved.
+    #[must_use]
+    pub fn relit_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
+        let plates = |index: usize| self.of(index)?.alignment.relit_plates.as_ref();
+        let now = plates(index)?;
+        let before = index.checked_sub(1).and_then(plates);
+        let is_new = before.is_none_or(|before| !Arc::ptr_eq(before, now));
+        is_new.then(|| Scene {
+            plates: now.to_vec(),
+            ..given.clone()
+        })
+    }
+
     /// Lights that the core is given with the last frame.
     #[must_use]
     pub fn n_lights(&self, given: &Scene) -> usize {

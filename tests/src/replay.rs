@@ -224,6 +224,9 @@ impl Run<'_> {
         progress.start(&format!("{} with {preset}", scene.name), indices.len());
         let mut frames = Vec::with_capacity(indices.len());
         for index in indices {
+            if let Some(relit) = self.alignments.relit_scene(scene, index) {
+                self.core.set_scene(relit, preset)?;
+            }
             let entry = self.frame(index)?;
             progress.frame(&entry);
             frames.push(entry);

@@ -23,6 +23,7 @@
 
 mod camera;
 mod error;
+mod kept_lights;
 mod lights;
 mod outlines;
 mod photograph;
@@ -42,7 +43,9 @@ use crate::frame::warning::Warning;
 use crate::frame::{FrameInput, NoLight};
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
-use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
+use kept_lights::KeptLights;
+use lights::Watched;
+use photograph::{MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
 pub use outlines::Outlines;
@@ -67,6 +70,9 @@ pub struct Alignment {
     pub world_from_object: DMat4,
     /// The lights; none where those that were given stay.
     pub lights: Option<Arc<[Light]>>,
+    /// Plates in the light of this frame, once it is another than they were taken in, which [`Aligner::scene`] has from then on: the core
+    /// is to be given that scene anew. Whoever sees other plates here than with the frame before does so.
+    pub relit_plates: Option<Arc<[Plate]>>,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -90,7 +96,8 @@ impl Alignment {
 ///
 /// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
 /// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
-/// the first frame that shows their shadow, and kept while the listed ones stay as they are. Where none are listed they are looked
+/// the first frame that shows their shadow, and kept while that is where they cast it. Where it is elsewhere, a lamp was moved or
+/// switched on: lights are found anew, and plates are taken as they would be in the new light. Where none are listed they are looked
 /// for all over the hemisphere.
 #[derive(Debug)]
 pub struct Aligner {
@@ -100,11 +107,28 @@ pub struct Aligner {
     view: Option<AlignedView>,
     /// The pose in the latest view that showed where the toy is.
     held: Option<DMat4>,
-    lights: Option<AlignedLights>,
+    lights: Option<KeptLights>,
+    /// The scene's plates, where they are in another light than they were taken in.
+    relit_plates: Option<Arc<[Plate]>>,
+}
+
+/// A view with its photograph.
+struct Seen {
+    view: AlignedView,
+    photograph: Photograph,
+    /// The frame's, with the camera and the pose that were found.
+    input: FrameInput,
+}
+
+/// Lights that were moved or switched on after the plates were taken.
+struct Relit {
+    lights: KeptLights,
+    /// In their light.
+    plates: Arc<[Plate]>,
 }
 
 /// Camera and pose in the latest view.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AlignedView {
     image: Arc<Image>,
     given_camera: Camera,
@@ -113,19 +137,6 @@ struct AlignedView {
     camera_report: Option<CameraAlignment>,
     world_from_object: DMat4,
     report: Option<PoseAlignment>,
-}
-
-/// Lights that were looked for.
-#[derive(Debug)]
-struct AlignedLights {
-    given: Arc<[Light]>,
-    /// None where those that were given stay.
-    applied: Option<Arc<[Light]>>,
-    /// Empty where they were not found in the latest view.
-    report: Vec<LightAlignment>,
-    errors: Option<[f64; 2]>,
-    /// None where lights were given.
-    discovered: Option<Discovered>,
 }
 
 impl Aligner {
@@ -139,6 +150,7 @@ impl Aligner {
             view: None,
             held: None,
             lights: None,
+            relit_plates: None,
         }
     }
 
@@ -162,30 +174,30 @@ impl Aligner {
             None => self.scene.lights.as_slice().into(),
         };
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
-        // Other lights than those that were found; and those that were not found are looked for in each view.
-        self.lights = self
-            .lights
-            .take()
-            .filter(|lights| lights.given == given && (is_view_known || lights.are_found()));
-        if !is_view_known || self.lights.is_none() {
-            self.align_plates();
-            let view = match self.view.take().filter(|_| is_view_known) {
-                Some(view) => view,
-                None => self.view(input)?,
-            };
-            if self.lights.is_none() {
-                self.lights = Some(self.find_lights(given, &view, input)?);
-            }
-            if view.is_trusted(MOST_OUTLINE_PX) {
-                self.held = Some(view.world_from_object);
-            }
-            self.view = Some(view);
+        // Lights that were found stay as long as no others are listed.
+        let kept = self.lights.take().filter(|lights| lights.given == given);
+        if is_view_known && kept.is_some() {
+            self.lights = kept;
+            return Ok(self.aligned(input));
         }
+        self.align_plates();
+        let seen = match self.view.take().filter(|_| is_view_known) {
+            Some(view) => Seen::again(&self.scene, view, input),
+            None => self.see(input)?,
+        };
+        self.lights = Some(match kept {
+            Some(kept) => self.watch_lights(kept, &seen)?,
+            None => self.find_lights(given, &seen)?,
+        });
+        if seen.view.is_trusted(MOST_OUTLINE_PX) {
+            self.held = Some(seen.view.world_from_object);
+        }
+        self.view = Some(seen.view);
         Ok(self.aligned(input))
     }
 
     /// Camera and pose in a view that is not known.
-    fn view(&mut self, input: &FrameInput) -> Result<AlignedView, ToyError> {
+    fn see(&mut self, input: &FrameInput) -> Result<Seen, ToyError> {
         let Scene {
             plates, receivers, ..
         } = &self.scene;
@@ -193,52 +205,114 @@ impl Aligner {
             .cameras
             .find((&input.image, &input.camera), plates, receivers);
         let (camera, camera_report) = corrected(&input.camera, found);
-        let seen = FrameInput {
+        let mut input_seen = FrameInput {
             camera,
             ..input.clone()
         };
-        let photograph = Photograph::new(&self.scene, &seen);
-        let found = photograph.pose(&self.scene, &seen, self.held)?;
-        Ok(AlignedView {
-            image: Arc::clone(&input.image),
-            given_camera: input.camera,
-            given: input.world_from_object,
-            camera,
-            camera_report,
-            world_from_object: found.world_from_object,
-            report: found.report,
+        let photograph = Photograph::new(&self.scene, &input_seen);
+        let found = photograph.pose(&self.scene, &input_seen, self.held)?;
+        input_seen.world_from_object = found.world_from_object;
+        Ok(Seen {
+            view: AlignedView {
+                image: Arc::clone(&input.image),
+                given_camera: input.camera,
+                given: input.world_from_object,
+                camera,
+                camera_report,
+                world_from_object: found.world_from_object,
+                report: found.report,
+            },
+            photograph,
+            input: input_seen,
         })
     }
 
     /// The lights in a view, as far as it can tell.
-    fn find_lights(
-        &self,
-        given: Arc<[Light]>,
-        view: &AlignedView,
-        input: &FrameInput,
-    ) -> Result<AlignedLights, ToyError> {
-        let seen = FrameInput {
-            camera: view.camera,
-            world_from_object: view.world_from_object,
-            ..input.clone()
-        };
-        let photograph = || Photograph::new(&self.scene, &seen);
+    fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         if given.is_empty() {
-            let found = match &view.report {
-                Some(pose) if view.is_trusted(DISCOVERY_OUTLINE_PX) => {
-                    photograph().discover(&self.scene, &seen, &pose.deviation)?
-                }
-                _ => Err(NoLight::PoseUnknown),
-            };
-            return Ok(AlignedLights::discovered(given, found));
+            return self.discover_lights(given, seen);
         }
-        let can_tell = given.len() <= MAX_LIGHTS && !self.scene.plates.is_empty();
-        let found = if can_tell && view.is_trusted(MOST_OUTLINE_PX) {
-            photograph().lights(&self.scene, &seen, &given)?
+        let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
+            seen.photograph.lights(&self.scene, &seen.input, &given)?
         } else {
             None
         };
-        Ok(AlignedLights::new(given, found))
+        let lights = KeptLights::listed(given, found);
+        let watched = self.watch(&lights, seen)?;
+        Ok(lights.seen(watched))
+    }
+
+    /// Lights in a view that nobody lists, or that are not where they are listed.
+    fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let found = match &seen.view.report {
+            Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
+                seen.photograph
+                    .discover(&self.scene, &seen.input, &pose.deviation)?
+            }
+            _ => Err(NoLight::PoseUnknown),
+        };
+        let lights = KeptLights::discovered(given, found);
+        let watched = self.watch(&lights, seen)?;
+        Ok(lights.seen(watched))
+    }
+
+    /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
+    fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let now = self.watch(&kept, seen)?;
+        if !kept.are_found() && now.is_none_or(|now| kept.watch(now)) {
+            return self.find_lights(kept.given, seen);
+        }
+        let Some(now) = now.filter(|now| kept.watch(*now)) else {
+            return Ok(kept);
+        };
+        if kept.discovered.is_none() {
+            let found = seen.photograph.lights(&self.scene, &seen.input, kept.in_use())?;
+            let moved = KeptLights::listed(Arc::clone(&kept.given), found);
+            if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
+                return Ok(moved.in_place_of(&kept, now));
+            }
+        }
+        if let Some(Relit { lights, plates }) = self.relight(&kept, seen)? {
+            self.scene.plates = plates.to_vec();
+            self.relit_plates = Some(plates);
+            return Ok(lights);
+        }
+        kept.searched_in_vain(now);
+        Ok(kept)
+    }
+
+    /// Lights that explain a view in place of those that were there when the plates were taken, and the plates in their light; none where
+    /// they do not explain it as well.
+    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<Relit>, ToyError> {
+        let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
+            return Ok(None);
+        };
+        let relit = Self::new(Scene {
+            plates,
+            ..self.scene.clone()
+        });
+        let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
+        let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
+        let now = relit
+            .watch(&others, &seen)?
+            .filter(|now| kept.are_replaced_by(*now));
+        Ok(now.map(|now| Relit {
+            lights: others.in_place_of(kept, now),
+            plates: relit.scene.plates.into(),
+        }))
+    }
+
+    /// What lights leave unexplained of a view; none where it does not tell.
+    fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
+        if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
+            return Ok(None);
+        }
+        seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
+    }
+
+    /// Whether pictures can tell where so many lights are; without a plate those that nobody lists alone.
+    fn can_tell_lights(&self, lights: &[Light]) -> bool {
+        lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
     }
 
     /// Corrects the cameras of the first plates, each against those before it, once.
@@ -266,18 +340,38 @@ impl Aligner {
                 .and_then(|found| found.clone().ok())
                 .unwrap_or_default(),
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
+            unexplained: lights.and_then(KeptLights::unexplained),
         };
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
         let warnings = off.map(|pose| Warning::Misaligned {
             outline_px: pose.shown_px(),
         });
         let none = report.no_light.map(|reason| Warning::LightNotFound { reason });
+        let doubt = lights.and_then(KeptLights::doubt);
+        let changed = doubt.map(|unexplained| Warning::LightsChanged { unexplained });
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: lights.and_then(|lights| lights.applied.clone()),
+            relit_plates: self.relit_plates.clone(),
             report,
-            warnings: warnings.into_iter().chain(none).collect(),
+            warnings: warnings.into_iter().chain(none).chain(changed).collect(),
+        }
+    }
+}
+
+impl Seen {
+    /// A view that is known.
+    fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
+        let input = FrameInput {
+            camera: view.camera,
+            world_from_object: view.world_from_object,
+            ..input.clone()
+        };
+        Self {
+            photograph: Photograph::new(scene, &input),
+            view,
+            input,
         }
     }
 }
@@ -292,37 +386,6 @@ impl AlignedView {
     /// Whether the outline is where the picture has it, within some pixels.
     fn is_trusted(&self, most_px: f64) -> bool {
         self.report.is_some_and(|pose| pose.shown_px() <= most_px)
-    }
-}
-
-impl AlignedLights {
-    fn new(given: Arc<[Light]>, found: Option<FoundLights>) -> Self {
-        let (applied, report, errors) = match found {
-            Some(found) => (found.applied, found.report, Some(found.errors)),
-            None => (None, Vec::new(), None),
-        };
-        Self {
-            given,
-            applied,
-            report,
-            errors,
-            discovered: None,
-        }
-    }
-
-    fn discovered(given: Arc<[Light]>, found: Discovered) -> Self {
-        let lights = found.iter().flatten().map(|found| found.light).collect();
-        Self {
-            given,
-            applied: found.is_ok().then_some(lights),
-            report: Vec::new(),
-            errors: None,
-            discovered: Some(found),
-        }
-    }
-
-    fn are_found(&self) -> bool {
-        self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
 }
 

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::lights::FoundLight;
+use super::lights::{FoundLight, Relight, Watched};
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::frame::{FrameInput, NoLight};
-use crate::scene::{Light, Scene, check};
+use crate::scene::{Light, Plate, Scene, check};
 use crate::toy::ToyError;
 
 /// A found pose is applied where the outline's loss falls to less than this part of the given pose's.
@@ -132,6 +132,40 @@ impl Photograph {
                     .collect(),
                 errors: found.losses,
             }
+        }))
+    }
+
+    /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.
+    pub(super) fn watch(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<Watched>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(lights::watch(
+            lights,
+            &shape,
+            &self.receivers,
+            &self.pyramid,
+            world_from_camera,
+        ))
+    }
+
+    /// The scene's plates in the light of this photograph; none without one.
+    pub(super) fn relit_plates(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+    ) -> Result<Option<Vec<Plate>>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let relight = Relight::of(&shape, &self.receivers, &self.pyramid, &self.camera_from_world);
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        Ok(relight.map(|relight| {
+            let plates = scene.plates.iter();
+            let relit = plates.map(|plate| relight.plate(plate, &scene.receivers, toy_in_world));
+            relit.collect()
         }))
     }
 

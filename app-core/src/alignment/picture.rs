@@ -130,6 +130,15 @@ impl Pyramid {
         self.picture_px
     }
 
+    /// The smallest level that shows shadows well enough to tell lights by.
+    ///
+    /// In 9,000 pixels a toy of a third of the picture's width is some 50 pixels wide.
+    pub(super) fn smallest_for_shadows(&self) -> usize {
+        const PIXELS: i32 = 9000;
+        let is_enough = |level: &Level| level.frame.size_px.x * level.frame.size_px.y >= PIXELS;
+        self.levels.iter().rposition(is_enough).unwrap_or(0)
+    }
+
     /// A level from 0, the largest, to [`Pyramid::SMALLEST`].
     pub(super) fn level(&self, level: usize) -> &Level {
         &self.levels[level]

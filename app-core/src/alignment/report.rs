@@ -22,6 +22,9 @@ pub struct AlignmentReport {
     pub discovered: Vec<DiscoveredLight>,
     /// Why none was found; none where lights are listed or were found.
     pub no_light: Option<NoLight>,
+    /// The part of the shadows in the picture that the lights in use leave unexplained; none where too little of them is seen, and
+    /// where there are no lights.
+    pub unexplained: Option<f64>,
 }
 
 /// The camera, by what the receivers look like in the plates.
@@ -90,7 +93,8 @@ pub struct LightAlignment {
     pub is_applied: bool,
     /// Whether this one was found elsewhere by enough to show.
     pub is_moved: bool,
-    /// Angle at the toy between the direction given and that found, in radians.
+    /// Angle at the toy between the direction given and that found, in radians. Given is here, and below, where it was before, of a
+    /// light that was moved.
     pub turned_rad: f64,
     /// Found distance over the given; 1 for a directional light.
     pub distance_ratio: f64,

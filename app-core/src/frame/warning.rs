@@ -85,6 +85,11 @@ pub enum Warning {
         /// Why.
         reason: NoLight,
     },
+    /// The shadows are no longer where the lights cast them, and no lights were found that do.
+    LightsChanged {
+        /// The part of the shadows that no light explains, from 0 to 1.
+        unexplained: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -153,6 +158,11 @@ impl fmt::Display for Warning {
                 "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose",
             ),
             Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
+            Self::LightsChanged { unexplained } => write!(
+                f,
+                "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
+                100.0 * unexplained
+            ),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }

@@ -91,7 +91,7 @@ function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { camera, pose, lights, discovered, no_light, n_listed, cpu_ms } = alignment;
+  const { camera, pose, lights, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
   const rows = [];
   if (camera) rows.push(row("the camera", [verdict(camera), `${camera.moved_mm.toFixed(2)} mm, ${camera.turned_deg.toFixed(2)}\u00b0`,
@@ -107,6 +107,8 @@ function showAlignment() {
     `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${(2 * light.angular_radius_deg).toFixed(2)}\u00b0 wide, direction \u00b1 ${light.direction_deviation_deg?.toFixed(2) ?? "?"}\u00b0`,
     against(light.against_listed)])));
   if (no_light) rows.push(row("lights", ["none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
+  if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
+    is_relit ? "the plates were taken in another light" : ""]));
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),
     rows.length > 0 ? table(`took ${ms(cpu_ms)}`, ["", "", "found elsewhere by", ""], rows)
       : el("p", { class: "soft" }, "Too little of the toy's outline is seen to align anything."));

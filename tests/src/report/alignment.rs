@@ -22,6 +22,10 @@ pub struct AlignmentEntry {
     pub discovered: Vec<DiscoveredEntry>,
     /// Why none was.
     pub no_light: Option<String>,
+    /// Part of the shadows in the picture that the lights in use leave unexplained.
+    pub unexplained: Option<f64>,
+    /// Whether the plates are taken in another light than they were photographed in.
+    pub is_relit: bool,
     /// Lights on the session's list, where that was put aside.
     pub n_listed: usize,
 }
@@ -128,6 +132,8 @@ impl From<&Aligned> for AlignmentEntry {
                 .map(|light| DiscoveredEntry::new(light, &aligned.listed))
                 .collect(),
             no_light: report.no_light.map(|reason| reason.to_string()),
+            unexplained: report.unexplained,
+            is_relit: aligned.alignment.relit_plates.is_some(),
             n_listed: aligned.listed.len(),
         }
     }

@@ -1,6 +1,7 @@
 //! What receivers would show without the toy, where no plate tells: a smooth colour each.
 //!
 //! Their texture stays and is taken for noise: lights are told worse than with a plate, and faint ones not at all.
+//! Light over that in a plate (`relight`) has no texture, and may bend more.
 
 use glam::{DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -10,10 +11,11 @@ use crate::alignment::raster::Coverage;
 use crate::alignment::receivers::{SeenReceiver, receiver_at};
 use crate::alignment::rectangle::places;
 
-/// Coefficients of a colour that rises and bends.
-const N_TERMS: usize = 6;
+/// Coefficients of polynomials of the second and of the fourth degree in two variables.
+pub(super) const QUADRATIC: usize = 6;
+pub(super) const QUARTIC: usize = 15;
 /// Looked at as far from the toy, over its radius.
-const REACH: f64 = 5.0;
+pub(super) const REACH: f64 = 5.0;
 /// Rounds of reweighting; shadows are outliers.
 const N_ROUNDS: usize = 12;
 /// Deviation of a normal distribution over its median absolute deviation.
@@ -21,38 +23,38 @@ const OF_MEDIAN: f64 = 1.4826;
 /// Keeps a colour flat where too little is seen.
 const PRIOR: f64 = 1e-6;
 
-type Terms = SVector<f64, N_TERMS>;
+type Terms<const N: usize> = SVector<f64, N>;
 
-/// The colour of each receiver.
+/// The colour of each receiver, a polynomial of N coefficients.
 #[derive(Debug)]
-pub(super) struct Backdrop {
+pub(super) struct Backdrop<const N: usize> {
     /// None where a receiver is not seen.
-    receivers: Vec<Option<Seen>>,
+    receivers: Vec<Option<Seen<N>>>,
     middle: DVec3,
     reach_m: f64,
 }
 
 #[derive(Debug)]
-struct Seen {
-    colors: [Terms; 3],
+struct Seen<const N: usize> {
+    colors: [Terms<N>; 3],
     /// Deviation of its texture, over its colour.
     texture: f64,
 }
 
-impl Backdrop {
-    /// Of a picture with a toy around `middle`, in camera space.
+impl<const N: usize> Backdrop<N> {
+    /// Of a picture with a toy around `middle`, in camera space, up to `reach_m` from there.
     pub(super) fn of(
         level: &Level,
         coverage: &Coverage,
         receivers: &[SeenReceiver],
-        (middle, radius_m): (DVec3, f64),
+        (middle, reach_m): (DVec3, f64),
     ) -> Self {
         let mut out = Self {
             receivers: Vec::new(),
             middle,
-            reach_m: REACH * radius_m,
+            reach_m,
         };
-        let mut seen: Vec<Vec<(Terms, Color)>> = vec![Vec::new(); receivers.len()];
+        let mut seen: Vec<Vec<(Terms<N>, Color)>> = vec![Vec::new(); receivers.len()];
         for at in places(level.frame.size_px).filter(|at| coverage.at(*at) <= 0.0) {
             let Some((receiver, point)) = receiver_at(receivers, &level.intrinsics, at) else {
                 continue;
@@ -87,21 +89,28 @@ impl Backdrop {
         point.distance(self.middle) < self.reach_m
     }
 
-    fn terms(&self, receiver: &SeenReceiver, point: DVec3) -> Terms {
+    fn terms(&self, receiver: &SeenReceiver, point: DVec3) -> Terms<N> {
         let along = receiver.plane_from_camera.transform_vector3(point - self.middle) / self.reach_m;
         let DVec2 { x, y } = DVec2::new(along.x, along.z);
-        Terms::new(1.0, x, y, x * x, x * y, y * y)
+        let (xx, xy, yy) = (x * x, x * y, y * y);
+        #[rustfmt::skip]
+        let all: [f64; QUARTIC] = [
+            1.0, x, y, xx, xy, yy,
+            xx * x, xx * y, x * yy, yy * y,
+            xx * xx, xx * xy, xx * yy, xy * yy, yy * yy,
+        ];
+        Terms::from_fn(|term, _| all[term])
     }
 }
 
-impl Seen {
-    fn of(pixels: &[(Terms, Color)]) -> Option<Self> {
-        if pixels.len() < 4 * N_TERMS {
+impl<const N: usize> Seen<N> {
+    fn of(pixels: &[(Terms<N>, Color)]) -> Option<Self> {
+        if pixels.len() < 4 * N {
             return None;
         }
         let mut texture = 0.0;
         let colors = [0, 1, 2].map(|channel| {
-            let values: Vec<(Terms, f64)> = pixels
+            let values: Vec<(Terms<N>, f64)> = pixels
                 .iter()
                 .map(|(terms, color)| (*terms, f64::from(color[channel])))
                 .collect();
@@ -114,9 +123,9 @@ impl Seen {
 }
 
 /// A smooth value and the deviation from it, by iteratively reweighted least squares (Geman and McClure 1987).
-fn robust(values: &[(Terms, f64)]) -> (Terms, f64) {
+fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
     let mut sorted: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
-    let mut color = Terms::zeros();
+    let mut color = Terms::<N>::zeros();
     // Shadows are dark: the start is brighter than they are.
     color[0] = quantile(&mut sorted, 0.7);
     let mut deviation = f64::INFINITY;
@@ -126,10 +135,7 @@ fn robust(values: &[(Terms, f64)]) -> (Terms, f64) {
             .map(|(terms, value)| (value - color.dot(terms)).abs())
             .collect();
         deviation = (OF_MEDIAN * quantile(&mut away, 0.5)).max(PRIOR);
-        let (mut normal, mut side) = (
-            SMatrix::<f64, N_TERMS, N_TERMS>::identity() * PRIOR,
-            Terms::zeros(),
-        );
+        let (mut normal, mut side) = (SMatrix::<f64, N, N>::identity() * PRIOR, Terms::<N>::zeros());
         for (terms, value) in values {
             let excess = (value - color.dot(terms)) / (2.0 * deviation);
             let weight = (1.0 + excess * excess).powi(-2);

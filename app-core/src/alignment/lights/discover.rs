@@ -22,8 +22,6 @@ use crate::alignment::shape::Shape;
 use crate::frame::NoLight;
 use crate::scene::MAX_LIGHTS;
 
-/// The smallest picture with as many pixels is searched: a toy of a third of its width is some 50 pixels wide.
-const SEARCHED_PIXELS: i32 = 9000;
 /// Directions that are followed for each further lamp; fewer where the best explains as much more.
 const N_STARTS: usize = 3;
 const OF_BEST: f64 = 0.25;
@@ -52,11 +50,7 @@ pub(super) fn discover(
     pyramid: &Pyramid,
     pose: &PoseDeviation,
 ) -> Result<Vec<Discovered>, NoLight> {
-    let searched = (0..=Pyramid::SMALLEST).rev().find(|level| {
-        let size_px = pyramid.level(*level).frame.size_px;
-        size_px.x * size_px.y >= SEARCHED_PIXELS
-    });
-    let searched = searched.unwrap_or(0);
+    let searched = pyramid.smallest_for_shadows();
     let px_m = |level: usize| shape.centre.length() / pyramid.level(level).intrinsics.fx_px;
     let coarse = shape.merged(SEARCH_CELL_PX * px_m(searched));
     let mut raster = Rasterizer::default();

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, IVec2};
 
-use super::backdrop::Backdrop;
+use super::backdrop::{Backdrop, QUADRATIC};
 use crate::alignment::picture::{Color, Level, noise_deviation};
 use crate::alignment::raster::Coverage;
 use crate::alignment::receivers::{SeenReceiver, receiver_at};
@@ -36,7 +36,7 @@ pub(super) struct FloorPixel {
 /// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate.
 pub(super) fn floor_pixels(
     level: &Level,
-    (coverage, backdrop): (&Coverage, Option<&Backdrop>),
+    (coverage, backdrop): (&Coverage, Option<&Backdrop<QUADRATIC>>),
     receivers: &[SeenReceiver],
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {

@@ -15,10 +15,12 @@ mod lamp;
 mod leftover;
 mod prior;
 mod refine;
+mod relight;
 mod shading;
 mod shadows;
 mod step;
 mod uncertainty;
+mod watch;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -32,6 +34,9 @@ use crate::scene::Light;
 use cast::flattened;
 use lamp::{Lamp, N_PARTS, disc};
 use prior::Prior;
+pub(super) use relight::Relight;
+pub(super) use watch::{Watched, watch};
+
 use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 
 /// Directions that are tried around the given one, in steps of `SEARCH_STEP_RAD`.

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, IVec2};
 
-use super::backdrop::Backdrop;
+use super::backdrop::{Backdrop, REACH};
 use super::cast::{Ambient, Caster};
 use super::floor::{FloorPixel, floor_pixels};
 use super::lamp::{Lamp, disc};
@@ -64,10 +64,14 @@ impl<'a> Shadows<'a> {
         let rect = lamps.map(|lamps| shadow_rect(raster, &caster, lamps));
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
-        let backdrop = level
-            .plate
-            .is_none()
-            .then(|| Backdrop::of(level, &coverage, receivers, (shape.centre, shape.radius_m)));
+        let backdrop = level.plate.is_none().then(|| {
+            Backdrop::of(
+                level,
+                &coverage,
+                receivers,
+                (shape.centre, REACH * shape.radius_m),
+            )
+        });
         let pixels = floor_pixels(level, (&coverage, backdrop.as_ref()), receivers, is_wanted);
         Self {
             ambient: caster.ambient(raster, &pixels, N_DIRECTIONS),
