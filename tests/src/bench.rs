@@ -16,6 +16,7 @@ use app_core::session::Capture;
 
 use crate::alignment::{Alignments, Lights};
 use crate::metrics::Scores;
+use crate::metrics::flicker::Flicker;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
@@ -55,6 +56,8 @@ pub struct Row {
     pub n_frames: usize,
     /// Mean scores over those frames that have a truth.
     pub scores: Option<Scores>,
+    /// Mean flicker over those of which the frame before has one as well.
+    pub flicker: Option<Flicker>,
     /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
     pub align_ms: Option<f64>,
     /// Times; none where visibility is the reference's.
@@ -128,6 +131,7 @@ fn measure(
         preset: preset.name().to_owned(),
         n_frames: report.frames.len(),
         scores: report.mean.scores,
+        flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
         times: Some(times(core, &inputs, options.n_repeats)?),
         n_taps: mean_taps(core, &inputs)?,
