@@ -24,6 +24,7 @@
 mod camera;
 mod error;
 mod lights;
+mod mask;
 mod outlines;
 mod photograph;
 mod picture;
@@ -33,6 +34,7 @@ mod receivers;
 mod rectangle;
 pub(crate) mod report;
 mod shape;
+mod withheld;
 
 use std::sync::Arc;
 
@@ -42,6 +44,7 @@ use crate::frame::warning::Warning;
 use crate::frame::{FrameInput, NoLight};
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
+use mask::Mask;
 use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
@@ -57,6 +60,11 @@ const MOST_ALIGNED_PLATES: usize = 32;
 ///
 /// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
+
+/// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
+/// tracker is not yet corrected, and by the pose.
+const CAMERA_GROWN: f64 = 0.05;
+const POSE_GROWN: f64 = 0.01;
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
@@ -101,6 +109,7 @@ pub struct Aligner {
     /// The pose in the latest view that showed where the toy is.
     held: Option<DMat4>,
     lights: Option<AlignedLights>,
+    are_shadows_withheld: bool,
 }
 
 /// Camera and pose in the latest view.
@@ -139,7 +148,14 @@ impl Aligner {
             view: None,
             held: None,
             lights: None,
+            are_shadows_withheld: false,
         }
+    }
+
+    /// Reads no shadow but in the first view: lights are those of that view, and of later pictures nothing is read where these
+    /// lights cast a shadow, nor close beside. For measuring how well such shadows are predicted.
+    pub fn withhold_shadows(&mut self) {
+        self.are_shadows_withheld = true;
     }
 
     /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
@@ -166,7 +182,8 @@ impl Aligner {
         self.lights = self
             .lights
             .take()
-            .filter(|lights| lights.given == given && (is_view_known || lights.are_found()));
+            .filter(|lights| lights.given == given)
+            .filter(|lights| is_view_known || lights.are_found() || self.are_shadows_withheld);
         if !is_view_known || self.lights.is_none() {
             self.align_plates();
             let view = match self.view.take().filter(|_| is_view_known) {
@@ -186,18 +203,19 @@ impl Aligner {
 
     /// Camera and pose in a view that is not known.
     fn view(&mut self, input: &FrameInput) -> Result<AlignedView, ToyError> {
+        let withheld = self.withheld(input, &input.camera, CAMERA_GROWN)?;
         let Scene {
             plates, receivers, ..
         } = &self.scene;
-        let found = self
-            .cameras
-            .find((&input.image, &input.camera), plates, receivers);
+        let given = (&input.image, &input.camera, withheld.as_ref());
+        let found = self.cameras.find(given, plates, receivers);
         let (camera, camera_report) = corrected(&input.camera, found);
         let seen = FrameInput {
             camera,
             ..input.clone()
         };
-        let photograph = Photograph::new(&self.scene, &seen);
+        let withheld = self.withheld(input, &camera, POSE_GROWN)?;
+        let photograph = Photograph::new(&self.scene, &seen, withheld.as_ref());
         let found = photograph.pose(&self.scene, &seen, self.held)?;
         Ok(AlignedView {
             image: Arc::clone(&input.image),
@@ -208,6 +226,20 @@ impl Aligner {
             world_from_object: found.world_from_object,
             report: found.report,
         })
+    }
+
+    /// What of a view is not to be read.
+    fn withheld(&self, input: &FrameInput, camera: &Camera, grown: f64) -> Result<Option<Mask>, ToyError> {
+        let Some(lights) = self.lights.as_ref().filter(|_| self.are_shadows_withheld) else {
+            return Ok(None);
+        };
+        let placed = FrameInput {
+            camera: *camera,
+            world_from_object: self.held.unwrap_or(input.world_from_object),
+            ..input.clone()
+        };
+        let lights = lights.applied.as_ref().unwrap_or(&lights.given);
+        withheld::shadows(&self.scene, &placed, lights, grown).map(Some)
     }
 
     /// The lights in a view, as far as it can tell.
@@ -222,7 +254,7 @@ impl Aligner {
             world_from_object: view.world_from_object,
             ..input.clone()
         };
-        let photograph = || Photograph::new(&self.scene, &seen);
+        let photograph = || Photograph::new(&self.scene, &seen, None);
         if given.is_empty() {
             let found = match &view.report {
                 Some(pose) if view.is_trusted(DISCOVERY_OUTLINE_PX) => {
@@ -249,7 +281,9 @@ impl Aligner {
         for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
             let (aligned, rest) = self.scene.plates.split_at_mut(index);
             let Plate { image, camera } = &mut rest[0];
-            let found = self.cameras.find((image, camera), aligned, &self.scene.receivers);
+            let found = self
+                .cameras
+                .find((image, camera, None), aligned, &self.scene.receivers);
             (*camera, _) = corrected(camera, found);
         }
     }
