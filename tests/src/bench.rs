@@ -1,5 +1,6 @@
 //! Speed against error: presets over sessions, timed where nothing is learned or compiled any more.
 
+mod basin;
 mod exact;
 mod table;
 mod withheld;
@@ -21,6 +22,7 @@ use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
 
+pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
 pub(crate) use table::aligned;
 pub use table::{csv, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
