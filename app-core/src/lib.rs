@@ -139,6 +139,7 @@ pub mod internals {
     pub use crate::plates::overlap::compared_plates;
     pub use crate::readback::inject::InjectedVisibility;
     pub use crate::readback::{FloatMap, Map};
+    pub use crate::session::tags::{exif_orientation, png_chunks};
 
     /// Every shader of the registry.
     pub fn shaders() -> impl Iterator<Item = &'static Shader> {

@@ -97,12 +97,30 @@ impl Alignments {
     /// # Errors
     /// When a frame cannot be read or aligned.
     pub fn find(session: &dyn Session, frames: Range<usize>, lights: Lights) -> Result<Self, ReplayError> {
+        Self::find_by(Aligner::new(session.scene().clone()), session, frames, lights)
+    }
+
+    /// Aligns all frames, and reads no shadow but that of the first picture.
+    ///
+    /// # Errors
+    /// When a frame cannot be read or aligned.
+    pub fn find_without_shadows(session: &dyn Session) -> Result<Self, ReplayError> {
+        let mut aligner = Aligner::new(session.scene().clone());
+        aligner.withhold_shadows();
+        Self::find_by(aligner, session, 0..session.n_frames(), Lights::Given)
+    }
+
+    fn find_by(
+        mut aligner: Aligner,
+        session: &dyn Session,
+        frames: Range<usize>,
+        lights: Lights,
+    ) -> Result<Self, ReplayError> {
         let scene = session.scene();
         let listed = match lights {
             Lights::Given => &[],
             Lights::Found => &scene.lights[..],
         };
-        let mut aligner = Aligner::new(scene.clone());
         let mut found = Vec::with_capacity(frames.len());
         for index in frames.clone() {
             let input = lights.input(&session.frame(index)?);
@@ -213,7 +231,7 @@ impl Lights {
 }
 
 /// Middle of the box around the real toy, in the world.
-fn middle(scene: &Scene, world_from_object: &DMat4) -> DVec3 {
+pub(crate) fn middle(scene: &Scene, world_from_object: &DMat4) -> DVec3 {
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose);
     let middle = bounds.map_or(DVec3::ZERO, |bounds| 0.5 * (bounds.min + bounds.max).as_dvec3());
     world_from_object.transform_point3(middle)

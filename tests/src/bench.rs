@@ -1,5 +1,6 @@
 //! Speed against error: presets over sessions, timed where nothing is learned or compiled any more.
 
+mod basin;
 mod exact;
 mod table;
 mod withheld;
@@ -16,10 +17,12 @@ use app_core::session::Capture;
 
 use crate::alignment::{Alignments, Lights};
 use crate::metrics::Scores;
+use crate::metrics::flicker::Flicker;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
 
+pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
 pub(crate) use table::aligned;
 pub use table::{csv, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
@@ -55,6 +58,8 @@ pub struct Row {
     pub n_frames: usize,
     /// Mean scores over those frames that have a truth.
     pub scores: Option<Scores>,
+    /// Mean flicker over those of which the frame before has one as well.
+    pub flicker: Option<Flicker>,
     /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
     pub align_ms: Option<f64>,
     /// Times; none where visibility is the reference's.
@@ -128,6 +133,7 @@ fn measure(
         preset: preset.name().to_owned(),
         n_frames: report.frames.len(),
         scores: report.mean.scores,
+        flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
         times: Some(times(core, &inputs, options.n_repeats)?),
         n_taps: mean_taps(core, &inputs)?,

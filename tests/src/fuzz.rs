@@ -8,6 +8,7 @@ use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_p
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
 
+use crate::check::wrong_of_picture;
 use crate::glb::container;
 
 /// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
@@ -46,11 +47,12 @@ pub fn capture(bytes: &[u8]) {
     session(bytes, TOY, PICTURE);
 }
 
-/// Decodes a picture and a mask of 2 x 2 pixels.
+/// Decodes a picture and a mask of 2 x 2 pixels, and reads their tags.
 ///
 /// # Panics
 /// Where a picture that is accepted is of another size.
 pub fn picture(bytes: &[u8]) {
+    let _ = wrong_of_picture(bytes);
     session(INDEX, TOY, bytes);
 }
 

@@ -17,6 +17,7 @@ pub mod photographer;
 pub mod process;
 pub mod program;
 pub mod progress;
+pub mod random;
 pub mod reference;
 pub mod replay;
 pub mod report;

@@ -1,7 +1,8 @@
-//! Scores a picture against the truth: RMSE and SSIM over the regions that matter.
+//! Scores a picture against the truth: RMSE and SSIM over the regions that matter, and flicker from frame to frame.
 //!
 //! RMSE is in 8-bit sRGB units over the three colours, SSIM is taken of encoded luma.
 
+pub mod flicker;
 mod ssim;
 
 use app_core::scene::Image;

@@ -16,6 +16,7 @@ use thiserror::Error;
 use crate::alignment::{Alignments, Lights};
 use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
+use crate::metrics::flicker::Follower;
 use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
 use crate::page::pictures::Pictures;
@@ -178,6 +179,7 @@ pub fn replay_aligned(
             core,
             alignments,
             out: out.map(|out| Out::new(out.join(&folder))),
+            follower: Follower::default(),
         };
         let report = run.replay(*preset, frames.clone(), progress)?;
         reports.push((folder, report));
@@ -210,6 +212,7 @@ struct Run<'a> {
     core: &'a mut Core,
     alignments: &'a Alignments,
     out: Option<Out>,
+    follower: Follower,
 }
 
 impl Run<'_> {
@@ -259,8 +262,9 @@ impl Run<'_> {
             None => None,
         };
         if let Some(truth) = &truth {
-            let scores = score(&picture, truth).map_err(|reason| ReplayError::Score { index, reason });
-            entry.scores = Some(scores?);
+            let failed = |reason| ReplayError::Score { index, reason };
+            entry.scores = Some(score(&picture, truth).map_err(failed)?);
+            entry.flicker = self.follower.next(index, &picture, truth).map_err(failed)?;
         }
         if let Some(out) = &mut self.out {
             let name = picture_file(index);
@@ -370,6 +374,7 @@ fn run_frame(
             .collect(),
         alignment: aligned.map(AlignmentEntry::from),
         scores: None,
+        flicker: None,
     };
     Ok((entry, report.region, picture))
 }

@@ -6,6 +6,7 @@ use app_core::scene::MAX_LIGHTS;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
+use crate::metrics::flicker::{Flicker, mean_flicker};
 use crate::metrics::{Score, Scores};
 use crate::report::alignment::AlignmentEntry;
 
@@ -41,6 +42,8 @@ pub struct Mean {
     pub n_scored: usize,
     /// Mean of their scores; none where there are none.
     pub scores: Option<Scores>,
+    /// Mean flicker over frames of which that before has a truth as well; none where there are none.
+    pub flicker: Option<Flicker>,
     /// Steady frames: a region was worked on and nothing was learned anew.
     pub n_steady: usize,
     /// Mean of their device time, where each has one.
@@ -84,6 +87,8 @@ pub struct FrameEntry {
     pub alignment: Option<AlignmentEntry>,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
+    /// Flicker since the frame before, where both have a truth.
+    pub flicker: Option<Flicker>,
 }
 
 /// A map as a picture of the whole frame.
@@ -152,6 +157,7 @@ impl Mean {
     #[must_use]
     pub fn of(frames: &[FrameEntry]) -> Self {
         let scores: Vec<Scores> = frames.iter().filter_map(|frame| frame.scores).collect();
+        let flicker: Vec<Flicker> = frames.iter().filter_map(|frame| frame.flicker).collect();
         let steady: Vec<&FrameEntry> = frames.iter().filter(|frame| frame.is_steady()).collect();
         let aligned = frames.iter().filter_map(|frame| frame.alignment.as_ref());
         let align_ms: Vec<f64> = aligned.map(|alignment| alignment.cpu_ms).collect();
@@ -159,6 +165,7 @@ impl Mean {
         Self {
             n_scored: scores.len(),
             scores: mean_scores(&scores),
+            flicker: mean_flicker(&flicker),
             n_steady: steady.len(),
             gpu_ms: gpu_ms.and_then(|times| mean(times.into_iter())),
             cpu_ms: mean(steady.iter().map(|frame| frame.cpu_ms)),

@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use app_core::scene::Image;
+use app_core::session::Truth;
+use harness::metrics::flicker::{Errors, Flicker, Follower, mean_flicker};
 use harness::metrics::{Regions, Score, measure};
 
 const SIDE_PX: u32 = 40;
@@ -197,4 +199,106 @@ fn another_size_is_an_error() {
             "truth"
         );
     }
+}
+
+fn truth(image: Image) -> Truth {
+    Truth {
+        image,
+        mask: flat([255; 4]),
+    }
+}
+
+/// The flicker of pictures, each given with its truth.
+fn flickers(pictures: Vec<(Image, Image)>) -> Vec<Option<Flicker>> {
+    let mut follower = Follower::default();
+    let frames = pictures.into_iter().enumerate();
+    frames
+        .map(|(index, (picture, of_truth))| follower.next(index, &picture, &truth(of_truth)).unwrap())
+        .collect()
+}
+
+/// A picture with an offset; codes stay clear of both ends.
+fn offset(picture: &Image, by: i16) -> Image {
+    let mut picture = picture.clone();
+    for pixel in picture.rgba8.chunks_exact_mut(4) {
+        for code in &mut pixel[..3] {
+            *code = u8::try_from(i16::from(*code / 2) + 60 + by).unwrap();
+        }
+    }
+    picture
+}
+
+#[test]
+fn a_known_flicker_is_measured_and_an_exact_sequence_has_none() {
+    let image = texture();
+    // The truth changes, too; what it changes by is no flicker.
+    let truths = [0, 20, -7, 3].map(|by| offset(&image, by));
+    let exact = flickers(
+        truths
+            .iter()
+            .map(|truth| (truth.clone(), truth.clone()))
+            .collect(),
+    );
+    assert_eq!(exact[0], None, "nothing is before the first");
+    for flicker in &exact[1..] {
+        let flicker = flicker.unwrap();
+        assert_eq!(
+            [flicker.shadow, flicker.toy, flicker.edge, flicker.frame],
+            [0.0; 4]
+        );
+    }
+    // An error that stays is none either.
+    let steady = flickers(
+        [0, 20, -7, 3]
+            .map(|by| (offset(&image, by + 9), offset(&image, by)))
+            .into(),
+    );
+    assert!(steady[1..].iter().all(|flicker| flicker.unwrap().toy == 0.0));
+    // One that goes to and fro is, by twice its size; and so is a picture that stands still while the truth moves.
+    let alternating = [(5, 0), (15, 20), (-2, -7), (-2, 3)];
+    let found = flickers(
+        alternating
+            .map(|(picture, truth)| (offset(&image, picture), offset(&image, truth)))
+            .into(),
+    );
+    for (flicker, expected) in found[1..].iter().zip([10.0, 10.0, 10.0]) {
+        close(flicker.unwrap().frame, expected);
+        close(flicker.unwrap().toy, expected);
+        assert_eq!(flicker.unwrap().shadow, 0.0, "an empty region has none");
+    }
+    let mean = mean_flicker(&found.into_iter().flatten().collect::<Vec<_>>());
+    close(mean.unwrap().frame, 10.0);
+    assert_eq!(mean_flicker(&[]), None);
+}
+
+#[test]
+fn flicker_is_over_pixels_that_are_of_a_region_in_both_frames() {
+    let grey = |code: u8| flat([code, code, code, 255]);
+    let toy_from = |left: u32| picture(|x, _| if x >= left { [255, 0, 0, 0] } else { [0; 4] });
+    let errors = |left: u32, code: u8| {
+        let truth = Truth {
+            image: grey(100),
+            mask: toy_from(left),
+        };
+        // Wrong where the toy is, by so much; and far more in the column that is the toy's in one of the frames alone.
+        let wrong = picture(|x, _| match x {
+            20..25 => [250, 250, 250, 255],
+            25.. => [code, code, code, 255],
+            _ => [100, 100, 100, 255],
+        });
+        Errors::new(&wrong, &truth).unwrap()
+    };
+    let flicker = errors(25, 104).flicker_from(&errors(20, 101)).unwrap();
+    close(flicker.toy, 3.0);
+    // 15 of 40 columns.
+    close(flicker.frame, (9.0_f64 * 15.0 / 40.0).sqrt());
+}
+
+#[test]
+fn a_frame_that_was_left_out_breaks_the_sequence() {
+    let image = texture();
+    let mut follower = Follower::default();
+    let mut next = |index| follower.next(index, &image, &truth(texture())).unwrap();
+    let found = [3, 4, 6, 7, 7].map(|index| next(index).is_some());
+    assert_eq!(found, [false, true, false, true, false]);
 }

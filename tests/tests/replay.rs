@@ -65,6 +65,10 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
     assert_eq!(json["frames"][0]["passes"][0]["path"], "capture");
     assert_eq!(json["frames"][1]["passes"][0]["path"], "frame");
     assert_eq!(json["frames"][IDENTITY_FRAME]["scores"]["frame"]["rmse"], 0.0);
+    assert!(
+        json["frames"][0]["flicker"].is_null() && json["frames"][1]["flicker"]["toy"].as_f64().unwrap() > 0.0
+    );
+    assert!(json["mean"]["flicker"]["shadow"].as_f64().unwrap() > 0.0);
     assert_eq!(
         json["fit"]["direct_fraction"].as_array().unwrap().len(),
         session.scene().lights.len()

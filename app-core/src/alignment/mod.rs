@@ -25,6 +25,7 @@ mod camera;
 mod error;
 mod kept_lights;
 mod lights;
+mod mask;
 mod outlines;
 mod photograph;
 mod picture;
@@ -34,6 +35,7 @@ mod receivers;
 mod rectangle;
 pub(crate) mod report;
 mod shape;
+mod withheld;
 
 use std::sync::Arc;
 
@@ -45,6 +47,7 @@ use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use kept_lights::KeptLights;
 use lights::Watched;
+use mask::Mask;
 use photograph::{MOST_OUTLINE_PX, Photograph};
 
 pub use error::AlignError;
@@ -60,6 +63,11 @@ const MOST_ALIGNED_PLATES: usize = 32;
 ///
 /// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
+
+/// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
+/// tracker is not yet corrected, and by the pose.
+const CAMERA_GROWN: f64 = 0.05;
+const POSE_GROWN: f64 = 0.01;
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
@@ -110,6 +118,7 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// The scene's plates, where they are in another light than they were taken in.
     relit_plates: Option<Arc<[Plate]>>,
+    are_shadows_withheld: bool,
 }
 
 /// A view with its photograph.
@@ -151,7 +160,14 @@ impl Aligner {
             held: None,
             lights: None,
             relit_plates: None,
+            are_shadows_withheld: false,
         }
+    }
+
+    /// Reads no shadow but in the first view: lights are those of that view, and of later pictures nothing is read where these
+    /// lights cast a shadow, nor close beside. For measuring how well such shadows are predicted.
+    pub fn withhold_shadows(&mut self) {
+        self.are_shadows_withheld = true;
     }
 
     /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
@@ -183,9 +199,10 @@ impl Aligner {
         self.align_plates();
         let seen = match self.view.take().filter(|_| is_view_known) {
             Some(view) => Seen::again(&self.scene, view, input),
-            None => self.see(input)?,
+            None => self.see(input, kept.as_ref())?,
         };
         self.lights = Some(match kept {
+            Some(kept) if self.are_shadows_withheld => kept,
             Some(kept) => self.watch_lights(kept, &seen)?,
             None => self.find_lights(given, &seen)?,
         });
@@ -197,19 +214,20 @@ impl Aligner {
     }
 
     /// Camera and pose in a view that is not known.
-    fn see(&mut self, input: &FrameInput) -> Result<Seen, ToyError> {
+    fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
+        let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
         let Scene {
             plates, receivers, ..
         } = &self.scene;
-        let found = self
-            .cameras
-            .find((&input.image, &input.camera), plates, receivers);
+        let given = (&input.image, &input.camera, withheld.as_ref());
+        let found = self.cameras.find(given, plates, receivers);
         let (camera, camera_report) = corrected(&input.camera, found);
         let mut input_seen = FrameInput {
             camera,
             ..input.clone()
         };
-        let photograph = Photograph::new(&self.scene, &input_seen);
+        let withheld = self.withheld(input, (&camera, POSE_GROWN), kept)?;
+        let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
         let found = photograph.pose(&self.scene, &input_seen, self.held)?;
         input_seen.world_from_object = found.world_from_object;
         Ok(Seen {
@@ -225,6 +243,24 @@ impl Aligner {
             photograph,
             input: input_seen,
         })
+    }
+
+    /// What of a view is not to be read.
+    fn withheld(
+        &self,
+        input: &FrameInput,
+        (camera, grown): (&Camera, f64),
+        lights: Option<&KeptLights>,
+    ) -> Result<Option<Mask>, ToyError> {
+        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
+            return Ok(None);
+        };
+        let placed = FrameInput {
+            camera: *camera,
+            world_from_object: self.held.unwrap_or(input.world_from_object),
+            ..input.clone()
+        };
+        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
     }
 
     /// The lights in a view, as far as it can tell.
@@ -323,7 +359,9 @@ impl Aligner {
         for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
             let (aligned, rest) = self.scene.plates.split_at_mut(index);
             let Plate { image, camera } = &mut rest[0];
-            let found = self.cameras.find((image, camera), aligned, &self.scene.receivers);
+            let found = self
+                .cameras
+                .find((image, camera, None), aligned, &self.scene.receivers);
             (*camera, _) = corrected(camera, found);
         }
     }
@@ -369,7 +407,7 @@ impl Seen {
             ..input.clone()
         };
         Self {
-            photograph: Photograph::new(scene, &input),
+            photograph: Photograph::new(scene, &input, None),
             view,
             input,
         }

@@ -3,7 +3,7 @@
 use glam::{DVec2, UVec2};
 
 use super::error::{AlignError, check};
-use super::lights::hard_shadows;
+use super::lights::flat_shadows;
 use super::pose::outline_px;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
@@ -35,7 +35,7 @@ impl Outlines {
         let (k, mut raster) = (&input.camera.intrinsics, Rasterizer::default());
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);
         let shadows = lights.iter().map(|light| {
-            let flat = hard_shadows(light, &shape, &receivers, &camera_from_world);
+            let flat = flat_shadows(light, &shape, &receivers, &camera_from_world, &[DVec2::ZERO]);
             let outlines = flat
                 .iter()
                 .map(|flat| outline_px(&mut raster, (flat, &shape), k, size_px));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::lights::{FoundLight, Relight, Watched};
+use super::mask::Mask;
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
@@ -40,12 +41,13 @@ pub(super) struct Photograph {
 }
 
 impl Photograph {
-    pub(super) fn new(scene: &Scene, input: &FrameInput) -> Self {
+    /// Of what is withheld nothing is read.
+    pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
         let toy_in_world = input.world_from_object.w_axis.truncate();
         let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
         let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let frame = Picture::decode(&input.image);
+        let frame = Picture::without(&input.image, withheld);
         Self {
             pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
             receivers,

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
+use super::mask::Mask;
 use super::rectangle::{index_in, places};
 use crate::geometry::color::linear_of_codes;
 use crate::scene::{Image, Intrinsics};
@@ -21,6 +22,19 @@ pub(super) struct Picture {
 }
 
 impl Picture {
+    /// Decodes a picture of a size that was checked; nothing is known of what is withheld.
+    pub(super) fn without(image: &Image, withheld: Option<&Mask>) -> Self {
+        let mut picture = Self::decode(image);
+        if let Some(withheld) = withheld {
+            for (pixel, at) in picture.pixels.iter_mut().zip(places(picture.size_px)) {
+                if withheld.has(at) {
+                    *pixel = UNKNOWN;
+                }
+            }
+        }
+        picture
+    }
+
     /// Decodes a picture of a size that was checked.
     pub(super) fn decode(image: &Image) -> Self {
         let table = linear_of_codes();

@@ -19,6 +19,7 @@ use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::Files;
 use super::picture::{PictureSize, decode_mask, decode_photo};
+use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
 use crate::scene::{Camera, Image, Pose, Scene};
 
@@ -37,7 +38,25 @@ pub struct Capture {
     warnings: Vec<SessionWarning>,
     frames: Vec<Frame>,
     /// The last frame's picture: a still camera repeats one picture over and over.
-    last_picture: Mutex<Option<(String, Arc<Image>)>>,
+    last_picture: Mutex<Option<(String, Photo)>>,
+}
+
+/// A photograph, and how its file asks to turn it.
+#[derive(Clone)]
+struct Photo {
+    image: Arc<Image>,
+    orientation: u8,
+}
+
+impl Photo {
+    /// What is to be said of it where a field names it.
+    fn warning(&self, file: &str, field: &str) -> Option<SessionWarning> {
+        (self.orientation != 1).then(|| SessionWarning::Turned {
+            file: file.to_owned(),
+            field: field.to_owned(),
+            orientation: self.orientation,
+        })
+    }
 }
 
 /// A frame whose picture is not read yet.
@@ -81,14 +100,14 @@ impl Capture {
         })
     }
 
-    fn frame_picture(&self, path: &str, field: &str) -> Result<Arc<Image>, SessionError> {
+    fn frame_picture(&self, path: &str, field: &str) -> Result<Photo, SessionError> {
         let mut last = self.last_picture.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, image)) = last.as_ref().filter(|(last_path, _)| last_path == path) {
-            return Ok(Arc::clone(image));
+        if let Some((_, photo)) = last.as_ref().filter(|(last_path, _)| last_path == path) {
+            return Ok(photo.clone());
         }
-        let image = Arc::new(self.store.photo(path, field)?);
-        *last = Some((path.to_owned(), Arc::clone(&image)));
-        Ok(image)
+        let photo = self.store.photo(path, field)?;
+        *last = Some((path.to_owned(), photo.clone()));
+        Ok(photo)
     }
 }
 
@@ -107,14 +126,17 @@ impl Session for Capture {
 
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
         let frame = self.frame_at(index)?;
+        let field = frame_field(index, ".image");
+        let photo = self.frame_picture(&frame.picture, &field)?;
+        let turned = photo.warning(&frame.picture, &field);
         Ok(SessionFrame {
             time_secs: frame.time_secs,
-            image: self.frame_picture(&frame.picture, &frame_field(index, ".image"))?,
+            image: photo.image,
             camera: frame.camera,
             world_from_object: frame.world_from_object,
             exposure: frame.exposure,
             shown_pose: frame.shown_pose.clone(),
-            warnings: frame.warnings.clone(),
+            warnings: frame.warnings.iter().cloned().chain(turned).collect(),
         })
     }
 }
@@ -124,8 +146,12 @@ impl GroundTruth for Capture {
         let Some(files) = &self.frame_at(index)?.truth else {
             return Ok(None);
         };
-        let image = self.store.photo(&files.picture, &frame_field(index, ".truth"))?;
-        let mask = self.store.mask(&files.mask, &frame_field(index, ".mask"))?;
+        let image = self
+            .store
+            .read(&files.picture, &frame_field(index, ".truth"), decode_photo)?;
+        let mask = self
+            .store
+            .read(&files.mask, &frame_field(index, ".mask"), decode_mask)?;
         Ok(Some(Truth { image, mask }))
     }
 }
@@ -137,20 +163,21 @@ struct PictureStore {
 }
 
 impl PictureStore {
-    fn photo(&self, path: &str, field: &str) -> Result<Image, SessionError> {
-        self.read(path, field, decode_photo)
+    fn photo(&self, path: &str, field: &str) -> Result<Photo, SessionError> {
+        self.read(path, field, |bytes, size| {
+            Ok(Photo {
+                image: Arc::new(decode_photo(bytes, size)?),
+                orientation: exif_orientation(bytes),
+            })
+        })
     }
 
-    fn mask(&self, path: &str, field: &str) -> Result<Image, SessionError> {
-        self.read(path, field, decode_mask)
-    }
-
-    fn read(
+    fn read<T>(
         &self,
         path: &str,
         field: &str,
-        decode: fn(&[u8], PictureSize) -> Result<Image, PictureError>,
-    ) -> Result<Image, SessionError> {
+        decode: impl Fn(&[u8], PictureSize) -> Result<T, PictureError>,
+    ) -> Result<T, SessionError> {
         let bytes = read_named(self.files.as_ref(), path, field, self.size.max_file_bytes())?;
         decode(&bytes, self.size).map_err(|error| SessionError::new(path, field, error))
     }

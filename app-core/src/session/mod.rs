@@ -9,6 +9,7 @@ mod capture;
 mod error;
 mod files;
 mod picture;
+pub(crate) mod tags;
 
 use std::sync::Arc;
 
@@ -105,6 +106,18 @@ pub enum SessionWarning {
         asked_secs: f64,
         /// The time that is used instead.
         used_secs: f64,
+    },
+    /// A picture that asks to be turned before it is looked at. It is taken as stored, as cameras' intrinsics have it.
+    #[error(
+        "{file} ({field}): its EXIF orientation is {orientation}, which is not applied: where it lies on its side or is mirrored, turn its pixels; where not, drop the tag"
+    )]
+    Turned {
+        /// File of the picture.
+        file: String,
+        /// Path of the field that names it.
+        field: String,
+        /// 2 to 8, as EXIF numbers them.
+        orientation: u8,
     },
     /// A feature of the toy's file that is not supported.
     #[error("{file}: {warning}")]

@@ -6,12 +6,11 @@ use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
 use image::{DynamicImage, ImageDecoder, Limits};
 
 use super::error::PictureError;
+use super::tags::{JPEG_MAGIC, PNG_MAGIC};
 use crate::scene::Image;
 
 /// Room for what a picture file holds besides pixels: colour profiles, previews, text.
 const EXTRA_BYTES: u64 = 16 << 20;
-const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
-const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
 /// The size that each picture of a session has.
 #[derive(Clone, Copy)]

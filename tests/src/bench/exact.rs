@@ -16,6 +16,7 @@ use app_core::session::{Capture, GroundTruth, Session};
 use app_core::toy::{PosedMesh, ToyError};
 use glam::{DMat4, DVec3, UVec2};
 
+use crate::metrics::flicker::{Follower, mean_flicker};
 use crate::metrics::score;
 use crate::reference::model::Region;
 use crate::reference::occlusion::{Occluder, sample_position};
@@ -41,7 +42,8 @@ pub(super) fn measure(
     core.set_scene(scene.clone(), preset)?;
     let frames = options.frames.clone().unwrap_or(0..session.n_frames());
     let n_frames = frames.len();
-    let mut scores = Vec::new();
+    let (mut scores, mut flicker) = (Vec::new(), Vec::new());
+    let mut follower = Follower::default();
     let mut physical: Option<(Camera, FloatMap)> = None;
     for index in frames {
         let failed = |reason| ReplayError::Frame { index, reason };
@@ -66,8 +68,9 @@ pub(super) fn measure(
         }
         if let Some(truth) = session.truth(index)? {
             let picture = core.read_picture().map_err(failed)?;
-            let scored = score(&picture, &truth);
-            scores.push(scored.map_err(|reason| ReplayError::Score { index, reason })?);
+            let failed = |reason| ReplayError::Score { index, reason };
+            scores.push(score(&picture, &truth).map_err(failed)?);
+            flicker.extend(follower.next(index, &picture, &truth).map_err(failed)?);
         }
     }
     Ok(Row {
@@ -75,6 +78,7 @@ pub(super) fn measure(
         preset: format!("{preset}+exact"),
         n_frames,
         scores: mean_scores(&scores),
+        flicker: mean_flicker(&flicker),
         align_ms: None,
         times: None,
         n_taps: None,

@@ -1,11 +1,12 @@
 //! Rows as a person reads them, and as a program does.
 
+use crate::metrics::flicker::Flicker;
 use crate::metrics::{Score, Scores};
 
 use super::{Row, Times};
 
 const CSV_HEADER: &str = "session,preset,n_frames,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,\
-frame_rmse,frame_ssim,align_ms,cpu_ms,gpu_ms,capture_ms,ratio_to_paper,taps_per_missing_texel,pass_shares";
+frame_rmse,frame_ssim,shadow_flicker,toy_flicker,edge_flicker,frame_flicker,align_ms,cpu_ms,gpu_ms,capture_ms,ratio_to_paper,taps_per_missing_texel,pass_shares";
 
 /// One line a row under a header. What was not measured is empty; shares of passes are `name=share`, apart by spaces.
 #[must_use]
@@ -16,6 +17,7 @@ pub fn csv(rows: &[Row]) -> String {
             fields.extend(regions(row).into_iter().flat_map(|score| {
                 [score.map(|score| score.rmse), score.map(|score| score.ssim)].map(number)
             }));
+            fields.extend(flicker(row).map(number));
             let times = row.times.as_ref();
             let measured = [
                 row.align_ms,
@@ -45,6 +47,8 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         "toy",
         "edge",
         "frame",
+        "flicker",
+        "toy's",
         "align ms",
         "CPU ms",
         "GPU ms",
@@ -62,7 +66,10 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         let times = row.times.as_ref();
         let mut line = vec![row.session.clone(), row.preset.clone()];
         line.extend(regions(row).map(score));
+        let [of_shadow, of_toy, ..] = flicker(row);
         line.extend([
+            short(of_shadow, 2),
+            short(of_toy, 2),
             short(row.align_ms, 1),
             short(times.and_then(|times| times.cpu_ms), 2),
             short(times.and_then(|times| times.gpu_ms), 2),
@@ -73,7 +80,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
         cells.push(line);
     }
     let mut text = aligned(&cells);
-    text.push_str("Scores are RMSE in 8-bit codes (SSIM); times are medians of frames that learn nothing, but that of alignment, a mean over all frames.\n");
+    text.push_str("Scores are RMSE in 8-bit codes (SSIM); flicker is that of changes from frame to frame, in the shadow and on the toy; times are medians of frames that learn nothing, but that of alignment, a mean over all frames.\n");
     for row in rows.iter().filter(|row| row.n_taps.is_some()) {
         let shares = shares(row.times.as_ref());
         text.push_str(&format!(
@@ -96,6 +103,16 @@ fn regions(row: &Row) -> [Option<Score>; 4] {
         score(|scores| scores.toy),
         score(|scores| scores.edge),
         score(|scores| scores.frame),
+    ]
+}
+
+fn flicker(row: &Row) -> [Option<f64>; 4] {
+    let of = |region: fn(&Flicker) -> f64| row.flicker.as_ref().map(region);
+    [
+        of(|flicker| flicker.shadow),
+        of(|flicker| flicker.toy),
+        of(|flicker| flicker.edge),
+        of(|flicker| flicker.frame),
     ]
 }
 

@@ -12,7 +12,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use glam::Vec4;
 
-use crate::alignment::{Alignments, Lights};
+use crate::alignment::Alignments;
 use crate::false_color::srgb_from_linear;
 use crate::replay::ReplayError;
 
@@ -35,7 +35,7 @@ pub struct Rebuilt {
     pub picture: Image,
 }
 
-/// Makes every photograph of a session again from the shadow of the first. `paper` and `flat` cannot do without.
+/// Makes every photograph of a session again from the shadow of the first, which alone is read, also by alignment. `paper` and `flat` cannot do without.
 ///
 /// # Errors
 /// When a frame cannot be read or made.
@@ -46,7 +46,7 @@ pub fn rebuild(
     is_aligned: bool,
 ) -> Result<Vec<Rebuilt>, ReplayError> {
     let alignments = if is_aligned {
-        Alignments::find(session, 0..session.n_frames(), Lights::Given)?
+        Alignments::find_without_shadows(session)?
     } else {
         Alignments::none()
     };

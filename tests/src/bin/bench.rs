@@ -9,11 +9,13 @@ use anyhow::Context;
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::session::Capture;
+use app_core::session::{Capture, Session};
 use app_core::wgpu;
 use clap::Parser;
 use harness::alignment::Lights;
-use harness::bench::{Options, Row, bench, csv, rebuild, rebuilt_table, table};
+use harness::bench::{
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, rebuild, rebuilt_table, table,
+};
 use harness::files::{BUNDLED_SESSION, Folder};
 use harness::output::{make_folder, remove_file, write_png, write_whole};
 use harness::program::exit_code;
@@ -47,6 +49,15 @@ struct Args {
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
     #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights"])]
     withheld: bool,
+    /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "withheld", "as_given", "presets", "adapter"])]
+    basin: bool,
+    /// Where the directions of these disturbances are drawn from
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
+    seed: u64,
+    /// How many of them
+    #[arg(long, value_name = "N", default_value_t = 24, requires = "basin", value_parser = clap::value_parser!(u16).range(1..))]
+    draws: u16,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long)]
     as_given: bool,
@@ -78,6 +89,9 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let out = args.out.clone().unwrap_or_else(results);
     let result = out.join(CSV_FILE);
     make_folder(&out)?;
+    if args.basin {
+        return basins(folders, args, &out);
+    }
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
     if args.withheld {
         return rebuild_all(folders, &mut core, args, &out);
@@ -95,6 +109,31 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let text = table(&rows, &gpu.adapter_name(), gpu.is_software());
     io::stdout()
         .write_all(format!("{text}{}\n", result.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+/// Prints from how far off alignment comes back, and writes tables and drawings. Needs no device.
+fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
+    let mut text = String::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let capture = Capture::open(Folder::open(folder)?)?;
+        let draws = basin(&capture, args.seed, args.draws);
+        let draws = draws.with_context(|| folder.display().to_string())?;
+        let name = &capture.scene().name;
+        let drawing = basin_drawing(name, &draws).map_err(anyhow::Error::msg)?;
+        write_whole(
+            &out.join(format!("{name}-basin.csv")),
+            basin_csv(&draws).as_bytes(),
+        )?;
+        write_whole(&out.join(format!("{name}-basin.svg")), drawing.as_bytes())?;
+        text.push_str(&format!("{name}\n{}", basin_table(&draws)));
+    }
+    text.push_str(
+        "Median and worst of what is left, against what is recorded; starts are by sixths of the largest.\n",
+    );
+    io::stdout()
+        .write_all(format!("{text}{}\n", out.display()).as_bytes())
         .context("writing to standard output")
 }
 

@@ -153,5 +153,11 @@ fn summary_of(report: &Report) -> Vec<String> {
             regions.join(", ")
         ));
     }
+    if let Some(flicker) = report.mean.flicker {
+        lines.push(format!(
+            "mean flicker (RMSE of changes from frame to frame): shadow {:.2}, toy {:.2}, edge {:.2}, frame {:.2}",
+            flicker.shadow, flicker.toy, flicker.edge, flicker.frame
+        ));
+    }
     lines
 }

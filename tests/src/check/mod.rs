@@ -1,8 +1,10 @@
 //! What is wrong with a session, as far as it can be told without any truth.
 
 pub mod aligned_session;
+mod icc;
 mod keys;
 mod overlay;
+mod pictures;
 mod sense;
 
 use std::path::{Path, PathBuf};
@@ -10,12 +12,14 @@ use std::path::{Path, PathBuf};
 use app_core::alignment::{Alignment, Outlines};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image};
-use app_core::session::{Capture, Session};
+use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
 use crate::alignment::{Alignments, Lights};
 use crate::files::Folder;
 use crate::output::{remove_file, write_png};
+
+pub use pictures::wrong_of_picture;
 
 /// File name of the drawing.
 const DRAWING: &str = "check.png";
@@ -43,6 +47,7 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
         wrong: keys::unknown(&folder),
         ..Findings::default()
     };
+    findings.wrong.extend(pictures::wrong(&folder));
     let capture = match Capture::open(folder) {
         Ok(capture) => capture,
         Err(error) => {
@@ -50,17 +55,14 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
             return Ok(findings);
         }
     };
-    findings
-        .wrong
-        .extend(capture.warnings().iter().map(ToString::to_string));
+    findings.wrong.extend(told(capture.warnings()));
     findings.facts.extend(sense::without(capture.scene()));
     findings.wrong.extend(sense::wrong(capture.scene()));
     let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
     for (index, frame) in frames {
         match frame {
             Ok(frame) => {
-                let wrong = frame.warnings.iter().map(ToString::to_string);
-                findings.wrong.extend(wrong);
+                findings.wrong.extend(told(&frame.warnings));
                 findings
                     .wrong
                     .extend(sense::wrong_of_frame(capture.scene(), index, &frame));
@@ -84,6 +86,14 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
         }
     }
     Ok(findings)
+}
+
+/// The reader's warnings, but those of files that were looked at before.
+fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
+    let others = warnings
+        .iter()
+        .filter(|warning| !matches!(warning, SessionWarning::Turned { .. }));
+    others.map(ToString::to_string)
 }
 
 impl Findings {

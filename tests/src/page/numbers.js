@@ -31,6 +31,10 @@ function showNumbers() {
   }
   const byRegion = scores => REGIONS.map(region =>
     row(region, scoreCells(data.presets.map(preset => scores(preset)?.[region] ?? null))));
+  const flicker = pick => data.presets.some(pick) ? REGIONS.map(region =>
+    row(region, data.presets.map(preset => pick(preset)?.[region].toFixed(2) ?? "\u2013"))) : null;
+  const ofFrame = flicker(preset => entry(preset).flicker);
+  const ofAll = flicker(preset => preset.report.mean.flicker);
   const nScored = data.presets[0].report.mean.n_scored;
   const everyFrame = data.frames.map(({ index }, i) => {
     const jump = el("button", { type: "button" }, `${index}`);
@@ -41,10 +45,13 @@ function showNumbers() {
   const wasOpen = at("numbers").querySelector("details")?.open ?? false;
   at("numbers").replaceChildren(title,
     el("p", { class: "soft" }, "Large: RMSE in codes of 255, lower is better. Small: SSIM, 1 is equal.",
-      several ? " Bold: the best." : ""),
+      several ? " Bold: the best." : "",
+      ofAll && " Flicker: RMSE of what changes from frame to frame, less what changes in the truth."),
     el("div", { class: "columns" },
       table(`Frame ${data.frames[current].index}`, heads, byRegion(preset => entry(preset).scores)),
-      table(`Mean over ${nScored} frames`, heads, byRegion(preset => preset.report.mean.scores))),
+      table(`Mean over ${nScored} frames`, heads, byRegion(preset => preset.report.mean.scores)),
+      ofFrame && table("Flicker since the frame before", heads, ofFrame),
+      ofAll && table("Mean flicker", heads, ofAll)),
     el("details", { open: wasOpen }, el("summary", {}, "Shadow, frame by frame"),
       table("Choose a number to go to its frame", ["frame", ...heads.slice(1)], everyFrame)));
 }

@@ -1,6 +1,5 @@
 //! Pictures of a world: linear light a pixel, and what a mask tells, then sRGB codes.
 
-use std::f64::consts::TAU;
 use std::thread;
 
 use app_core::scene::{Camera, Image};
@@ -8,6 +7,7 @@ use glam::DVec3;
 
 use super::rays::{Place, Thing};
 use super::world::Quality;
+use crate::random::Random;
 
 /// What a camera sees of a world, pixel by pixel, rows from the top.
 #[derive(Clone, Debug)]
@@ -107,11 +107,11 @@ impl Film {
     /// The picture in sRGB codes, at a gain a channel and with Gaussian noise of that many codes.
     #[must_use]
     pub fn develop(&self, gain: DVec3, noise_codes: f64, seed: u64) -> Image {
-        let mut noise = Noise { state: seed };
+        let mut noise = Random::new(seed);
         let codes = |light: &DVec3| {
             let [r, g, b] = (gain * *light).to_array().map(|light| {
                 let grain = if noise_codes > 0.0 {
-                    noise_codes * noise.next()
+                    noise_codes * noise.normal()
                 } else {
                     0.0
                 };
@@ -166,29 +166,4 @@ fn byte(code: f64) -> u8 {
     )]
     let byte = code.round().clamp(0.0, 255.0) as u8;
     byte
-}
-
-/// Numbers of the normal distribution, always the same ones.
-struct Noise {
-    state: u64,
-}
-
-impl Noise {
-    /// From 0 to 1, without 0. Source: Steele, Lea and Flood 2014 (SplitMix).
-    fn uniform(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        #[allow(clippy::cast_precision_loss, reason = "53 bits are kept")]
-        let unit = ((z >> 11) + 1) as f64 / (1u64 << 53) as f64;
-        unit
-    }
-
-    /// Source: Box and Muller 1958.
-    fn next(&mut self) -> f64 {
-        let (radius, angle) = (self.uniform(), self.uniform());
-        (-2.0 * radius.ln()).sqrt() * (TAU * angle).cos()
-    }
 }

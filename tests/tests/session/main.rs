@@ -7,6 +7,7 @@ mod folder;
 mod follows;
 mod parts;
 mod schema;
+mod turned;
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

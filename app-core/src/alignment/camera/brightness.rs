@@ -2,6 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
+use crate::alignment::mask::Mask;
 use crate::alignment::rectangle::{index_in, places};
 use crate::geometry::color::linear_of_codes;
 use crate::scene::{Image, Intrinsics};
@@ -25,13 +26,21 @@ pub(super) struct Plane {
     pub(super) size_px: IVec2,
     /// Pixels of this level in one of the picture.
     scale: f64,
+    /// None is a number where nothing is known.
     values: Vec<f32>,
 }
 
 impl Brightness {
-    /// Of a picture whose size was checked.
-    pub(super) fn of(image: &Image) -> Self {
+    /// Of a picture whose size was checked; nothing is known of what is withheld.
+    pub(super) fn of(image: &Image, withheld: Option<&Mask>) -> Self {
         let mut plane = Plane::luminance(image);
+        if let Some(withheld) = withheld {
+            for (value, at) in plane.values.iter_mut().zip(places(plane.size_px)) {
+                if withheld.has(at) {
+                    *value = f32::NAN;
+                }
+            }
+        }
         while plane.size_px.x * plane.size_px.y > MOST_PIXELS {
             plane = plane.halved();
         }
@@ -74,7 +83,7 @@ impl Plane {
         let size_px = self.size_px / 2;
         let mean = |at: IVec2| {
             let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(2 * at + step));
-            0.25 * four.into_iter().flatten().sum::<f32>()
+            0.25 * four.into_iter().sum::<Option<f32>>().unwrap_or(f32::NAN)
         };
         Self {
             size_px,
@@ -93,9 +102,10 @@ impl Plane {
         k.scaled(self.scale)
     }
 
-    /// A pixel; none outside the picture.
+    /// A pixel; none outside the picture, nor where nothing is known.
     pub(super) fn get(&self, at: IVec2) -> Option<f32> {
-        self.values.get(index_in(self.size_px, at)?).copied()
+        let value = self.values.get(index_in(self.size_px, at)?);
+        value.copied().filter(|value| !value.is_nan())
     }
 
     /// Change along x and y at a pixel, for each pixel, by central differences; none at the border.
@@ -104,7 +114,8 @@ impl Plane {
         Some(DVec2::new(difference(IVec2::X)?, difference(IVec2::Y)?))
     }
 
-    /// Value and gradient at a place in pixels, bilinear between the centres of four; none within two pixels of the border.
+    /// Value and gradient at a place in pixels, bilinear between the centres of four; none within two pixels of the border
+    /// or of what is not known.
     pub(super) fn sample(&self, at_px: DVec2) -> Option<(f64, DVec2)> {
         let from_centre = at_px - 0.5;
         let is_inside =

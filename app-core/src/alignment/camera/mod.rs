@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
+use super::mask::Mask;
 use super::receivers::nearest;
 use super::report::CameraAlignment;
 use crate::scene::{Camera, Image, Plate, Receiver};
@@ -86,10 +87,11 @@ pub(super) struct Finder {
 }
 
 impl Finder {
-    /// Finds the camera of `image`, starting from the one given; none where there is no plate or too little texture.
+    /// Finds the camera of `image`, starting from the one given; none where there is no plate or too little texture. Of what is
+    /// withheld nothing is read.
     pub(super) fn find(
         &mut self,
-        (image, camera): (&Arc<Image>, &Camera),
+        (image, camera, withheld): (&Arc<Image>, &Camera, Option<&Mask>),
         plates: &[Plate],
         receivers: &[Receiver],
     ) -> Option<Found> {
@@ -99,7 +101,10 @@ impl Finder {
         let near = nearest(plates, camera).into_iter().take(N_PLATES);
         let plates: Vec<(&Plate, Arc<Brightness>)> =
             near.map(|plate| (plate, self.brightness(&plate.image))).collect();
-        let photograph = self.brightness(image);
+        let photograph = match withheld {
+            Some(_) => Arc::new(Brightness::of(image, withheld)),
+            None => self.brightness(image),
+        };
         let camera_from_world = camera.world_from_camera.inverse();
         let mut motion = None;
         for (level, picture) in photograph.levels().iter().enumerate().rev() {
@@ -144,7 +149,7 @@ impl Finder {
         let known = self.decoded.iter().position(|(of, _)| Arc::ptr_eq(of, image));
         let latest = match known {
             Some(place) => self.decoded.remove(place),
-            None => (Arc::clone(image), Arc::new(Brightness::of(image))),
+            None => (Arc::clone(image), Arc::new(Brightness::of(image, None))),
         };
         let brightness = Arc::clone(&latest.1);
         self.decoded.push(latest);

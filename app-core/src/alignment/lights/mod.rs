@@ -141,20 +141,23 @@ pub(super) fn find(
     })
 }
 
-/// The toy's points flattened onto each receiver from the middle of a light, in camera space.
-pub(super) fn hard_shadows(
+/// The toy's points flattened onto each receiver from points over the unit disc of a light, in camera space.
+pub(super) fn flat_shadows(
     light: &Light,
     shape: &Shape,
     receivers: &[SeenReceiver],
     camera_from_world: &DMat4,
+    disc: &[DVec2],
 ) -> Vec<Vec<DVec3>> {
     let Some(lamp) = Lamp::new(light, camera_from_world, shape.centre) else {
         return Vec::new();
     };
-    let flat = receivers.iter().map(|receiver| {
+    let flat = receivers.iter().flat_map(|receiver| {
         let plane_from_camera = &receiver.plane_from_camera;
-        let middle = lamp.points(plane_from_camera, shape.centre, &[DVec2::ZERO]);
-        flattened(shape, plane_from_camera, middle[0])
+        let points = lamp.points(plane_from_camera, shape.centre, disc);
+        points
+            .into_iter()
+            .map(|point| flattened(shape, plane_from_camera, point))
     });
     flat.collect()
 }

@@ -47,10 +47,10 @@ pub(super) fn capture_from_record(
     })?;
 
     let store = PictureStore { files, size };
-    let plates = plates(&store, &intrinsics, &record.backgrounds)?;
+    let plates = plates(&store, &intrinsics, &record.backgrounds, &mut warnings)?;
     let probe = record
         .probe
-        .map(|probe| fresnel_lens(&store, &probe))
+        .map(|probe| fresnel_lens(&store, &probe, &mut warnings))
         .transpose()?;
     let scene = Scene {
         name: record.name,

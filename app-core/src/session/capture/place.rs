@@ -14,6 +14,7 @@ use crate::scene::check;
 use crate::scene::{
     Camera, FieldError, FresnelLens, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
 };
+use crate::session::SessionWarning;
 use crate::session::error::SessionError;
 
 /// Pixels of all plates together, which stay in memory: 1 GiB.
@@ -103,11 +104,12 @@ pub(super) fn light(field: &str, record: &LightRecord) -> Result<Light, SessionE
     })
 }
 
-/// Reads the plates. Those with the same file share its picture.
+/// Reads the plates. Those with the same file share its picture, and are warned of once.
 pub(super) fn plates(
     store: &PictureStore,
     intrinsics: &Intrinsics,
     records: &[BackgroundRecord],
+    warnings: &mut Vec<SessionWarning>,
 ) -> Result<Vec<Plate>, SessionError> {
     at("backgrounds", check::at_most(records.len(), MAX_SCENE_PLATES))?;
     let mut pictures: HashMap<&str, Arc<Image>> = HashMap::new();
@@ -129,9 +131,11 @@ pub(super) fn plates(
                     };
                     return Err(in_index("backgrounds", error));
                 }
-                let image = Arc::new(store.photo(&record.image, &format!("{field}.image"))?);
-                pictures.insert(&record.image, Arc::clone(&image));
-                image
+                let field = format!("{field}.image");
+                let photo = store.photo(&record.image, &field)?;
+                warnings.extend(photo.warning(&record.image, &field));
+                pictures.insert(&record.image, Arc::clone(&photo.image));
+                photo.image
             }
         };
         plates.push(Plate { camera, image });
@@ -139,7 +143,14 @@ pub(super) fn plates(
     Ok(plates)
 }
 
-pub(super) fn fresnel_lens(store: &PictureStore, record: &ProbeRecord) -> Result<FresnelLens, SessionError> {
+pub(super) fn fresnel_lens(
+    store: &PictureStore,
+    record: &ProbeRecord,
+    warnings: &mut Vec<SessionWarning>,
+) -> Result<FresnelLens, SessionError> {
+    let field = "probe.image";
+    let photo = store.photo(&record.image, field)?;
+    warnings.extend(photo.warning(&record.image, field));
     Ok(FresnelLens {
         world_from_lens: at("probe.world_from_lens", check::rigid(record.world_from_lens))?,
         radius_m: at("probe.radius", check::number(record.radius, &check::EXTENT_M))?,
@@ -147,6 +158,6 @@ pub(super) fn fresnel_lens(store: &PictureStore, record: &ProbeRecord) -> Result
             "probe.exposure_ratio",
             check::number(record.exposure_ratio, &check::EXPOSURE_RATIO),
         )?,
-        image: Arc::new(store.photo(&record.image, "probe.image")?),
+        image: photo.image,
     })
 }

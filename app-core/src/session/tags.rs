@@ -1,0 +1,42 @@
+//! What a picture file says about its pixels: the chunks of a PNG, and how EXIF asks to turn it.
+
+use std::io::Cursor;
+
+use image::ImageDecoder;
+use image::codecs::jpeg::JpegDecoder;
+use image::metadata::Orientation;
+
+pub(super) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
+pub(super) const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
+
+/// Name and data of each chunk of a PNG, in order, as far as the file goes. None of another file.
+///
+/// Source: PNG specification (W3C, third edition), section 5.3.
+pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
+    let mut rest = bytes.strip_prefix(PNG_MAGIC).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (length, named) = rest.split_first_chunk::<4>()?;
+        let (name, data) = named.split_first_chunk::<4>()?;
+        let (data, checksum) = data.split_at_checked(usize::try_from(u32::from_be_bytes(*length)).ok()?)?;
+        rest = checksum.get(4..)?;
+        Some((*name, data))
+    })
+}
+
+/// How the picture is to be turned before it is looked at, as EXIF numbers it, 1 to 8; 1 as it is stored, and where no tag
+/// that can be read says otherwise.
+///
+/// A PNG may have its tag behind the pixels, where decoders do not look.
+#[must_use]
+pub fn exif_orientation(bytes: &[u8]) -> u8 {
+    let orientation = if bytes.starts_with(JPEG_MAGIC) {
+        JpegDecoder::new(Cursor::new(bytes))
+            .and_then(|mut decoder| decoder.orientation())
+            .ok()
+    } else {
+        png_chunks(bytes)
+            .find(|(name, _)| name == b"eXIf")
+            .and_then(|(_, data)| Orientation::from_exif_chunk(data))
+    };
+    orientation.map_or(1, Orientation::to_exif)
+}
