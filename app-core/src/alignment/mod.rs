@@ -40,6 +40,7 @@ use glam::DMat4;
 
 use crate::frame::warning::Warning;
 use crate::frame::{FrameInput, NoLight};
+use crate::probe::{ProbeReport, TrackedLight};
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use photograph::{Discovered, FoundLights, MOST_OUTLINE_PX, Photograph};
@@ -91,7 +92,8 @@ impl Alignment {
 /// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
 /// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
 /// the first frame that shows their shadow, and kept while the listed ones stay as they are. Where none are listed they are looked
-/// for all over the hemisphere.
+/// for around those that the scene's probe tells of, or without one all over the hemisphere. Lights that a probe tells stand as it
+/// tells them where no shadow does.
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
@@ -101,6 +103,8 @@ pub struct Aligner {
     /// The pose in the latest view that showed where the toy is.
     held: Option<DMat4>,
     lights: Option<AlignedLights>,
+    /// Once it was needed.
+    probe: Option<ProbeReport>,
 }
 
 /// Camera and pose in the latest view.
@@ -139,6 +143,7 @@ impl Aligner {
             view: None,
             held: None,
             lights: None,
+            probe: None,
         }
     }
 
@@ -173,6 +178,9 @@ impl Aligner {
                 Some(view) => view,
                 None => self.view(input)?,
             };
+            if given.is_empty() && self.probe.is_none() {
+                self.probe = self.scene.probe.as_ref().map(ProbeReport::of).transpose()?;
+            }
             if self.lights.is_none() {
                 self.lights = Some(self.find_lights(given, &view, input)?);
             }
@@ -224,13 +232,14 @@ impl Aligner {
         };
         let photograph = || Photograph::new(&self.scene, &seen);
         if given.is_empty() {
+            let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
             let found = match &view.report {
                 Some(pose) if view.is_trusted(DISCOVERY_OUTLINE_PX) => {
-                    photograph().discover(&self.scene, &seen, &pose.deviation)?
+                    photograph().discover(&self.scene, &seen, &pose.deviation, told)?
                 }
                 _ => Err(NoLight::PoseUnknown),
             };
-            return Ok(AlignedLights::discovered(given, found));
+            return Ok(AlignedLights::discovered(given, found, told));
         }
         let can_tell = given.len() <= MAX_LIGHTS && !self.scene.plates.is_empty();
         let found = if can_tell && view.is_trusted(MOST_OUTLINE_PX) {
@@ -266,16 +275,19 @@ impl Aligner {
                 .and_then(|found| found.clone().ok())
                 .unwrap_or_default(),
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
+            probe: self.probe.clone().filter(|_| discovered.is_some()),
         };
+        let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
         let warnings = off.map(|pose| Warning::Misaligned {
             outline_px: pose.shown_px(),
         });
-        let none = report.no_light.map(|reason| Warning::LightNotFound { reason });
+        let none = report.no_light.filter(|_| applied.is_none());
+        let none = none.map(|reason| Warning::LightNotFound { reason });
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
-            lights: lights.and_then(|lights| lights.applied.clone()),
+            lights: applied,
             report,
             warnings: warnings.into_iter().chain(none).collect(),
         }
@@ -310,11 +322,15 @@ impl AlignedLights {
         }
     }
 
-    fn discovered(given: Arc<[Light]>, found: Discovered) -> Self {
-        let lights = found.iter().flatten().map(|found| found.light).collect();
+    /// Those that a probe tells stand where no shadow tells them.
+    fn discovered(given: Arc<[Light]>, found: Discovered, told: &[TrackedLight]) -> Self {
+        let lights: Arc<[Light]> = match &found {
+            Ok(found) => found.iter().map(|found| found.light).collect(),
+            Err(_) => told.iter().map(|told| told.light).collect(),
+        };
         Self {
             given,
-            applied: found.is_ok().then_some(lights),
+            applied: (found.is_ok() || !told.is_empty()).then_some(lights),
             report: Vec::new(),
             errors: None,
             discovered: Some(found),
