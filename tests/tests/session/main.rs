@@ -47,7 +47,10 @@ fn a_good_capture_is_read_as_written() {
     assert_eq!(probe.pictures[1].exposure_ratio, 0.25);
     let cameras = [0, 1].map(|index| probe.pictures[index].camera.intrinsics.fx_px);
     assert_eq!(cameras, [2.0, 2.5], "of the first frame, and its own");
-    assert_eq!(probe.pictures[1].world_from_probe, probe.pictures[0].world_from_probe);
+    assert_eq!(
+        probe.pictures[1].world_from_probe,
+        probe.pictures[0].world_from_probe
+    );
 
     let before = n_reads.load(Ordering::Relaxed);
     let (first, second) = (capture.frame(0).unwrap(), capture.frame(1).unwrap());
