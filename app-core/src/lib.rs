@@ -84,6 +84,7 @@ pub mod core;
 pub mod frame;
 pub mod gpu;
 pub mod preset;
+pub mod probe;
 pub mod scene;
 pub mod session;
 pub mod toy;

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use app_core::alignment::{Aligner, Alignment};
 use app_core::frame::FrameInput;
+use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Scene};
 use app_core::session::{Session, SessionFrame};
 use glam::{DMat4, DVec3};
@@ -15,11 +16,13 @@ use crate::replay::ReplayError;
 /// Where lights come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Lights {
-    /// From the session's list; where that is empty they are looked for.
+    /// From the session's list; where that is empty as its probe tells, and without one they are looked for.
     #[default]
     Given,
-    /// From the pictures alone: the list is put aside, and compared with.
+    /// From the frames alone: list and probe are put aside, and the list is compared with.
     Found,
+    /// As the session's probe tells: the list is put aside, and compared with.
+    Probe,
 }
 
 /// Corrections of frames, found once for all presets.
@@ -37,7 +40,9 @@ pub struct Aligned {
     pub alignment: Alignment,
     /// What finding it took on the processor.
     pub cpu_ms: f64,
-    /// The lights that were put aside, as seen from the toy's middle.
+    /// The lights that were put aside.
+    pub put_aside: Vec<Light>,
+    /// The same as seen from the toy's middle.
     pub listed: Vec<SeenLight>,
 }
 
@@ -97,7 +102,11 @@ impl Alignments {
     /// # Errors
     /// When a frame cannot be read or aligned.
     pub fn find(session: &dyn Session, frames: Range<usize>, lights: Lights) -> Result<Self, ReplayError> {
-        Self::find_by(Aligner::new(session.scene().clone()), session, frames, lights)
+        let mut known = session.scene().clone();
+        if lights == Lights::Found {
+            known.probe = None;
+        }
+        Self::find_by(Aligner::new(known), session, frames, lights)
     }
 
     /// Aligns all frames, and reads no shadow but that of the first picture.
@@ -117,9 +126,9 @@ impl Alignments {
         lights: Lights,
     ) -> Result<Self, ReplayError> {
         let scene = session.scene();
-        let listed = match lights {
+        let put_aside = match lights {
             Lights::Given => &[],
-            Lights::Found => &scene.lights[..],
+            Lights::Found | Lights::Probe => &scene.lights[..],
         };
         let mut found = Vec::with_capacity(frames.len());
         for index in frames.clone() {
@@ -134,7 +143,8 @@ impl Alignments {
             found.push(Aligned {
                 alignment,
                 cpu_ms,
-                listed: listed
+                put_aside: put_aside.to_vec(),
+                listed: put_aside
                     .iter()
                     .map(|light| SeenLight::from(middle, light))
                     .collect(),
@@ -173,8 +183,8 @@ impl Alignments {
 
     /// Lights that the core is given with the last frame.
     #[must_use]
-    pub fn n_lights(&self, given: &Scene) -> usize {
-        let found = self.found.last().and_then(|last| last.alignment.lights.as_ref());
+    pub fn n_lights(&self, given: &Scene, preset: Preset) -> usize {
+        let found = self.found.last().and_then(|last| last.lights(preset));
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
     }
 
@@ -190,13 +200,29 @@ impl Alignments {
         self.found.get(index.checked_sub(self.first)?)
     }
 
-    /// What the core is given of a frame.
+    /// What the core is given of a frame with a preset.
     #[must_use]
-    pub fn input(&self, index: usize, frame: &SessionFrame) -> FrameInput {
+    pub fn input(&self, index: usize, frame: &SessionFrame, preset: Preset) -> FrameInput {
         let input = self.lights.input(frame);
         match self.of(index) {
-            Some(aligned) => aligned.alignment.applied_to(&input),
+            Some(aligned) => FrameInput {
+                lights: aligned.lights(preset).or_else(|| input.lights.clone()),
+                ..aligned.alignment.applied_to(&input)
+            },
             None => input,
+        }
+    }
+}
+
+impl Aligned {
+    /// Lights that were found; none where those that were given stay. With preset `paper` those that a probe tells are the paper's own:
+    /// the viewer on the axis, and no shadow looked at.
+    fn lights(&self, preset: Preset) -> Option<Arc<[Light]>> {
+        let probe = self.alignment.report.probe.as_ref();
+        let published = probe.filter(|probe| preset == Preset::Paper && !probe.published.is_empty());
+        match published {
+            Some(probe) => Some(probe.published.as_slice().into()),
+            None => self.alignment.lights.clone(),
         }
     }
 }
@@ -214,7 +240,7 @@ impl Lights {
     fn listed(self, scene: &Scene) -> &[Light] {
         match self {
             Self::Given => &scene.lights,
-            Self::Found => &[],
+            Self::Found | Self::Probe => &[],
         }
     }
 
@@ -222,7 +248,7 @@ impl Lights {
         let input = FrameInput::from(frame);
         match self {
             Self::Given => input,
-            Self::Found => FrameInput {
+            Self::Found | Self::Probe => FrameInput {
                 lights: Some(Arc::new([])),
                 ..input
             },

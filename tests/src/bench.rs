@@ -127,7 +127,7 @@ fn measure(
     let mut reports = replay_aligned((session, Some(session)), core, &asked, alignments, &mut Quiet)?;
     // One preset, one report.
     let report = reports.swap_remove(0);
-    let inputs = inputs(session, &report, alignments)?;
+    let inputs = inputs(session, (&report, preset), alignments)?;
     Ok(Row {
         session: report.session,
         preset: preset.name().to_owned(),
@@ -154,13 +154,13 @@ fn replay_options(options: &Options) -> replay::Options {
 /// The replayed frames on which something was worked on, as the core was given them.
 fn inputs(
     session: &Capture,
-    report: &Report,
+    (report, preset): (&Report, Preset),
     alignments: &Alignments,
 ) -> Result<Vec<FrameInput>, ReplayError> {
     use app_core::session::Session;
     let worked = report.frames.iter().filter(|frame| frame.region.is_some());
     worked
-        .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?)))
+        .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?, preset)))
         .collect()
 }
 

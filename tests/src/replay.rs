@@ -230,7 +230,7 @@ impl Run<'_> {
             if let Some(relit) = self.alignments.relit_scene(scene, index) {
                 self.core.set_scene(relit, preset)?;
             }
-            let entry = self.frame(index)?;
+            let entry = self.frame(index, preset)?;
             progress.frame(&entry);
             frames.push(entry);
         }
@@ -245,7 +245,7 @@ impl Run<'_> {
             fit: self
                 .core
                 .read_fit()?
-                .map(|fit| FitEntry::new(&fit, self.alignments.n_lights(scene))),
+                .map(|fit| FitEntry::new(&fit, self.alignments.n_lights(scene, preset))),
             frames,
         };
         if let Some(out) = &self.out {
@@ -255,8 +255,9 @@ impl Run<'_> {
         Ok(report)
     }
 
-    fn frame(&mut self, index: usize) -> Result<FrameEntry, ReplayError> {
-        let (mut entry, region, picture) = run_frame(self.session, self.alignments, self.core, index)?;
+    fn frame(&mut self, index: usize, preset: Preset) -> Result<FrameEntry, ReplayError> {
+        let (mut entry, region, picture) =
+            run_frame(self.session, self.alignments, self.core, (index, preset))?;
         let truth = match self.truth {
             Some(truth) => truth.truth(index)?,
             None => None,
@@ -338,11 +339,11 @@ fn run_frame(
     session: &dyn Session,
     alignments: &Alignments,
     core: &mut Core,
-    index: usize,
+    (index, preset): (usize, Preset),
 ) -> Result<(FrameEntry, Option<PixelRect>, Image), ReplayError> {
     let failed = |reason| ReplayError::Frame { index, reason };
     let frame = session.frame(index)?;
-    let input = alignments.input(index, &frame);
+    let input = alignments.input(index, &frame, preset);
     let aligned = alignments.of(index);
     let start = Instant::now();
     let report = core.frame(&input).map_err(failed)?;

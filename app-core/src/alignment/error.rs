@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::frame::FrameInput;
+use crate::probe::ProbeError;
 use crate::scene::{InputError, Scene};
 use crate::toy::ToyError;
 
@@ -16,6 +17,9 @@ pub enum AlignError {
     /// The toy cannot be posed.
     #[error(transparent)]
     Toy(#[from] ToyError),
+    /// A picture of the probe cannot be read.
+    #[error(transparent)]
+    Probe(#[from] ProbeError),
     /// A picture is not of the scene's size.
     #[error("the {what} is not {} x {} pixels with 4 bytes each, as the scene is", size_px[0], size_px[1])]
     Size {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::lights::Watched;
 use super::photograph::{Discovered, FoundLights};
 use super::report::LightAlignment;
+use crate::probe::TrackedLight;
 use crate::scene::Light;
 
 /// Below that loss without any light no shadow is seen: it is what noise and the model of light leave.
@@ -57,11 +58,14 @@ impl KeptLights {
         }
     }
 
-    /// Those that nobody listed.
-    pub(super) fn discovered(given: Arc<[Light]>, found: Discovered) -> Self {
-        let lights = found.iter().flatten().map(|found| found.light).collect();
+    /// Those that nobody listed; what a probe tells stands where no shadow tells them.
+    pub(super) fn discovered(given: Arc<[Light]>, found: Discovered, told: &[TrackedLight]) -> Self {
+        let lights: Arc<[Light]> = match &found {
+            Ok(found) => found.iter().map(|found| found.light).collect(),
+            Err(_) => told.iter().map(|told| told.light).collect(),
+        };
         Self {
-            applied: found.is_ok().then_some(lights),
+            applied: (found.is_ok() || !told.is_empty()).then_some(lights),
             discovered: Some(found),
             ..Self::listed(given, None)
         }

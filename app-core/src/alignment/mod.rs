@@ -43,6 +43,7 @@ use glam::DMat4;
 
 use crate::frame::warning::Warning;
 use crate::frame::{FrameInput, NoLight};
+use crate::probe::ProbeReport;
 use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use kept_lights::KeptLights;
@@ -106,7 +107,8 @@ impl Alignment {
 /// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
 /// the first frame that shows their shadow, and kept while that is where they cast it. Where it is elsewhere, a lamp was moved or
 /// switched on: lights are found anew, and plates are taken as they would be in the new light. Where none are listed they are looked
-/// for all over the hemisphere.
+/// for around those that the scene's probe tells of, or without one all over the hemisphere. Lights that a probe tells stand as it
+/// tells them where no shadow does.
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
@@ -119,6 +121,8 @@ pub struct Aligner {
     /// The scene's plates, where they are in another light than they were taken in.
     relit_plates: Option<Arc<[Plate]>>,
     are_shadows_withheld: bool,
+    /// Once it was needed.
+    probe: Option<ProbeReport>,
 }
 
 /// A view with its photograph.
@@ -161,6 +165,7 @@ impl Aligner {
             lights: None,
             relit_plates: None,
             are_shadows_withheld: false,
+            probe: None,
         }
     }
 
@@ -197,6 +202,9 @@ impl Aligner {
             return Ok(self.aligned(input));
         }
         self.align_plates();
+        if given.is_empty() && self.probe.is_none() {
+            self.probe = self.scene.probe.as_ref().map(ProbeReport::of).transpose()?;
+        }
         let seen = match self.view.take().filter(|_| is_view_known) {
             Some(view) => Seen::again(&self.scene, view, input),
             None => self.see(input, kept.as_ref())?,
@@ -280,14 +288,15 @@ impl Aligner {
 
     /// Lights in a view that nobody lists, or that are not where they are listed.
     fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
         let found = match &seen.view.report {
             Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
                 seen.photograph
-                    .discover(&self.scene, &seen.input, &pose.deviation)?
+                    .discover(&self.scene, &seen.input, &pose.deviation, told)?
             }
             _ => Err(NoLight::PoseUnknown),
         };
-        let lights = KeptLights::discovered(given, found);
+        let lights = KeptLights::discovered(given, found, told);
         let watched = self.watch(&lights, seen)?;
         Ok(lights.seen(watched))
     }
@@ -379,18 +388,21 @@ impl Aligner {
                 .unwrap_or_default(),
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
             unexplained: lights.and_then(KeptLights::unexplained),
+            probe: self.probe.clone().filter(|_| discovered.is_some()),
         };
+        let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
         let warnings = off.map(|pose| Warning::Misaligned {
             outline_px: pose.shown_px(),
         });
-        let none = report.no_light.map(|reason| Warning::LightNotFound { reason });
+        let none = report.no_light.filter(|_| applied.is_none());
+        let none = none.map(|reason| Warning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| Warning::LightsChanged { unexplained });
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
-            lights: lights.and_then(|lights| lights.applied.clone()),
+            lights: applied,
             relit_plates: self.relit_plates.clone(),
             report,
             warnings: warnings.into_iter().chain(none).chain(changed).collect(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::lights::{FoundLight, Relight, Watched};
+use super::lights::{FoundLight, Guess, Relight, Watched};
 use super::mask::Mask;
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
@@ -12,6 +12,7 @@ use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviatio
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::frame::{FrameInput, NoLight};
+use crate::probe::TrackedLight;
 use crate::scene::{Light, Plate, Scene, check};
 use crate::toy::ToyError;
 
@@ -171,19 +172,32 @@ impl Photograph {
         }))
     }
 
-    /// Lights of which nothing is known, by the toy in its place, which is known as well as `pose` says.
+    /// Lights that nobody lists, by the toy in its place, which is known as well as `pose` says; around those that a probe tells of,
+    /// where there are any.
     pub(super) fn discover(
         &self,
         scene: &Scene,
         input: &FrameInput,
         pose: &PoseDeviation,
+        told: &[TrackedLight],
     ) -> Result<Discovered, ToyError> {
         let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let world_from_camera = &input.camera.world_from_camera;
         let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
         let middle_in_world = input.world_from_object.transform_point3(middle);
-        let found = lights::discover(&shape, &self.receivers, &self.pyramid, world_from_camera, pose);
+        let guesses: Vec<Guess> = told
+            .iter()
+            .filter_map(|light| Guess::new(light, &self.camera_from_world))
+            .collect();
+        let found = lights::discover(
+            &shape,
+            &self.receivers,
+            &self.pyramid,
+            world_from_camera,
+            pose,
+            &guesses,
+        );
         Ok(found.and_then(|mut found| {
             for found in &mut found {
                 found.seen_from(middle_in_world);

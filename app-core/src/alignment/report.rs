@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::frame::NoLight;
+use crate::probe::ProbeReport;
 use crate::scene::Light;
 
 /// What was aligned in a frame.
@@ -18,9 +19,12 @@ pub struct AlignmentReport {
     /// Error of the shadows that the given lights predict, and of those that were found: mean squares over receivers, in units of
     /// what noise and the model of light are expected to leave. None where lights were not looked at.
     pub light_errors: Option<[f64; 2]>,
+    /// What the scene's probe tells, where no light is listed: a first guess of those that were discovered.
+    pub probe: Option<ProbeReport>,
     /// The lights that were looked for where none are listed, strongest first; empty where they are listed, or none was found.
     pub discovered: Vec<DiscoveredLight>,
-    /// Why none was found; none where lights are listed or were found.
+    /// Why none was found by a shadow; none where lights are listed or were found. Those that a probe tells are then taken as they
+    /// are.
     pub no_light: Option<NoLight>,
     /// The part of the shadows in the picture that the lights in use leave unexplained; none where too little of them is seen, and
     /// where there are no lights.

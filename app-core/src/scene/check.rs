@@ -65,6 +65,9 @@ pub enum FieldError {
     /// A direction of another length than 1.
     #[error("the vector is not of length 1")]
     NotAUnitVector,
+    /// A list whose entries are not in their order.
+    #[error("it is not above that of the entry before")]
+    Unordered,
     /// A matrix whose last row is not 0 0 0 1.
     #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
     NotAffine,
@@ -122,6 +125,10 @@ pub(crate) const ANGULAR_RADIUS_DEG: RangeInclusive<f64> = 0.0..=89.999;
 pub(crate) const EXPOSURE: RangeInclusive<f64> = 1e-9..=1e9;
 /// Exposure of a darker picture over that of a frame.
 pub(crate) const EXPOSURE_RATIO: RangeInclusive<f64> = 1e-6..=1.0;
+/// Distance of a facet from its lens's axis, over the lens's radius.
+pub(crate) const OF_RADIUS: RangeInclusive<f64> = 1e-6..=1.0;
+/// Slopes of facets, in degrees: less than a right angle.
+pub(crate) const SLOPE_DEG: RangeInclusive<f64> = 0.0..=89.9;
 const SCALE: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// How far a rotation's axes may be from unit length and right angles: what rounding to a few

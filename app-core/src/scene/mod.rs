@@ -4,6 +4,7 @@
 //! Camera space is +X right, +Y up and looks along -Z.
 
 pub(crate) mod check;
+mod probe;
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,6 +15,8 @@ use crate::toy::Toy;
 
 pub use crate::toy::Pose;
 pub use check::{FieldError, InputError};
+pub(crate) use probe::MAX_FURTHER_PICTURES;
+pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
 
 /// Lights whose shadows are moved; those of further ones stay as photographed, with a warning.
 pub const MAX_LIGHTS: usize = 4;
@@ -46,8 +49,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
     pub plates: Vec<Plate>,
-    /// A light probe lying in the scene, where there is one.
-    pub probe: Option<FresnelLens>,
+    /// A light probe that lay in the scene, where there is one: it tells lights where none are listed.
+    pub probe: Option<Probe>,
 }
 
 impl Scene {
@@ -70,7 +73,7 @@ impl Scene {
         for (index, plate) in self.plates.iter().enumerate() {
             check::camera(&format!("plates[{index}].camera"), &plate.camera)?;
         }
-        Ok(())
+        self.probe.as_ref().map_or(Ok(()), |probe| probe.check("probe"))
     }
 }
 
@@ -208,19 +211,4 @@ pub struct Plate {
     pub camera: Camera,
     /// The picture, of the session's size.
     pub image: Arc<Image>,
-}
-
-/// A flat reflective Fresnel lens that shows the lights: a mirror ball pressed flat.
-///
-/// At disc position (x, z) / radius its normal is that of the hemisphere above that point.
-#[derive(Clone, Debug)]
-pub struct FresnelLens {
-    /// Rigid transform from the lens (a disc in local y = 0) to world.
-    pub world_from_lens: DMat4,
-    /// Radius of the disc; positive.
-    pub radius_m: f64,
-    /// The lens seen by the first frame's camera, underexposed.
-    pub image: Arc<Image>,
-    /// Exposure of `image` over that of a frame, above 0 and at most 1.
-    pub exposure_ratio: f64,
 }

@@ -2,6 +2,7 @@
 
 mod convert;
 mod field;
+mod light_probe;
 mod place;
 mod record;
 #[cfg(feature = "schema")]
@@ -30,7 +31,7 @@ const MAX_INDEX_BYTES: u64 = 16 << 20;
 
 /// A `shadow-capture` folder.
 ///
-/// Opening checks all of `capture.json` and reads the toy and the plates. The frames' pictures are
+/// Opening checks all of `capture.json` and reads the toy, the plates and the pictures of a probe. The frames' pictures are
 /// read when they are asked for.
 pub struct Capture {
     store: PictureStore,
@@ -80,7 +81,7 @@ impl Capture {
     /// Opens the capture that `files` reads from.
     ///
     /// # Errors
-    /// When `capture.json`, the toy, a plate or the probe's picture is missing, damaged or breaks a
+    /// When `capture.json`, the toy, a plate or a picture of the probe is missing, damaged or breaks a
     /// rule of the format. The error names the file, the field and the reason.
     pub fn open(files: impl Files + 'static) -> Result<Self, SessionError> {
         let bytes = files

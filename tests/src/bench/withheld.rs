@@ -73,7 +73,7 @@ fn rebuild_with(
     for frame in 0..session.n_frames() {
         let input = FrameInput {
             shown_pose: scene.physical_pose.clone(),
-            ..alignments.input(frame, &session.frame(frame)?)
+            ..alignments.input(frame, &session.frame(frame)?, preset)
         };
         if latest
             .as_ref()

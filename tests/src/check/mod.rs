@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use app_core::alignment::{Alignment, Outlines};
 use app_core::frame::FrameInput;
+use app_core::probe::ProbeReport;
 use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
@@ -144,6 +145,9 @@ impl Findings {
             );
             self.tell(told, light.is_applied && light.is_moved);
         }
+        if let Some(probe) = &report.probe {
+            self.probe(probe, report.no_light.is_some());
+        }
         for (index, light) in report.discovered.iter().enumerate() {
             let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
                 format!("{distance_m:.2} m away")
@@ -161,6 +165,45 @@ impl Findings {
                 .iter()
                 .map(|warning| format!("frames[0]: {warning}")),
         );
+    }
+}
+
+impl Findings {
+    fn probe(&mut self, probe: &ProbeReport, stands: bool) {
+        for (index, light) in probe.lights.iter().enumerate() {
+            let [u, v] = light.seen.at_px.to_array();
+            let distance = light
+                .distance_m
+                .map_or("not told".to_owned(), |distance_m| format!("{distance_m:.2} m"));
+            let then = if stands {
+                ", and stands so: no shadow shows it"
+            } else {
+                ""
+            };
+            self.facts.push(format!(
+                "probe: light {index} at ({u:.1}, {v:.1}) px, its direction known to {:.2} degrees, its distance {distance}{then}",
+                light.seen.deviation_rad.to_degrees(),
+            ));
+        }
+        for rejected in &probe.rejected {
+            let [u, v] = rejected.at_px.to_array();
+            self.facts.push(format!(
+                "probe: what is bright at ({u:.1}, {v:.1}) px is no light: {}",
+                rejected.reason
+            ));
+        }
+        if probe.lights.is_empty() {
+            self.wrong.push(
+                "probe: its pictures show no light: check probe.world_from_lens, probe.radius and whether the pictures are too dark"
+                    .to_owned(),
+            );
+        }
+        if probe.n_unseen > 0 {
+            self.facts.push(format!(
+                "probe: its last {} pictures do not show it, so that what was seen before stands",
+                probe.n_unseen
+            ));
+        }
     }
 }
 

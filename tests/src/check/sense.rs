@@ -14,7 +14,12 @@ const CAMERA_M: [f64; 2] = [0.03, 30.0];
 /// What a session does without, and what is made of it.
 pub(super) fn without(scene: &Scene) -> Vec<String> {
     let mut facts = Vec::new();
-    if scene.lights.is_empty() {
+    if let (true, Some(_)) = (scene.lights.is_empty(), &scene.probe) {
+        facts.push(
+            "lights: none is listed, so that the probe tells them, and the toy's shadow corrects them"
+                .to_owned(),
+        );
+    } else if scene.lights.is_empty() {
         facts.push("lights: none is listed, so that they are looked for by the toy's shadow".to_owned());
     }
     if scene.plates.is_empty() {

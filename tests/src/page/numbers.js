@@ -98,7 +98,7 @@ function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { camera, pose, lights, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
+  const { camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
   const rows = [];
   if (camera) rows.push(row("the camera", [verdict(camera), `${camera.moved_mm.toFixed(2)} mm, ${camera.turned_deg.toFixed(2)}\u00b0`,
@@ -110,10 +110,15 @@ function showAlignment() {
   const against = error => error ? `light ${error.index} of the list: ${error.direction_deg.toFixed(2)}\u00b0 off`
     + (error.distance_ratio ? `, distance \u00d7 ${error.distance_ratio.toFixed(2)}` : "")
     + (error.size_ratio ? `, angular size \u00d7 ${error.size_ratio.toFixed(2)}` : "") : "";
+  (probe?.lights ?? []).forEach((light, i) => rows.push(row(`light ${i} of the probe`, [`told by ${light.n_views} of its pictures`,
+    `${light.distance_m ? `${light.distance_m.toFixed(2)} m away` : "distance not told"}, direction \u00b1 ${light.direction_deviation_deg.toFixed(2)}\u00b0`,
+    against(light.against_listed)])));
+  (probe?.rejected ?? []).forEach(({ at_px, reason }) => rows.push(row("no light of the probe",
+    ["left out", `at ${at_px.map(at => at.toFixed(0)).join(", ")} px: ${reason}`, ""])));
   discovered.forEach((light, i) => rows.push(row(`light ${i}`, ["found by its shadow",
     `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${(2 * light.angular_radius_deg).toFixed(2)}\u00b0 wide, direction \u00b1 ${light.direction_deviation_deg?.toFixed(2) ?? "?"}\u00b0`,
     against(light.against_listed)])));
-  if (no_light) rows.push(row("lights", ["none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
+  if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe tells: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use app_core::scene::{Intrinsics, Light, Surface};
+use app_core::scene::{FacetSlope, Intrinsics, Light, Probe, ProbePicture, ProbeShape, Surface};
 use serde_json::{Value, json};
 
 use super::shot::Shot;
@@ -24,6 +24,10 @@ pub fn write(folder: &Path, world: &World, shot: &Shot) -> Result<(), WriteError
     write_png(&folder.join("truth.png"), &shot.truth.image)?;
     write_png(&folder.join("mask.png"), &shot.truth.mask)?;
     write_whole(&folder.join("toy.glb"), &shot.glb)?;
+    let pictures = shot.scene.probe.iter().flat_map(|probe| &probe.pictures);
+    for (index, picture) in pictures.enumerate() {
+        write_png(&folder.join(probe_file(index)), &picture.image)?;
+    }
     let text = format!("{:#}\n", index(world, shot));
     write_whole(&folder.join(SESSION_FILE), text.as_bytes())
 }
@@ -51,7 +55,7 @@ fn index(world: &World, shot: &Shot) -> Value {
         Shown::Rest => json!({ "clip": null, "time": 0.0 }),
         Shown::At { time_secs } => json!({ "clip": CLIP, "time": time_secs }),
     };
-    json!({
+    let mut index = json!({
         "format": "shadow-capture",
         "version": 1,
         "name": scene.name,
@@ -77,7 +81,48 @@ fn index(world: &World, shot: &Shot) -> Value {
             "truth": "truth.png",
             "mask": "mask.png",
         }],
-    })
+    });
+    if let Some((probe, first)) = scene
+        .probe
+        .as_ref()
+        .and_then(|probe| Some((probe, probe.pictures.first()?)))
+    {
+        index["probe"] = self::probe(probe, first);
+    }
+    index
+}
+
+fn probe_file(index: usize) -> String {
+    format!("probe_{index}.png")
+}
+
+/// Probe and first picture, then the others; facets are told by a hemisphere or a focal length.
+fn probe(probe: &Probe, first: &ProbePicture) -> Value {
+    let picture = |(index, picture): (usize, &ProbePicture)| {
+        json!({
+            "image": probe_file(index),
+            "exposure_ratio": picture.exposure_ratio,
+            "intrinsics": intrinsics(&picture.camera.intrinsics),
+            "world_from_camera": picture.camera.world_from_camera.to_cols_array(),
+            "world_from_lens": picture.world_from_probe.to_cols_array(),
+        })
+    };
+    let mut index = picture((0, first));
+    let further = probe.pictures.iter().enumerate().skip(1);
+    index["pictures"] = further.map(picture).collect();
+    index["radius"] = json!(probe.shape.radius_m());
+    index["kind"] = match probe.shape {
+        ProbeShape::FresnelLens { .. } => json!("fresnel_lens"),
+        ProbeShape::MirrorBall { .. } => json!("mirror_ball"),
+    };
+    if let ProbeShape::FresnelLens {
+        slope: FacetSlope::Focal { focal_m },
+        ..
+    } = probe.shape
+    {
+        index["focal_length"] = json!(focal_m);
+    }
+    index
 }
 
 fn intrinsics(k: &Intrinsics) -> Value {

@@ -7,6 +7,7 @@
 mod film;
 pub mod folder;
 mod lamp;
+mod mirror;
 mod motion;
 mod paint;
 mod rays;
@@ -18,6 +19,7 @@ pub mod world;
 
 pub use film::{Film, expose};
 pub use lamp::Lamp;
+pub use mirror::{Exposure, Ghost, Mirror};
 pub use motion::{Key, Stance};
 pub use paint::Paint;
 pub use rays::Place;

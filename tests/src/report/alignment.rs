@@ -1,6 +1,8 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
 use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment};
+use app_core::probe::{ProbeReport, TrackedLight};
+use app_core::scene::Light;
 use serde::Serialize;
 
 use crate::alignment::{Aligned, SeenLight};
@@ -18,7 +20,9 @@ pub struct AlignmentEntry {
     pub lights: Vec<LightEntry>,
     /// Error of the predicted shadows over what noise and model are expected to leave, with the given lights and with those found.
     pub light_errors: Option<[f64; 2]>,
-    /// Lights found by their shadows alone, strongest first.
+    /// Lights that a probe tells, strongest first; none where it was not asked.
+    pub probe: Option<ProbeEntry>,
+    /// Lights that nobody lists as their shadows tell them, strongest first.
     pub discovered: Vec<DiscoveredEntry>,
     /// Why none was.
     pub no_light: Option<String>,
@@ -28,6 +32,47 @@ pub struct AlignmentEntry {
     pub is_relit: bool,
     /// Lights on the session's list, where that was put aside.
     pub n_listed: usize,
+}
+
+/// What a probe tells.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProbeEntry {
+    /// Lights, strongest first.
+    pub lights: Vec<ProbeLightEntry>,
+    /// Bright regions that are none, and why.
+    pub rejected: Vec<RejectedEntry>,
+    /// Lights in the published form, which preset `paper` is given.
+    pub n_published: usize,
+    /// Last pictures that do not show the probe.
+    pub n_unseen: usize,
+}
+
+/// A light that a probe tells.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProbeLightEntry {
+    /// Unit vector from the probe, in the world.
+    pub direction: [f64; 3],
+    /// One deviation of it.
+    pub direction_deviation_deg: f64,
+    /// From the probe; none where it is not told.
+    pub distance_m: Option<f64>,
+    /// Half the angle that it fills, as its highlight tells.
+    pub angular_radius_deg: f64,
+    /// Views that show it.
+    pub n_views: usize,
+    /// Middle of its highlight in the latest of them.
+    pub at_px: [f64; 2],
+    /// Against the nearest light of the session's list, as seen from the probe, where that was put aside.
+    pub against_listed: Option<ErrorEntry>,
+}
+
+/// A bright region that is no light's.
+#[derive(Clone, Debug, Serialize)]
+pub struct RejectedEntry {
+    /// Its middle.
+    pub at_px: [f64; 2],
+    /// Why.
+    pub reason: String,
 }
 
 /// A light that was found.
@@ -126,6 +171,10 @@ impl From<&Aligned> for AlignmentEntry {
             pose: report.pose.as_ref().map(PoseEntry::from),
             lights: report.lights.iter().map(LightEntry::from).collect(),
             light_errors: report.light_errors,
+            probe: report
+                .probe
+                .as_ref()
+                .map(|probe| ProbeEntry::new(probe, &aligned.put_aside)),
             discovered: report
                 .discovered
                 .iter()
@@ -139,11 +188,65 @@ impl From<&Aligned> for AlignmentEntry {
     }
 }
 
+impl ProbeEntry {
+    fn new(probe: &ProbeReport, put_aside: &[Light]) -> Self {
+        let light = |light: &TrackedLight| {
+            let found = SeenLight::from(light.seen.origin_in_world, &light.light);
+            let listed = put_aside.iter();
+            let listed: Vec<SeenLight> = listed
+                .map(|listed| SeenLight::from(light.seen.origin_in_world, listed))
+                .collect();
+            ProbeLightEntry {
+                direction: found.direction_in_world.to_array(),
+                direction_deviation_deg: light.seen.deviation_rad.to_degrees(),
+                distance_m: found.distance_m,
+                angular_radius_deg: found.angular_radius_rad.to_degrees(),
+                n_views: light.n_views,
+                at_px: light.seen.at_px.to_array(),
+                against_listed: ErrorEntry::nearest(&found, &listed),
+            }
+        };
+        let rejected = probe.rejected.iter();
+        Self {
+            lights: probe.lights.iter().map(light).collect(),
+            rejected: rejected
+                .map(|rejected| RejectedEntry {
+                    at_px: rejected.at_px.to_array(),
+                    reason: rejected.reason.to_string(),
+                })
+                .collect(),
+            n_published: probe.published.len(),
+            n_unseen: probe.n_unseen,
+        }
+    }
+}
+
+impl ErrorEntry {
+    /// Against the listed light in the nearest direction; none without a list.
+    fn nearest(found: &SeenLight, listed: &[SeenLight]) -> Option<Self> {
+        let off_rad = |seen: &SeenLight| found.direction_in_world.angle_between(seen.direction_in_world);
+        let nearest = listed.iter().enumerate();
+        let (index, seen) = nearest.min_by(|(_, a), (_, b)| off_rad(a).total_cmp(&off_rad(b)))?;
+        Some(Self {
+            index,
+            direction_deg: off_rad(seen).to_degrees(),
+            distance_ratio: found
+                .distance_m
+                .zip(seen.distance_m)
+                .map(|(found, listed)| found / listed),
+            size_ratio: (seen.angular_radius_rad > 0.0)
+                .then(|| found.angular_radius_rad / seen.angular_radius_rad),
+        })
+    }
+}
+
 impl DiscoveredEntry {
     fn new(light: &DiscoveredLight, listed: &[SeenLight]) -> Self {
-        let off_rad = |seen: &SeenLight| light.direction_in_world.angle_between(seen.direction_in_world);
-        let nearest = listed.iter().enumerate();
-        let nearest = nearest.min_by(|(_, a), (_, b)| off_rad(a).total_cmp(&off_rad(b)));
+        let found = SeenLight {
+            direction_in_world: light.direction_in_world,
+            distance_m: light.distance_m,
+            angular_radius_rad: light.angular_radius_rad,
+        };
         Self {
             direction: light.direction_in_world.to_array(),
             distance_m: light.distance_m,
@@ -152,16 +255,7 @@ impl DiscoveredEntry {
             direction_deviation_deg: told(light.deviation.direction_rad.to_degrees()),
             nearness_deviation_per_m: told(light.deviation.nearness_per_m),
             angular_radius_deviation_deg: told(light.deviation.angular_radius_rad.to_degrees()),
-            against_listed: nearest.map(|(index, seen)| ErrorEntry {
-                index,
-                direction_deg: off_rad(seen).to_degrees(),
-                distance_ratio: light
-                    .distance_m
-                    .zip(seen.distance_m)
-                    .map(|(found, listed)| found / listed),
-                size_ratio: (seen.angular_radius_rad > 0.0)
-                    .then(|| light.angular_radius_rad / seen.angular_radius_rad),
-            }),
+            against_listed: ErrorEntry::nearest(&found, listed),
         }
     }
 }

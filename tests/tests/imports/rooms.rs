@@ -23,6 +23,7 @@ const ROOMS: &[&str] = &[
     "plates",
     "passes",
     "alignment",
+    "probe",
     "frame",
     "plan",
     "preset",

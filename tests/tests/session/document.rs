@@ -227,7 +227,8 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
         ("frame_0001.png", photo.clone()),
         ("truth_0000.png", photo.clone()),
         ("mask_0000.png", mask),
-        ("probe.png", photo),
+        ("probe_0000.png", photo.clone()),
+        ("probe_0001.png", photo),
     ];
     let parts = Parts {
         index,

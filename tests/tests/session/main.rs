@@ -42,7 +42,16 @@ fn a_good_capture_is_read_as_written() {
         }
     );
     assert_eq!(scene.plates[0].image.rgba8, [0, 0, 0, 255].repeat(4));
-    assert_eq!(scene.probe.as_ref().unwrap().exposure_ratio, 0.125);
+    let probe = scene.probe.as_ref().unwrap();
+    assert_eq!(probe.pictures.len(), 2);
+    assert_eq!(probe.pictures[0].exposure_ratio, 0.125);
+    assert_eq!(probe.pictures[1].exposure_ratio, 0.25);
+    let cameras = [0, 1].map(|index| probe.pictures[index].camera.intrinsics.fx_px);
+    assert_eq!(cameras, [2.0, 2.5], "of the first frame, and its own");
+    assert_eq!(
+        probe.pictures[1].world_from_probe,
+        probe.pictures[0].world_from_probe
+    );
 
     let before = n_reads.load(Ordering::Relaxed);
     let (first, second) = (capture.frame(0).unwrap(), capture.frame(1).unwrap());
@@ -182,6 +191,9 @@ fn each_wrong_value_is_named() {
         ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but at most 512"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),
         ("frames[0].animation.time", json!(-0.1), "-0.1 is not from 0"),
+        ("probe.focal_length", json!(0), "0 is not from"),
+        ("probe.facets[0].at", json!(1.5), "1.5 is not from"),
+        ("probe.pictures[0].exposure_ratio", json!(2), "2 is not from"),
         ("probe.exposure_ratio", json!(0), "0 is not from"),
     ];
     for (field, value, reason) in cases {

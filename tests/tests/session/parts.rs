@@ -121,7 +121,10 @@ pub(crate) fn good_index() -> Value {
                 "animation": {"clip": null, "time": 0}}
         ],
         "probe": {"kind": "fresnel_lens", "world_from_lens": IDENTITY, "radius": 0.05,
-            "image": "frame.png", "exposure_ratio": 0.125}
+            "image": "frame.png", "exposure_ratio": 0.125, "focal_length": 0.03,
+            "facets": [{"at": 0.5, "slope_deg": 30}],
+            "pictures": [{"image": "frame.png", "exposure_ratio": 0.25, "world_from_camera": IDENTITY,
+                "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}]}
     })
 }
 

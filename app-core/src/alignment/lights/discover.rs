@@ -7,6 +7,7 @@
 use glam::DVec2;
 
 use super::evidence::{doubtful, is_gain, outshines};
+use super::guess::{Guess, guessed};
 use super::hemisphere::{climb, lamps as hemisphere, peaks};
 use super::lamp::{Lamp, disc};
 use super::leftover::Leftover;
@@ -43,12 +44,14 @@ const CELL_PX: f64 = 0.1;
 /// A lamp's middle alone.
 const POINT: [DVec2; 1] = [DVec2::ZERO];
 
-/// Finds the lamps that a picture shows the shadows of; `pose` is how well the toy's is known.
+/// Finds the lamps that a picture shows the shadows of; `pose` is how well the toy's is known. Where there are guesses, as many lamps
+/// as those are looked for, around them.
 pub(super) fn discover(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     pose: &PoseDeviation,
+    guesses: &[Guess],
 ) -> Result<Vec<Discovered>, NoLight> {
     let searched = pyramid.smallest_for_shadows();
     let px_m = |level: usize| shape.centre.length() / pyramid.level(level).intrinsics.fx_px;
@@ -59,7 +62,11 @@ pub(super) fn discover(
     if shadows.pixels.len() < LEAST_PIXELS {
         return Err(NoLight::ReceiversUnseen);
     }
-    let mut lamps = Search::new(shadows, &mut raster).all_lamps();
+    let mut lamps = if guesses.is_empty() {
+        Search::new(shadows, &mut raster).all_lamps()
+    } else {
+        guessed(&shadows, &mut raster, guesses)
+    };
     for level in (searched.saturating_sub(N_LARGER_LEVELS)..=searched).rev() {
         let fine = shape.merged(CELL_PX * px_m(level));
         let is_last = level == searched.saturating_sub(N_LARGER_LEVELS);

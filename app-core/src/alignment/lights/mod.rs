@@ -3,13 +3,14 @@
 //! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
 //! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
 //! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed they are looked for
-//! all over the hemisphere (`discover`).
+//! all over the hemisphere (`discover`), or around those that a probe tells of (`guess`).
 
 mod backdrop;
 mod cast;
 mod discover;
 mod evidence;
 mod floor;
+mod guess;
 mod hemisphere;
 mod lamp;
 mod leftover;
@@ -32,6 +33,7 @@ use super::shape::Shape;
 use crate::frame::NoLight;
 use crate::scene::Light;
 use cast::flattened;
+pub(super) use guess::Guess;
 use lamp::{Lamp, N_PARTS, disc};
 use prior::Prior;
 pub(super) use relight::Relight;
@@ -208,15 +210,17 @@ fn directions() -> impl Iterator<Item = [f64; N_PARTS]> {
     })
 }
 
-/// Finds lights of which nothing is known, strongest first; `pose` is how well the toy's is known.
+/// Finds lights that nobody lists, strongest first; `pose` is how well the toy's is known. Where a probe tells of lights, those that cast
+/// a shadow, made exact by it.
 pub(super) fn discover(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
     pose: &PoseDeviation,
+    guesses: &[Guess],
 ) -> Result<Vec<DiscoveredLight>, NoLight> {
-    let mut found = discover::discover(shape, receivers, pyramid, pose)?;
+    let mut found = discover::discover(shape, receivers, pyramid, pose, guesses)?;
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     let lights = found.iter().map(|found| {
         let lamp = &found.lamp;

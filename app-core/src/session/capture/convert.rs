@@ -3,7 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
-use super::place::{camera, fresnel_lens, intrinsics, light, plates, receiver};
+use super::light_probe::probe;
+use super::place::{camera, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles};
 use crate::scene::{Intrinsics, Pose, Scene, check};
@@ -50,7 +51,9 @@ pub(super) fn capture_from_record(
     let plates = plates(&store, &intrinsics, &record.backgrounds, &mut warnings)?;
     let probe = record
         .probe
-        .map(|probe| fresnel_lens(&store, &probe, &mut warnings))
+        .as_ref()
+        .zip(frames.first())
+        .map(|(record, first)| probe(&store, record, (&intrinsics, &first.camera), &mut warnings))
         .transpose()?;
     let scene = Scene {
         name: record.name,

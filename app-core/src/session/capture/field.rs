@@ -31,7 +31,7 @@ pub(super) fn at<T>(field: &str, checked: Result<T, FieldError>) -> Result<T, Se
 pub(super) fn each<R, T>(
     field: &str,
     records: &[R],
-    convert: impl Fn(&str, &R) -> Result<T, SessionError>,
+    mut convert: impl FnMut(&str, &R) -> Result<T, SessionError>,
 ) -> Result<Vec<T>, SessionError> {
     let entries = records.iter().enumerate();
     entries

@@ -1,4 +1,4 @@
-//! The scene, from `capture.json`: camera, receivers, lights, plates, probe.
+//! The scene, from `capture.json`: camera, receivers, lights, plates.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use glam::DVec2;
 use super::PictureStore;
 use super::field::{at, in_index};
 use super::record::{
-    BackgroundRecord, IntrinsicsRecord, LightKind, LightRecord, ProbeRecord, ReceiverRecord, SurfaceRecord,
+    BackgroundRecord, IntrinsicsRecord, LightKind, LightRecord, ReceiverRecord, SurfaceRecord,
 };
 use crate::scene::check;
 use crate::scene::{
-    Camera, FieldError, FresnelLens, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
+    Camera, FieldError, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
 };
 use crate::session::SessionWarning;
 use crate::session::error::SessionError;
@@ -141,23 +141,4 @@ pub(super) fn plates(
         plates.push(Plate { camera, image });
     }
     Ok(plates)
-}
-
-pub(super) fn fresnel_lens(
-    store: &PictureStore,
-    record: &ProbeRecord,
-    warnings: &mut Vec<SessionWarning>,
-) -> Result<FresnelLens, SessionError> {
-    let field = "probe.image";
-    let photo = store.photo(&record.image, field)?;
-    warnings.extend(photo.warning(&record.image, field));
-    Ok(FresnelLens {
-        world_from_lens: at("probe.world_from_lens", check::rigid(record.world_from_lens))?,
-        radius_m: at("probe.radius", check::number(record.radius, &check::EXTENT_M))?,
-        exposure_ratio: at(
-            "probe.exposure_ratio",
-            check::number(record.exposure_ratio, &check::EXPOSURE_RATIO),
-        )?,
-        image: photo.image,
-    })
 }

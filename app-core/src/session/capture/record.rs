@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[cfg(feature = "schema")]
 use {
     super::rules::{Within, needs_of_its_kind},
-    crate::scene::{MAX_SCENE_PLATES, check},
+    crate::scene::{MAX_FACETS, MAX_FURTHER_PICTURES, MAX_SCENE_PLATES, check},
     schemars::JsonSchema,
 };
 
@@ -62,7 +62,7 @@ pub(super) struct CaptureRecord {
     /// Camera frames, in the order they are shown.
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub(super) frames: Vec<FrameRecord>,
-    /// A light probe that lies in the scene. It is checked, and not used yet.
+    /// A light probe that lay in the scene: it tells the lights where none is listed.
     pub(super) probe: Option<ProbeRecord>,
 }
 
@@ -222,33 +222,82 @@ pub(super) struct FrameRecord {
     pub(super) mask: Option<String>,
 }
 
+/// All kinds of probe in one record.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub(super) struct ProbeRecord {
     /// What the probe is.
-    #[serde(rename = "kind")]
-    _kind: ProbeKind,
-    /// From the lens' space, metres, to world. Rigid. The lens is a disc around the origin in local y = 0, its normal
-    /// local +Y.
+    pub(super) kind: ProbeKind,
+    /// From the probe's space, metres, to world. Rigid. A lens is a disc around the origin in local y = 0, its normal
+    /// local +Y; a ball is around the origin.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
     pub(super) world_from_lens: [f64; 16],
-    /// Radius of the disc, metres.
+    /// Radius of disc or ball, metres.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXTENT_M)))]
     pub(super) radius: f64,
-    /// Path of a picture of it in the session's folder, taken by the first frame's camera, PNG or JPEG of the session's
-    /// size.
+    /// Focal length of a lens whose facets spread light as a convex mirror does, metres. Without one, or with null, its
+    /// facets are the hemisphere's.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXTENT_M)))]
+    pub(super) focal_length: Option<f64>,
+    /// Slopes of a lens's facets as calibrated, from the axis outwards; they come before a focal length. Without any
+    /// that holds, or the hemisphere.
+    #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(length(max = MAX_FACETS)))]
+    pub(super) facets: Vec<FacetRecord>,
+    /// Path of a picture of it in the session's folder, PNG or JPEG of the session's size, underexposed.
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub(super) image: String,
     /// Exposure of that picture over that of a frame.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXPOSURE_RATIO)))]
     pub(super) exposure_ratio: f64,
+    /// Projection of the camera that took it; that of the first frame where there is none.
+    pub(super) intrinsics: Option<IntrinsicsRecord>,
+    /// Pose of the camera that took it; that of the first frame where there is none. Rigid.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
+    pub(super) world_from_camera: Option<[f64; 16]>,
+    /// Further pictures, in the order that they were taken: several views tell how far away a light is.
+    #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(length(max = MAX_FURTHER_PICTURES)))]
+    pub(super) pictures: Vec<ProbePictureRecord>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ProbeKind {
+    /// A flat reflective Fresnel lens, a mirror ball pressed flat: at disc position (x, z) / radius its normal is that of
+    /// the hemisphere above that point, unless `facets` or `focal_length` say otherwise.
+    FresnelLens,
+    /// A ball that mirrors.
+    MirrorBall,
 }
 
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[serde(rename_all = "snake_case")]
-enum ProbeKind {
-    /// A flat reflective Fresnel lens, a mirror ball pressed flat: at disc position (x, z) / radius its normal is that of
-    /// the hemisphere above that point.
-    FresnelLens,
+pub(super) struct FacetRecord {
+    /// Distance from the axis over the lens's radius; above that of the entry before.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::OF_RADIUS)))]
+    pub(super) at: f64,
+    /// Angle between the facet's normal, which leans outwards, and the lens's, degrees.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::SLOPE_DEG)))]
+    pub(super) slope_deg: f64,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct ProbePictureRecord {
+    /// Path of the picture in the session's folder, PNG or JPEG of the session's size, underexposed.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
+    pub(super) image: String,
+    /// Exposure of the picture over that of a frame; as of the probe's `image` where there is none.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXPOSURE_RATIO)))]
+    pub(super) exposure_ratio: Option<f64>,
+    /// Projection of the camera that took it; that of the session where there is none.
+    pub(super) intrinsics: Option<IntrinsicsRecord>,
+    /// Pose of the camera that took it. Rigid.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
+    pub(super) world_from_camera: [f64; 16],
+    /// Where the probe was then; as in its `image` where there is none.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
+    pub(super) world_from_lens: Option<[f64; 16]>,
 }

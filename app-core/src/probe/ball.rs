@@ -1,0 +1,45 @@
+//! A mirror ball.
+
+use glam::{DVec2, DVec3};
+
+use super::eye::Eye;
+use super::reflection::Reflection;
+
+/// A ball around the origin of its space.
+#[derive(Clone, Debug)]
+pub(super) struct Ball {
+    pub(super) eye: Eye,
+    pub(super) radius_m: f64,
+}
+
+impl Ball {
+    /// What a pixel's line of sight is mirrored to; none beside the ball, or in it.
+    pub(super) fn reflect(&self, at_px: DVec2) -> Option<Reflection> {
+        let (from, along) = (self.eye.place(), self.eye.sight(at_px));
+        let nearest = -from.dot(along);
+        // From the foot of the line: the difference of squares would lose a far camera's digits.
+        let foot = from + nearest * along;
+        let half_squared = self.radius_m * self.radius_m - foot.length_squared();
+        let is_before = from.length() > self.radius_m && nearest > 0.0;
+        if half_squared < 0.0 || !is_before {
+            return None;
+        }
+        let at = foot - half_squared.sqrt() * along;
+        Reflection::of(at, at.try_normalize()?, -along)
+    }
+
+    /// Normal at a pixel as if the viewer were infinitely far away, and the direction to that viewer.
+    pub(super) fn normal_for_far_viewer(&self, at_px: DVec2) -> Option<(DVec3, DVec3)> {
+        let viewer = self.eye.place().try_normalize()?;
+        let along = self.eye.sight(at_px);
+        // Where the line of sight crosses the plane through the middle that the viewer faces.
+        let from = self.eye.place();
+        let steep = along.dot(viewer);
+        if steep >= 0.0 {
+            return None;
+        }
+        let across = (from - along * (from.dot(viewer) / steep)) / self.radius_m;
+        let squared = across.length_squared();
+        (squared <= 1.0).then(|| (across + (1.0 - squared).sqrt() * viewer, viewer))
+    }
+}
