@@ -25,6 +25,25 @@ pub enum Lights {
     Probe,
 }
 
+/// Where the focal length comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum FocalLength {
+    /// From the session.
+    #[default]
+    Given,
+    /// From the pictures, within 3 % of what the session says.
+    Found,
+}
+
+/// What is looked for in the pictures though a session says it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// The lights.
+    pub lights: Lights,
+    /// The focal length.
+    pub focal_length: FocalLength,
+}
+
 /// Corrections of frames, found once for all presets.
 pub struct Alignments {
     lights: Lights,
@@ -101,12 +120,16 @@ impl Alignments {
     ///
     /// # Errors
     /// When a frame cannot be read or aligned.
-    pub fn find(session: &dyn Session, frames: Range<usize>, lights: Lights) -> Result<Self, ReplayError> {
+    pub fn find(session: &dyn Session, frames: Range<usize>, asked: Asked) -> Result<Self, ReplayError> {
         let mut known = session.scene().clone();
-        if lights == Lights::Found {
+        if asked.lights == Lights::Found {
             known.probe = None;
         }
-        Self::find_by(Aligner::new(known), session, frames, lights)
+        let aligner = match asked.focal_length {
+            FocalLength::Given => Aligner::new(known),
+            FocalLength::Found => Aligner::new(known).with_unknown_focal_length(),
+        };
+        Self::find_by(aligner, session, frames, asked.lights)
     }
 
     /// Aligns all frames, and reads no shadow but that of the first picture.
@@ -192,6 +215,14 @@ impl Alignments {
     #[must_use]
     pub fn moved_plates(&self) -> &[(usize, Camera)] {
         &self.moved_plates
+    }
+
+    /// The focal length of all frames and plates, over that recorded.
+    #[must_use]
+    pub fn focal_ratio(&self) -> f64 {
+        let last = self.found.last();
+        let found = last.and_then(|last| last.alignment.report.focal_length);
+        found.map_or(1.0, |found| if found.is_applied() { found.ratio } else { 1.0 })
     }
 
     /// Of a frame; none where it stays as recorded.

@@ -15,7 +15,7 @@ use app_core::internals::{InjectedVisibility, Inspect};
 use app_core::preset::Preset;
 use app_core::session::Capture;
 
-use crate::alignment::{Alignments, Lights};
+use crate::alignment::{Alignments, FocalLength, Lights};
 use crate::metrics::Scores;
 use crate::metrics::flicker::Flicker;
 use crate::progress::Quiet;
@@ -45,6 +45,8 @@ pub struct Options {
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
+    /// Where the focal length comes from then.
+    pub focal_length: FocalLength,
 }
 
 /// One preset on one session.
@@ -148,6 +150,7 @@ fn replay_options(options: &Options) -> replay::Options {
         out: None,
         is_aligned: options.is_aligned,
         lights: options.lights,
+        focal_length: options.focal_length,
     }
 }
 

@@ -13,7 +13,7 @@ use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
-use crate::alignment::{Alignments, Lights};
+use crate::alignment::{Alignments, Asked, FocalLength, Lights};
 use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
 use crate::metrics::flicker::Follower;
@@ -43,6 +43,8 @@ pub struct Options {
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
+    /// Where the focal length comes from then.
+    pub focal_length: FocalLength,
 }
 
 impl Default for Options {
@@ -53,6 +55,7 @@ impl Default for Options {
             out: None,
             is_aligned: true,
             lights: Lights::default(),
+            focal_length: FocalLength::default(),
         }
     }
 }
@@ -122,7 +125,11 @@ pub fn picture_file(index: usize) -> String {
 /// When there are no such frames, or one cannot be read or aligned.
 pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments, ReplayError> {
     if options.is_aligned {
-        Alignments::find(session, frames_of(session, options)?, options.lights)
+        let asked = Asked {
+            lights: options.lights,
+            focal_length: options.focal_length,
+        };
+        Alignments::find(session, frames_of(session, options)?, asked)
     } else {
         Ok(Alignments::none())
     }

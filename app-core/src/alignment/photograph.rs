@@ -79,6 +79,46 @@ impl Photograph {
         self.pose_from(scene, input, &given)
     }
 
+    /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
+    /// none where too little of it is seen.
+    pub(super) fn tried_pose(
+        &self,
+        scene: &Scene,
+        (start, known): (&DMat4, pose::Start),
+    ) -> Result<Option<(DMat4, f64)>, ToyError> {
+        let camera_from_object = self.camera_from_object(start);
+        let shape = Shape::new(scene, &camera_from_object)?;
+        let found = pose::tried(&shape, &self.pyramid, known);
+        Ok(found.map(|(motion, outline_px)| {
+            let corrected = self.camera_from_world.inverse() * motion * camera_from_object;
+            (corrected, outline_px)
+        }))
+    }
+
+    /// The smallest level with as many pixels, or the largest.
+    pub(super) fn level_of(&self, n_pixels: i32) -> usize {
+        let mut levels = (0..=Pyramid::SMALLEST).rev();
+        let found = levels.find(|level| {
+            let size_px = self.pyramid.level(*level).frame.size_px;
+            size_px.x * size_px.y >= n_pixels
+        });
+        found.unwrap_or(0)
+    }
+
+    /// The toy in a pose.
+    pub(super) fn shape(&self, scene: &Scene, world_from_object: &DMat4) -> Result<Shape, ToyError> {
+        Shape::new(scene, &self.camera_from_object(world_from_object))
+    }
+
+    /// A toy's shape, and what it is seen in.
+    pub(super) fn seen<'a>(&'a self, shape: &'a Shape) -> lights::View<'a> {
+        lights::View {
+            shape,
+            receivers: &self.receivers,
+            pyramid: &self.pyramid,
+        }
+    }
+
     fn pose_from(&self, scene: &Scene, input: &FrameInput, start: &DMat4) -> Result<FoundPose, ToyError> {
         let camera_from_object = self.camera_from_object(start);
         let shape = Shape::new(scene, &camera_from_object)?;

@@ -8,7 +8,7 @@ use crate::geometry::nearest_receivers::nearest_receivers;
 use crate::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 
 /// Cameras whose matrices differ by less are one.
-const SAME_CAMERA: f64 = 1e-9;
+pub(super) const SAME_CAMERA: f64 = 1e-9;
 
 /// A receiver, seen from the camera.
 #[derive(Clone, Debug)]

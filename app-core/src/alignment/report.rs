@@ -1,5 +1,7 @@
 //! What alignment found, and what it did with it.
 
+use std::fmt;
+
 use glam::DVec3;
 
 use crate::frame::NoLight;
@@ -9,6 +11,8 @@ use crate::scene::Light;
 /// What was aligned in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlignmentReport {
+    /// The focal length; none where nobody asked for it.
+    pub focal_length: Option<FocalLengthAlignment>,
     /// The camera; none where there is no plate or what it shows has too little texture.
     pub camera: Option<CameraAlignment>,
     /// The toy's pose; none where too little of its outline is seen.
@@ -134,4 +138,63 @@ pub struct LightDeviation {
     pub nearness_per_m: f64,
     /// Of half the angle that it fills, in radians.
     pub angular_radius_rad: f64,
+}
+
+/// The focal length, by toy and shadow together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FocalLengthAlignment {
+    /// What was done with it.
+    pub outcome: FocalLengthOutcome,
+    /// The focal length that was found, over that given; 1 where none was.
+    pub ratio: f64,
+    /// How far the ratio may be off before the error of the shadows has risen by what errors of the model are taken for; infinite where
+    /// none was found.
+    pub deviation: f64,
+    /// Error of the shadows with the focal length given, and with that found, each with the pose and the lights that fit it best: mean
+    /// squares as those of the lights. None where none was found.
+    pub errors: Option<[f64; 2]>,
+}
+
+impl FocalLengthAlignment {
+    /// Whether frames and plates have the focal length that was found.
+    #[must_use]
+    pub fn is_applied(&self) -> bool {
+        self.outcome == FocalLengthOutcome::Corrected
+    }
+
+    /// Whether toy and shadows were seen well enough to look for it.
+    #[must_use]
+    pub fn is_seen(&self) -> bool {
+        self.outcome != FocalLengthOutcome::Unseen
+    }
+}
+
+/// What was done with a focal length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FocalLengthOutcome {
+    /// It is corrected, in this frame and in all others.
+    Corrected,
+    /// That given explains the picture as well, but for noise.
+    AsGiven,
+    /// Other focal lengths explain the shadows as well, or none near that given does.
+    NotTold,
+    /// The shadows ask for another one, with which the outline of the toy fits worse: something else is off, such as the size of the toy
+    /// or the height of a receiver.
+    OutlineDisagrees,
+    /// There is no plate, or toy or shadows are not seen well enough to look for it.
+    Unseen,
+}
+
+impl fmt::Display for FocalLengthOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Corrected => "corrected",
+            Self::AsGiven => "that given explains the shadows as well",
+            Self::NotTold => "the shadows do not tell it",
+            Self::OutlineDisagrees => {
+                "another would explain the shadows, but not the outline: toy or receivers may be of another size or height"
+            }
+            Self::Unseen => "there is no plate, or too little of toy and shadows is seen",
+        })
+    }
 }

@@ -179,6 +179,18 @@ pub struct Camera {
     pub world_from_camera: DMat4,
 }
 
+impl Camera {
+    /// The same camera with a focal length `ratio` times as long.
+    pub(crate) fn with_focal_length(&self, ratio: f64) -> Self {
+        let intrinsics = Intrinsics {
+            fx_px: ratio * self.intrinsics.fx_px,
+            fy_px: ratio * self.intrinsics.fy_px,
+            ..self.intrinsics
+        };
+        Self { intrinsics, ..*self }
+    }
+}
+
 /// A picture: sRGB-encoded, 8 bit, four bytes a pixel, rows from the top without padding.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Image {

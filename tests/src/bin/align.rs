@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use app_core::session::{Capture, Session};
 use clap::Parser;
-use harness::alignment::{Alignments, Lights};
+use harness::alignment::{Alignments, Asked, FocalLength};
 use harness::check::aligned_session;
 use harness::files::Folder;
 use harness::program::exit_code;
@@ -20,6 +20,9 @@ struct Args {
     /// Folder for the corrected session, which must not be there yet
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Look for the focal length, too, which takes several times as long as all else
+    #[arg(long, value_enum, default_value_t)]
+    focal_length: FocalLength,
 }
 
 fn main() -> ExitCode {
@@ -29,10 +32,14 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> anyhow::Result<()> {
     let capture =
         Capture::open(Folder::open(&args.session)?).with_context(|| args.session.display().to_string())?;
-    let alignments = Alignments::find(&capture, 0..capture.n_frames(), Lights::Given)?;
+    let asked = Asked {
+        focal_length: args.focal_length,
+        ..Asked::default()
+    };
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?;
     let n_corrected = aligned_session::write(&args.session, &args.out, &alignments)?;
     println!(
-        "{n_corrected} of {} frames have a corrected camera, pose or lights: {}",
+        "{n_corrected} of {} frames have a corrected camera, focal length, pose or lights: {}",
         capture.n_frames(),
         args.out.display()
     );

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::Parser;
+use harness::alignment::FocalLength;
 use harness::check::check;
 use harness::output::make_folder;
 use harness::program::exit_code;
@@ -22,6 +23,9 @@ struct Args {
     /// Folder for the drawing [default: target/check]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Look for the focal length, too, which takes several times as long as all else
+    #[arg(long, value_enum, default_value_t)]
+    focal_length: FocalLength,
 }
 
 fn main() -> ExitCode {
@@ -38,7 +42,8 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     let results = || package.parent().unwrap_or(package).join(RESULTS);
     let out = args.out.clone().unwrap_or_else(results);
     make_folder(&out)?;
-    let findings = check(&args.session, &out).with_context(|| args.session.display().to_string())?;
+    let findings =
+        check(&args.session, &out, args.focal_length).with_context(|| args.session.display().to_string())?;
     for line in &findings.facts {
         println!("{line}");
     }

@@ -58,6 +58,8 @@ fn files_below(session: &Path, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 fn correct(index: &mut Value, alignments: &Alignments) -> usize {
     let mut n_corrected = 0;
+    let focal_ratio = alignments.focal_ratio();
+    lengthen(index, focal_ratio);
     for (plate, camera) in alignments.moved_plates() {
         index["backgrounds"][plate]["world_from_camera"] = matrix(&camera.world_from_camera);
     }
@@ -83,9 +85,35 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             }
             index["lights"] = entries.into();
         }
-        n_corrected += usize::from(is_moved || is_camera_moved || alignment.lights.is_some());
+        let is_lengthened = focal_ratio != 1.0;
+        n_corrected +=
+            usize::from(is_moved || is_camera_moved || alignment.lights.is_some() || is_lengthened);
     }
     n_corrected
+}
+
+/// Scales the focal length of the session, and those that plates and frames have of their own.
+fn lengthen(index: &mut Value, ratio: f64) {
+    if ratio == 1.0 {
+        return;
+    }
+    for list in ["backgrounds", "frames"] {
+        for entry in index[list].as_array_mut().into_iter().flatten() {
+            lengthen_intrinsics(entry, ratio);
+        }
+    }
+    lengthen_intrinsics(index, ratio);
+}
+
+fn lengthen_intrinsics(entry: &mut Value, ratio: f64) {
+    let Some(intrinsics) = entry.get_mut("intrinsics") else {
+        return;
+    };
+    for key in ["fx", "fy"] {
+        if let Some(length_px) = intrinsics[key].as_f64() {
+            intrinsics[key] = json!(ratio * length_px);
+        }
+    }
 }
 
 fn matrix(matrix: &DMat4) -> Value {

@@ -16,7 +16,7 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Alignments, Lights};
+use crate::alignment::{Alignments, Asked, FocalLength};
 use crate::files::Folder;
 use crate::output::{remove_file, write_png};
 
@@ -40,7 +40,7 @@ pub struct Findings {
 ///
 /// # Errors
 /// When the folder cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
-pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
+pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::Result<Findings> {
     let folder = Folder::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
@@ -73,7 +73,11 @@ pub fn check(session: &Path, out: &Path) -> anyhow::Result<Findings> {
     }
     if let Ok(first) = capture.frame(0) {
         let given = FrameInput::from(&first);
-        match Alignments::find(&capture, 0..1, Lights::Given) {
+        let asked = Asked {
+            focal_length,
+            ..Asked::default()
+        };
+        match Alignments::find(&capture, 0..1, asked) {
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
                     findings.aligned(&aligned.alignment);
@@ -109,6 +113,16 @@ impl Findings {
 
     fn aligned(&mut self, alignment: &Alignment) {
         let report = &alignment.report;
+        if let Some(found) = &report.focal_length {
+            let told = match found.errors {
+                Some(_) => format!(
+                    "intrinsics: toy and shadow tell {:.4} times the focal length, +- {:.4}: {}",
+                    found.ratio, found.deviation, found.outcome
+                ),
+                None => format!("intrinsics: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
         if let Some(camera) = &report.camera {
             let told = format!(
                 "world_from_camera: the table moves by {:.2} px in the picture where the camera is moved by {:.2} mm and turned by {:.2} degrees",

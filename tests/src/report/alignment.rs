@@ -1,6 +1,8 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment};
+use app_core::alignment::{
+    CameraAlignment, DiscoveredLight, FocalLengthAlignment, LightAlignment, PoseAlignment,
+};
 use app_core::probe::{ProbeReport, TrackedLight};
 use app_core::scene::Light;
 use serde::Serialize;
@@ -12,6 +14,8 @@ use crate::alignment::{Aligned, SeenLight};
 pub struct AlignmentEntry {
     /// Time that it took on the processor.
     pub cpu_ms: f64,
+    /// The focal length; none where nobody asked for it.
+    pub focal_length: Option<FocalLengthEntry>,
     /// The camera; none where there is no plate or too little texture.
     pub camera: Option<CameraEntry>,
     /// The toy's pose; none where too little of its outline is seen.
@@ -109,6 +113,21 @@ pub struct ErrorEntry {
     pub size_ratio: Option<f64>,
 }
 
+/// The focal length.
+#[derive(Clone, Debug, Serialize)]
+pub struct FocalLengthEntry {
+    /// Whether it was corrected.
+    pub is_applied: bool,
+    /// What was done with it, and why.
+    pub outcome: String,
+    /// Found over given.
+    pub ratio: f64,
+    /// Of the ratio; none where nothing tells it.
+    pub deviation: Option<f64>,
+    /// Error of the shadows with the given and with the found one.
+    pub errors: Option<[f64; 2]>,
+}
+
 /// The camera.
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraEntry {
@@ -167,6 +186,7 @@ impl From<&Aligned> for AlignmentEntry {
         let report = &aligned.alignment.report;
         Self {
             cpu_ms: aligned.cpu_ms,
+            focal_length: report.focal_length.as_ref().map(FocalLengthEntry::from),
             camera: report.camera.as_ref().map(CameraEntry::from),
             pose: report.pose.as_ref().map(PoseEntry::from),
             lights: report.lights.iter().map(LightEntry::from).collect(),
@@ -256,6 +276,18 @@ impl DiscoveredEntry {
             nearness_deviation_per_m: told(light.deviation.nearness_per_m),
             angular_radius_deviation_deg: told(light.deviation.angular_radius_rad.to_degrees()),
             against_listed: ErrorEntry::nearest(&found, listed),
+        }
+    }
+}
+
+impl From<&FocalLengthAlignment> for FocalLengthEntry {
+    fn from(found: &FocalLengthAlignment) -> Self {
+        Self {
+            is_applied: found.is_applied(),
+            outcome: found.outcome.to_string(),
+            ratio: found.ratio,
+            deviation: told(found.deviation),
+            errors: found.errors,
         }
     }
 }

@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{fs, process};
 
+use app_core::scene::Camera;
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::{Alignments, Lights};
+use harness::alignment::{Alignments, Asked, FocalLength};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
@@ -53,7 +54,7 @@ fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
 
 fn wrong(session: &Path) -> Vec<String> {
     let out = Temporary::new("drawing");
-    check(session, &out.0).unwrap().wrong
+    check(session, &out.0, FocalLength::Given).unwrap().wrong
 }
 
 fn matrix(value: &Value) -> DMat4 {
@@ -75,7 +76,7 @@ fn off(index: &mut Value) {
 #[test]
 fn a_good_session_has_nothing_wrong_and_is_drawn() {
     let out = Temporary::new("good");
-    let findings = check(Path::new(BUNDLED_SESSION), &out.0).unwrap();
+    let findings = check(Path::new(BUNDLED_SESSION), &out.0, FocalLength::Given).unwrap();
     assert_eq!(findings.wrong, Vec::<String>::new());
     let drawing = image::open(findings.drawing.unwrap()).unwrap().into_rgba8();
     let greens = drawing
@@ -183,6 +184,40 @@ fn every_key_of_the_format_is_known_and_no_other() {
     assert_eq!(told, expected);
 }
 
+/// Those of the session, of the plates and of the frames.
+#[test]
+fn an_aligned_session_has_the_focal_length_that_was_found() {
+    let lengthen = |index: &mut Value, ratio: f64| {
+        for key in ["fx", "fy"] {
+            index["intrinsics"][key] = json!(ratio * index["intrinsics"][key].as_f64().unwrap());
+        }
+        index["frames"][1]["intrinsics"] = index["intrinsics"].clone();
+    };
+    let recorded = changed("recorded", |index| lengthen(index, 1.0));
+    let session = changed("focal", |index| lengthen(index, 1.01));
+    let parent = Temporary::new("focal-aligned");
+    let out = parent.0.join("session");
+    let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
+    let asked = Asked {
+        focal_length: FocalLength::Found,
+        ..Asked::default()
+    };
+    let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
+    aligned_session::write(&session.0, &out, &alignments).unwrap();
+    let cameras = [&recorded.0, &session.0, &out].map(|folder| {
+        let capture = Capture::open(Folder::open(folder).unwrap()).unwrap();
+        let frames = [0, 1].map(|index| capture.frame(index).unwrap().camera);
+        [frames[0], frames[1], capture.scene().plates[0].camera]
+    });
+    let [recorded, given, written] = cameras;
+    for place in 0..3 {
+        let ratio = |camera: &Camera| camera.intrinsics.fx_px / recorded[place].intrinsics.fx_px;
+        assert!((ratio(&given[place]) - 1.01).abs() < 1e-9);
+        assert!((ratio(&written[place]) - 1.0).abs() < 1e-3, "{written:?}");
+    }
+    assert!(wrong(&out).is_empty());
+}
+
 #[test]
 fn an_aligned_session_is_right() {
     let session = changed("align", |index| {
@@ -192,7 +227,7 @@ fn an_aligned_session_is_right() {
     let parent = Temporary::new("aligned");
     let out = parent.0.join("session");
     let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
-    let alignments = Alignments::find(&capture, 0..capture.n_frames(), Lights::Given).unwrap();
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), Asked::default()).unwrap();
     assert_eq!(
         aligned_session::write(&session.0, &out, &alignments).unwrap(),
         capture.n_frames()

@@ -57,11 +57,32 @@ impl<'a> Shadows<'a> {
         level: &Level,
         lamps: Option<&[Lamp]>,
     ) -> Self {
+        let rect = lamps.map(|lamps| Self::around(raster, (shape, receivers), level, lamps));
+        Self::within(raster, (shape, receivers), level, rect)
+    }
+
+    /// The pixels around the shadows of lamps, as the first and the last; empty where there is no shadow in the picture.
+    pub(super) fn around(
+        raster: &mut Rasterizer,
+        (shape, receivers): (&Shape, &[SeenReceiver]),
+        level: &Level,
+        lamps: &[Lamp],
+    ) -> [IVec2; 2] {
+        let caster = Caster::new(shape, receivers, level.intrinsics, level.frame.size_px);
+        shadow_rect(raster, &caster, lamps)
+    }
+
+    /// All of a level's receivers, or what lies within a rectangle of its pixels.
+    pub(super) fn within(
+        raster: &mut Rasterizer,
+        (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
+        level: &Level,
+        rect: Option<[IVec2; 2]>,
+    ) -> Self {
         let size_px = level.frame.size_px;
         let corners = project(&shape.points, &level.intrinsics);
         let coverage = raster.coverage(&corners, &shape.triangles, size_px);
         let caster = Caster::new(shape, receivers, level.intrinsics, size_px);
-        let rect = lamps.map(|lamps| shadow_rect(raster, &caster, lamps));
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
         let backdrop = level.plate.is_none().then(|| {

@@ -45,6 +45,8 @@ const FINE: [(Band, usize); 4] = [
     (band(2.5, 0.5), 3),
     (FINEST, 6),
 ];
+/// The first of them are left out where the outline is within a pixel or two.
+const N_WIDE_BANDS: usize = 1;
 const FINEST: Band = band(1.5, 0.2);
 /// By which poses that are far from one another are compared.
 const WIDE: Band = band(4.0, 2.0);
@@ -129,12 +131,7 @@ impl Found {
 
 /// Finds the pose, starting from that of `shape`; none where too little of the outline is seen.
 pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
-    let mut search = Search {
-        shape,
-        pyramid,
-        raster: Rasterizer::default(),
-        damping: Matrix6::identity() * (PIECE_PX / (STEP * shape.radius_m)).powi(2),
-    };
+    let mut search = Search::new(shape, pyramid);
     let start = Motion::none(shape.centre, shape.radius_m);
     let given = search.fit(&start)?;
     let mut motion = start;
@@ -145,7 +142,7 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
         motion,
         information,
         mean_weight,
-    } = search.fine(motion)?;
+    } = search.fine(motion, &FINE)?;
     let found = search.fit(&motion)?;
     Some(Found {
         motion: motion.matrix(),
@@ -153,6 +150,33 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
         deviation: deviation(&information, mean_weight * found.loss_px2, shape.radius_m),
         found,
     })
+}
+
+/// How well a pose is known that another is looked for from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Start {
+    /// As given: some millimetres and degrees.
+    Given,
+    /// Its outline is within a pixel or two.
+    Near,
+}
+
+/// The motion to the pose that fits best, and the distance of its outline in pixels; none where too little of that is seen.
+pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(DMat4, f64)> {
+    let mut search = Search::new(shape, pyramid);
+    let mut motion = Motion::none(shape.centre, shape.radius_m);
+    let bands = match start {
+        Start::Near => &FINE[N_WIDE_BANDS..],
+        Start::Given => {
+            if search.fit(&motion)?.is_far() {
+                motion = search.coarse(motion);
+            }
+            &FINE[..]
+        }
+    };
+    let motion = search.fine(motion, bands)?.motion;
+    let fit = search.fit(&motion)?;
+    Some((motion.matrix(), fit.outline_px()))
 }
 
 /// Places on the outline of a shape's triangles with their corners at `points`, in pixels of a picture.
@@ -184,7 +208,16 @@ struct Search<'a> {
     damping: Matrix6,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(shape: &'a Shape, pyramid: &'a Pyramid) -> Self {
+        Self {
+            shape,
+            pyramid,
+            raster: Rasterizer::default(),
+            damping: Matrix6::identity() * (PIECE_PX / (STEP * shape.radius_m)).powi(2),
+        }
+    }
+
     fn outline(&mut self, motion: &Motion, level: &Level) -> (Coverage, Vec<Element>) {
         let points = motion.apply(&self.shape.points);
         let posed = (&points[..], self.shape);
@@ -224,11 +257,11 @@ impl Search<'_> {
         motion
     }
 
-    fn fine(&mut self, mut motion: Motion) -> Option<Converged> {
+    fn fine(&mut self, mut motion: Motion, bands: &[(Band, usize)]) -> Option<Converged> {
         let mut last = None;
-        for (band, n_rounds) in FINE {
-            for _ in 0..n_rounds {
-                let (measured, _) = self.matte(&motion, band)?;
+        for (band, n_rounds) in bands {
+            for _ in 0..*n_rounds {
+                let (measured, _) = self.matte(&motion, *band)?;
                 let k = &self.pyramid.level(0).intrinsics;
                 let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.damping)?;
                 motion = motion.then(&step);
