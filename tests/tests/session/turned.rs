@@ -97,10 +97,11 @@ fn a_turned_picture_is_taken_as_stored_and_said_to_be() {
                 field: field.to_owned(),
                 orientation,
             };
-            // Plate and probe, then each frame, whether or not its picture was read for another.
+            // Plate and both pictures of the probe, then each frame, whether or not its picture was read for another.
             let expected = [
                 turned("plate.jpg", "backgrounds[0].image"),
                 turned("frame.png", "probe.image"),
+                turned("frame.png", "probe.pictures[0].image"),
             ];
             assert_eq!(capture.warnings(), expected);
             for index in [0, 1, 0] {
