@@ -1,13 +1,15 @@
 """Photographs toys with Mitsuba 3 and writes `shadow-capture` folders.
 
-usage: session.py [--variant NAME] [--out DIR] [--spp N]
+usage: session.py [--variant NAME] [--light-map FILE.hdr [--spot listed|unlisted]] [--out DIR] [--spp N]
        session.py --all DIR [--held-out] [--spp N]
 """
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import held_out
+import light_map
 import setups
 from mask import channels, mask_png
 from photo import Photographer, Shot
@@ -100,6 +102,12 @@ def make(setup, out, spp):
     (out / "capture.json").write_text(json.dumps(capture_json(setup), indent=1) + "\n")
 
 
+def lit_by(setup, path, spot):
+    """The setup in the light of a map alone; `spot` tells whether the brightest spot is a light of its own, and listed."""
+    lights = (replace(light_map.spot(light_map.read(path)), listed=spot == "listed"),) if spot else ()
+    return replace(setup, sky=str(path), lights=lights, description=f"{setup.description} Lit by {path.stem}.")
+
+
 def make_all(wanted, folder, spp):
     """Renders each setup into `folder`/NAME unless that exists; a folder has its name only when it is whole."""
     for setup in wanted:
@@ -113,8 +121,10 @@ def make_all(wanted, folder, spp):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    named = {setup.name: setup for setup in (*setups.BUNDLED, *setups.SCENES, *held_out.SCENES)}
+    named = {setup.name: setup for setup in (*setups.BUNDLED, *setups.SCENES, *setups.OPEN_AIR, *held_out.SCENES)}
     parser.add_argument("--variant", choices=named, default="llama")
+    parser.add_argument("--light-map", type=Path, metavar="FILE.hdr", help="surroundings of all directions, instead of the variant's lights and sky")
+    parser.add_argument("--spot", choices=("listed", "unlisted"), help="the map's brightest spot casts the shadow that is scored; with or without an entry in capture.json")
     parser.add_argument("--out", type=Path, help="folder to write, by default tests/sessions/VARIANT")
     parser.add_argument("--all", type=Path, metavar="DIR", help="renders all scenes into DIR/NAME, but for those that exist")
     parser.add_argument("--held-out", action="store_true", help="with --all: the scenes that nothing is tuned on")
@@ -123,7 +133,8 @@ def main():
     if args.all:
         make_all(held_out.SCENES if args.held_out else setups.SCENES, args.all, args.spp or 128)
     else:
-        make(named[args.variant], args.out or SESSIONS / args.variant, args.spp or 1024)
+        setup = lit_by(named[args.variant], args.light_map, args.spot) if args.light_map else named[args.variant]
+        make(setup, args.out or SESSIONS / args.variant, args.spp or 1024)
 
 
 if __name__ == "__main__":

@@ -74,6 +74,11 @@ class Glow(Sun):
 
 
 @dataclass
+class Spot(Glow):
+    """Brightest spot of a light map, which has its power; it is listed as the disc that `light_map` fits to it."""
+
+
+@dataclass
 class Receiver:
     """A plane that catches the shadow: `surface` is a picture of `ground` that repeats every `tile`, or "uniform"."""
 
@@ -126,7 +131,7 @@ class Setup:
     receivers: tuple = (Receiver(),)
     lights: tuple = (Bulb(),)
     powers: tuple = ()  # factor on the first light, per frame
-    sky: str = "even"  # fills what the lights leave of the plate's irradiance: see `sky`
+    sky: str = "even"  # fills what the lights leave of the plate's irradiance: see `sky`; or path of a light map that gives all
     hand: tuple | None = None  # x, z, turn of a hand on the table that the plates have not seen
     physical: tuple = (None, 0.0)
     poses: tuple = LOOKS

@@ -73,4 +73,10 @@ REST = (
           poses=(("Look", 1.8),) * 12, rate=60.0, receivers=(TILES,)),
 )
 
+OPEN_AIR = (  # for light maps: a light map is sampled less well than a lamp
+    scene("open-air-llama", "A llama on wood in the open.", sky="overcast", lights=(), effort=4, yaw=14.0, eye=(0.39, 0.28, 0.1), target=(0.025, 0.02, -0.07)),
+    scene("open-air-heron", "A heron on tiles in the open.", toy="heron", sky="overcast", lights=(), effort=4, yaw=75.0, receivers=(TILES,), poses=(("Fish", 1.0), ("Fan", 1.0), ("Fish", 1.8)),
+          eye=(-0.1, 0.33, 0.4), target=(0.04, 0.03, -0.04)),
+)
+
 SCENES = (*NEEDED_FIRST, *RADII, *REST)

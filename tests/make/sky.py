@@ -1,6 +1,7 @@
 """Paints surroundings as equirectangular radiance maps, with +Y up."""
 import numpy as np
 
+import light_map
 from setup import COOL, Glow, towards
 
 ROWS = 256
@@ -36,6 +37,8 @@ def overcast(way):
 
 def paint(setup):
     """Radiance map [rows, 2 rows, 3] of the setup's sky and its glowing lobes, as shares of a plate's level of 1."""
+    if setup.sky.endswith(light_map.SUFFIX):
+        return light_map.read(setup.sky)
     way = directions()
     broad = {"window": window, "overcast": overcast}[setup.sky](way)
     rest = 1 - sum(light.share for light in setup.lights)
