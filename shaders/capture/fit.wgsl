@@ -9,7 +9,7 @@
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
 //
-// Reads: frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 27 sums, one per workgroup and
+// Reads: frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums, one per workgroup and
 // channel.
 // CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
 
@@ -27,11 +27,13 @@
 @group(1) @binding(10) var gbuffer_received: texture_2d<f32>;
 
 const WORKGROUP: u32 = 256u;
-// Upper triangle of the symmetric matrix row by row, then the right-hand side.
-const N_SUMS: u32 = 27u;
-// Sums are reduced in three parts to stay within 16 KiB of workgroup memory.
-const N_PART: u32 = 9u;
-const N_PARTIAL: u32 = 2304u; // WORKGROUP * N_PART
+// Upper triangle of the symmetric matrix row by row, then the right-hand side, then the clipped pixels' part of the
+// matrix' first element.
+const N_SUMS: u32 = 28u;
+const CLIPPED_SUM: u32 = 27u;
+// Sums are reduced in four parts to stay within 16 KiB of workgroup memory.
+const N_PART: u32 = 7u;
+const N_PARTIAL: u32 = 1792u; // WORKGROUP * N_PART
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
 // As above for the toy, whose interreflections and curved faces are not modelled.
@@ -46,6 +48,8 @@ struct Equation {
   columns: array<f32, N_COLUMNS>,
   value: f32,
   weight: f32,
+  // 1 where frame and plate may both be clipped.
+  clipped: f32,
 }
 
 fn cauchy_weight(residual: f32, scale: f32) -> f32 {
@@ -107,6 +111,7 @@ fn receiver_equation(seen: Observation, channel: u32) -> Equation {
     predicted += fit.receivers[step.receiver].direct_fraction[i][channel] * eq.columns[2u + i];
   }
   eq.weight = seen.weight[channel];
+  eq.clipped = seen.clipped[channel];
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }
   return eq;
 }
@@ -177,6 +182,7 @@ fn cs_accumulate(
       }
       sums[21u + i] += eq.weight * eq.columns[i] * eq.value;
     }
+    sums[CLIPPED_SUM] += eq.clipped * eq.weight * eq.columns[0] * eq.columns[0];
   }
   let row = (group.x * 3u + channel) * N_SUMS;
   for (var part = 0u; part < N_SUMS; part += N_PART) {

@@ -12,10 +12,13 @@
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
 @group(1) @binding(2) var<storage, read_write> solution: Fit;
-// 81 sums for each receiver, then for the toy.
+// 84 sums for each receiver, then for the toy.
 @group(1) @binding(3) var<storage, read_write> accumulated: array<f32>;
 
-const N_SUMS: u32 = 27u;
+const N_SUMS: u32 = 28u;
+const CLIPPED_SUM: u32 = 27u;
+// Of the three channels.
+const N_ROW: u32 = 84u;
 // Weight of the priors against the energy of the first column.
 const PRIOR_WEIGHT: f32 = 1e-4;
 // Weight of a light's previous intensity, against the energy of the ambient light.
@@ -36,7 +39,7 @@ const PRIOR_DIRECT_FRACTION: f32 = 0.5;
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
 
-var<workgroup> sums: array<f32, 81>;
+var<workgroup> sums: array<f32, N_ROW>;
 var<private> matrix: array<f32, 36>;
 var<private> unknowns: array<f32, N_COLUMNS>;
 
@@ -119,7 +122,7 @@ fn solve() {
   for (var p = 0u; p < step.n_columns; p++) { unknowns[p] /= matrix[p * N_COLUMNS + p]; }
 }
 
-fn store_receiver(channel: u32, contrast: f32) {
+fn store_receiver(channel: u32, clipped: f32) {
   let correction = unknowns[0];
   if step.receiver == 0u { solution.gain[channel] *= correction; }
   solution.receivers[step.receiver].bounce[channel] = clamp(unknowns[1] / correction, 0.0, MAX_BOUNCE);
@@ -132,7 +135,7 @@ fn store_receiver(channel: u32, contrast: f32) {
   for (var i = 2u; i < step.n_columns; i++) {
     solution.receivers[step.receiver].direct_fraction[i - 2u][channel] = scale * unknowns[i];
   }
-  solution.receivers[step.receiver].contrast[channel] = contrast;
+  solution.receivers[step.receiver].clipped[channel] = clipped;
 }
 
 fn store_toy(channel: u32) {
@@ -142,12 +145,10 @@ fn store_toy(channel: u32) {
 fn solve_receiver(channel: u32) {
   load_equations(channel, 1u);
   let energy = matrix[0];
-  var light_energy = 0.0;
-  for (var i = 2u; i < step.n_columns; i++) { light_energy += matrix[i * N_COLUMNS + i]; }
   for (var i = 0u; i < step.n_columns; i++) { add_prior(i, PRIOR_WEIGHT * energy, receiver_prior(i, channel)); }
   if step.receiver > 0u { add_prior(0u, SAME_GAIN_WEIGHT * energy, 1.0); }
   solve();
-  if unknowns[0] > 0.0 { store_receiver(channel, light_energy / energy); }
+  if unknowns[0] > 0.0 { store_receiver(channel, sums[channel * N_SUMS + CLIPPED_SUM] / energy); }
 }
 
 // No valid pixel shows the receiver: it takes the prior.
@@ -251,26 +252,26 @@ fn solve_channel(channel: u32, energy: f32) {
 
 fn total_sum(lane: u32) -> f32 {
   var total = 0.0;
-  for (var row = 0u; row < step.n_rows; row++) { total += rows[row * 81u + lane]; }
+  for (var row = 0u; row < step.n_rows; row++) { total += rows[row * N_ROW + lane]; }
   return total;
 }
 
 @compute @workgroup_size(96)
 fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   var fresh = 0.0;
-  let slot = 81u * select(step.receiver, MAX_RECEIVERS, step.subject == SUBJECT_TOY) + lane;
+  let slot = N_ROW * select(step.receiver, MAX_RECEIVERS, step.subject == SUBJECT_TOY) + lane;
   let is_accumulated = step.subject != SUBJECT_INTENSITIES;
-  if lane < 81u {
+  if lane < N_ROW {
     fresh = total_sum(lane);
     sums[lane] = fresh;
   }
   workgroupBarrier();
   let fresh_energy = sums[0] + sums[N_SUMS] + sums[2u * N_SUMS];
   workgroupBarrier();
-  if lane < 81u && is_accumulated { sums[lane] = fresh + accumulated[slot]; }
+  if lane < N_ROW && is_accumulated { sums[lane] = fresh + accumulated[slot]; }
   workgroupBarrier();
   let energy = sums[0] + sums[N_SUMS] + sums[2u * N_SUMS];
-  if lane < 81u && is_accumulated && step.is_last == 1u && fresh_energy > 0.0 {
+  if lane < N_ROW && is_accumulated && step.is_last == 1u && fresh_energy > 0.0 {
     accumulated[slot] = sums[lane] * min(1.0, MAX_FRAMES * fresh_energy / energy);
   }
   // One invocation for all channels: a store to a component of a vector in memory may touch the others.

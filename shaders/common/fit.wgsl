@@ -7,8 +7,9 @@ struct ReceiverFit {
   bounce: vec4f,
   // Each light's fraction of the plate's radiance at the reference point.
   direct_fraction: array<vec4f, MAX_LIGHTS>,
-  // Energy of the light columns over that of the plate: how much real shadow is in the sums.
-  contrast: vec4f,
+  // Part of the energy of the plate's column that pixels give which are clipped in frame and plate: 1 where no other is
+  // seen.
+  clipped: vec4f,
 }
 
 struct Fit {

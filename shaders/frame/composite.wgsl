@@ -94,6 +94,13 @@ fn shadow_likeness(residual: vec3f) -> f32 {
   return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
+// The model, and 1 where the plate is clipped and no real shadow shows how far above white it is: there none shows.
+fn shown_model(plate: vec3f, point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
+  let model = receiver_model(point, ambient, visibility);
+  let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
+  return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
+}
+
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
 // the camera pixel where toy and receiver mix: 1 where the change is little.
@@ -115,9 +122,9 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
     return mix(lit, f, evident.r);
   }
   let uv = at / globals.region_size_px;
-  let before = receiver_model(point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
+  let before = shown_model(b.rgb, point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
     textureLoad(physical_visibility, texel, 0));
-  let after = receiver_model(point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
+  let after = shown_model(b.rgb, point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
     textureLoad(visibility, texel, 0));
   let most = largest(abs(after - before));
   let pooled = cell_at(point).rgb;

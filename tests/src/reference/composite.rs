@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4, UVec2};
 
 use super::grid::PlaneGrid;
-use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
 use super::real::{Real, Vector};
 use super::smoothstep;
@@ -60,7 +60,7 @@ pub fn receiver_color<R: Real>(
         let model = shown
             .solution
             .receiver_model::<R>(region, point, ambient, visibility.at(texel));
-        Vector::from(model)
+        Vector::from(shown_model(&shown.solution, point, model, plate.into()))
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let after = model(&shown.ambient, &shown.visibility);
@@ -82,6 +82,13 @@ pub fn receiver_color<R: Real>(
     let inside = inside_border::<R>(region, texel).max(R::ONE - seen);
     let laid = frame.lerp(made.lerp(kept, keep), inside).max(black);
     [laid, laid.lerp(kept, (R::ONE - seen) * near).max(black)].map(DVec3::from)
+}
+
+/// The model, and 1 where the plate is clipped and nothing else is seen of its receiver.
+fn shown_model(solution: &Solution, point: ReceiverPoint, model: DVec3, plate: DVec3) -> DVec3 {
+    let clipped = solution.receivers[point.receiver].clipped;
+    let shown = model + clipped * (DVec3::ONE - model);
+    DVec3::select(plate.cmpgt(DVec3::splat(BRIGHTEST_USABLE)), shown, model)
 }
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.

@@ -113,23 +113,29 @@ pub fn fit_receiver<R: Real>(
                 .iter()
                 .filter(|sample| sample.point.receiver == receiver)
                 .collect();
-            let equations =
+            let (equations, clipped) =
                 receiver_equations::<R>(region, &of_receiver, &before, constants, (step > 0, channel));
             let priors = receiver_priors(region, receiver, &before, channel);
             take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
+            if equations.energy(0) > R::ZERO {
+                let clipped = clipped / equations.energy(0);
+                solution.receivers[receiver].clipped[channel] = clipped.to_f64();
+            }
         }
     }
     solution
 }
 
+/// The equations, and the energy of the first column that clipped pixels give.
 fn receiver_equations<R: Real>(
     region: &Region,
     samples: &[&ReceiverSample],
     before: &Solution,
     constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
-) -> NormalEquations<R> {
+) -> (NormalEquations<R>, R) {
     let mut equations = NormalEquations::new(2 + region.lights.len());
+    let mut of_clipped = R::ZERO;
     for sample in samples {
         let [frame, plate] = [sample.frame, sample.plate].map(|color| R::from_f64(color[channel]));
         let value = frame / R::from_f64(before.gain[channel]);
@@ -153,9 +159,12 @@ fn receiver_equations<R: Real>(
             let residual = value - plate * R::from_f64(model[channel]);
             weight *= cauchy_weight(residual, R::from_f64(constants.cauchy_scale) * plate);
         }
+        if is_clipped(frame, plate) {
+            of_clipped += weight * columns[0] * columns[0];
+        }
         equations.observe(&columns, value, weight);
     }
-    equations
+    (equations, of_clipped)
 }
 
 /// What is expected of bounce and shares before a receiver is seen in shadow.
@@ -219,7 +228,6 @@ fn take_receiver<R: Real>(
     if energy <= R::ZERO {
         return;
     }
-    let n_lights = solution.intensities.len();
     let mut equations = observed.clone();
     let weight = R::from_f64(constants.prior_weight) * energy;
     equations.expect(0, R::ONE, weight);
@@ -254,8 +262,6 @@ fn take_receiver<R: Real>(
         .iter_mut()
         .zip(&direct_fractions)
         .for_each(|(slot, direct_fraction)| slot[channel] = (scale * *direct_fraction).to_f64());
-    let of_lights: R = (0..n_lights).map(|i| observed.energy(2 + i)).sum();
-    found.contrast[channel] = (of_lights / energy).to_f64();
 }
 
 /// A pixel of one surface of the toy.

@@ -177,8 +177,8 @@ pub struct ReceiverSolution {
     pub bounce: DVec3,
     /// Each light's share of the plate's radiance at the reference point.
     pub direct_fractions: Vec<DVec3>,
-    /// Energy of the light columns over that of the plate.
-    pub contrast: DVec3,
+    /// Part of the energy of the plate's column that pixels give which are clipped in frame and plate.
+    pub clipped: DVec3,
 }
 
 impl Solution {

@@ -74,7 +74,7 @@ fn judge(lab: &mut Lab, label: Label, world: &World, is_due: bool) -> anyhow::Re
     let mut finite = label.row("fit", FINITE, n_not_finite as f64);
     finite.note = fit.map_or_else(
         || "no fit: the frame passes through".to_owned(),
-        |fit| format!("contrast {:.4}", fit.receivers[0].contrast[1]),
+        |fit| format!("clipped {:.4}", fit.receivers[0].clipped[1]),
     );
     let n_of_fit = warnings.iter().filter(|warning| is_of_the_fit(warning)).count();
     let mut warned = if is_due {

@@ -27,38 +27,41 @@ pub(crate) fn shows_toy(stand: &Stand, posed: &PosedMesh, rect: &PixelRect) -> R
 
 #[test]
 fn receiver_in_codes() {
-    for run in runs() {
-        let shown = Shown {
-            visibility: run.shown_visibility.clone(),
-            ambient: run.shown_ambient.clone(),
-            solution: run.solution.clone(),
-            residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
-            grids: run.grids.clone(),
-        };
-        let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
-        let texels = Raster::from_fn(run.region.size_px, |texel| texel);
-        let pairs = texels
-            .texels()
-            .iter()
-            .filter(|texel| !hidden.at(**texel))
-            .flat_map(|texel| {
-                let expected = receiver_color::<f64>(&run.region, &run.pictures, &shown, *texel);
-                let actual = run.picture.at(*texel);
-                assert_eq!(actual[3], 255, "alpha at {texel}");
-                (0..3).map(move |channel| {
-                    let (actual, [a, b]) = (
-                        f64::from(actual[channel]),
-                        expected.map(|c| unrounded_code(c[channel])),
-                    );
-                    // How still the toy is decides between the two.
-                    (actual, actual.clamp(a.min(b), a.max(b)))
-                })
-            });
-        // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
-        // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a
-        // graphics card are 1/512 of the difference between two texels.
-        Errors::between(pairs).check(&format!("{}, codes", run.stand.setup.name), (0.5, 0.1), 0.7);
-    }
+    runs().iter().for_each(check_receiver);
+}
+
+/// Compares the picture with the reference where it shows the receiver.
+pub(crate) fn check_receiver(run: &Run) {
+    let shown = Shown {
+        visibility: run.shown_visibility.clone(),
+        ambient: run.shown_ambient.clone(),
+        solution: run.solution.clone(),
+        residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
+        grids: run.grids.clone(),
+    };
+    let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
+    let texels = Raster::from_fn(run.region.size_px, |texel| texel);
+    let pairs = texels
+        .texels()
+        .iter()
+        .filter(|texel| !hidden.at(**texel))
+        .flat_map(|texel| {
+            let expected = receiver_color::<f64>(&run.region, &run.pictures, &shown, *texel);
+            let actual = run.picture.at(*texel);
+            assert_eq!(actual[3], 255, "alpha at {texel}");
+            (0..3).map(move |channel| {
+                let (actual, [a, b]) = (
+                    f64::from(actual[channel]),
+                    expected.map(|c| unrounded_code(c[channel])),
+                );
+                // How still the toy is decides between the two.
+                (actual, actual.clamp(a.min(b), a.max(b)))
+            })
+        });
+    // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
+    // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a
+    // graphics card are 1/512 of the difference between two texels.
+    Errors::between(pairs).check(&format!("{}, codes", run.stand.setup.name), (0.5, 0.1), 0.7);
 }
 
 /// Comparisons on setups that never meet a branch say nothing about it.

@@ -9,6 +9,7 @@ use harness::reference::fit::{
 use harness::reference::model::{ReceiverSolution, Solution, centre_px};
 use harness::reference::raster::Raster;
 
+use crate::composite::check_receiver;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{Photo, truth};
@@ -22,7 +23,7 @@ fn start(n_lights: usize) -> Solution {
     let receiver = ReceiverSolution {
         bounce: DVec3::splat(PRIOR_BOUNCE),
         direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
-        contrast: DVec3::ZERO,
+        clipped: DVec3::ZERO,
     };
     Solution {
         gain: DVec3::ONE,
@@ -34,7 +35,7 @@ fn start(n_lights: usize) -> Solution {
 
 fn receiver_values(solution: &Solution, receiver: usize) -> impl Iterator<Item = f64> + '_ {
     let of_receiver = &solution.receivers[receiver];
-    let colors = [solution.gain, of_receiver.bounce, of_receiver.contrast].into_iter();
+    let colors = [solution.gain, of_receiver.bounce, of_receiver.clipped].into_iter();
     colors
         .chain(of_receiver.direct_fractions.iter().copied())
         .flat_map(|color| color.to_array())
@@ -83,6 +84,9 @@ fn clipped_pictures_tell_of_no_shadow() {
         direct_fraction.max_element() < 0.01,
         "{direct_fraction} of the plate is taken for a light's"
     );
+    // The pixels' own light is not known either: what they show stays.
+    assert_eq!(run.solution.receivers[0].clipped, DVec3::ONE);
+    check_receiver(&run);
 }
 
 /// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.

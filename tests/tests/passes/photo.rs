@@ -30,7 +30,7 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
         .map(|(bounce, direct_fractions)| ReceiverSolution {
             bounce: *bounce,
             direct_fractions: direct_fractions[..n_lights].to_vec(),
-            contrast: DVec3::ZERO,
+            clipped: DVec3::ZERO,
         });
     let light = [DVec3::new(0.55, 0.5, 0.48), DVec3::new(0.35, 0.36, 0.4)];
     Solution {

@@ -180,7 +180,7 @@ pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
     let receiver = |fit: &ReceiverFit| ReceiverSolution {
         bounce: color(&fit.bounce),
         direct_fractions: fit.direct_fraction[..n_lights].iter().map(color).collect(),
-        contrast: color(&fit.contrast),
+        clipped: color(&fit.clipped),
     };
     Solution {
         gain: color(&fit.gain),

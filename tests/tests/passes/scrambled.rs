@@ -151,7 +151,7 @@ fn fit(solution: &Solution) -> Fit {
         *slot = ReceiverFit {
             bounce: color(&receiver.bounce),
             direct_fraction,
-            contrast: color(&receiver.contrast),
+            clipped: color(&receiver.clipped),
         };
     }
     let toy: &mut [[f32; 4]; N_COLUMNS] = &mut fit.toy;

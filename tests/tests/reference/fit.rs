@@ -160,7 +160,7 @@ fn unseen_shadow_leaves_the_expected_share() {
         );
     }
     assert!((fitted.gain - 0.9).abs().max_element() < 1e-3, "{fitted:?}");
-    assert!(fitted.receivers[0].contrast.max_element() < 1e-12, "{fitted:?}");
+    assert!(fitted.receivers[0].clipped.max_element() < 1e-12, "{fitted:?}");
 }
 
 /// How a toy is lit, what else is known of it, and pixels of it.

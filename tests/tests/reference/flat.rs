@@ -64,7 +64,7 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
         receivers: vec![ReceiverSolution {
             bounce: DVec3::new(0.3, 0.12, 0.06),
             direct_fractions: direct_fractions[..n_lights].to_vec(),
-            contrast: DVec3::ZERO,
+            clipped: DVec3::ZERO,
         }],
         toy: vec![DVec3::splat(0.5); 2 + n_lights],
     }
@@ -80,7 +80,7 @@ pub(crate) fn start(n_lights: usize) -> Solution {
         receivers: vec![ReceiverSolution {
             bounce: DVec3::splat(0.27),
             direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
-            contrast: DVec3::ZERO,
+            clipped: DVec3::ZERO,
         }],
         toy: vec![DVec3::ZERO; 2 + n_lights],
     }

@@ -13,8 +13,9 @@ pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::Read
 
 /// Maximum number of unknowns of a fit: two, and one per light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
-/// Sums of a fit in one channel: the upper triangle of the normal equations row by row, and their right-hand side.
-pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS;
+/// Sums of a fit in one channel: the upper triangle of the normal equations row by row, their right-hand side, and the
+/// clipped pixels' part of the first.
+pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS + 1;
 /// Colour channels.
 pub(crate) const N_CHANNELS: usize = 3;
 /// Weight of the fit's priors against the energy of its first column.
@@ -29,7 +30,7 @@ shared_struct! {
     pub struct ReceiverFit {
         pub bounce: [f32; 4],
         pub direct_fraction: [[f32; 4]; MAX_LIGHTS],
-        pub contrast: [f32; 4],
+        pub clipped: [f32; 4],
     }
 }
 
@@ -63,7 +64,7 @@ pub(crate) fn start(n_lights: usize) -> Fit {
     let mut receiver = ReceiverFit {
         bounce: [PRIOR_BOUNCE; 4],
         direct_fraction: [[0.0; 4]; MAX_LIGHTS],
-        contrast: [0.0; 4],
+        clipped: [0.0; 4],
     };
     receiver.direct_fraction[..n_lights.min(MAX_LIGHTS)].fill([direct_fraction; 4]);
     let mut fit = Fit {
