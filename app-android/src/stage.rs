@@ -1,5 +1,6 @@
 //! The core and the window it draws on: created once, then moved from window to window.
 
+use app_core::camera_frame::Display;
 use app_core::wgpu::{self, rwh};
 use app_core::{Core, CoreError};
 use ndk::native_window::NativeWindow;
@@ -73,7 +74,7 @@ impl Stage {
     /// Presents one frame, where there is a window.
     pub(crate) fn present(&mut self) -> Result<(), StageError> {
         match (&mut self.core, &self.window) {
-            (Some(core), Some(_)) => Ok(core.present()?),
+            (Some(core), Some(_)) => Ok(core.present(Display::default())?),
             _ => Ok(()),
         }
     }

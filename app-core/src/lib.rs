@@ -47,7 +47,7 @@
 //!     }
 //!     let picture = core.read_picture()?;
 //!     assert_eq!([picture.width_px, picture.height_px], [640, 360]);
-//!     assert!(picture.rgba8 != input.image.rgba8);
+//!     assert!(picture.rgba8 != input.image.rgba().rgba8);
 //!
 //!     // A pose of the app's own: the llama turns its head. The scene is known by now, so that this frame costs far less.
 //!     let toy = &session.scene().toy;
@@ -80,6 +80,7 @@
 #![forbid(unsafe_code)]
 
 pub mod alignment;
+pub mod camera_frame;
 pub mod core;
 pub mod frame;
 pub mod gpu;

@@ -1,5 +1,6 @@
 //! The core and the layer it draws on: created once, without a surface in the background.
 
+use app_core::camera_frame::Display;
 use app_core::wgpu::{self, SurfaceTargetUnsafe};
 use app_core::{Core, CoreError};
 use objc2::Message;
@@ -65,7 +66,7 @@ impl Stage {
     /// Presents one frame, where there is a surface.
     pub(crate) fn present(&mut self) -> Result<(), StageError> {
         match &mut self.core {
-            Some(core) if self.has_surface => Ok(core.present()?),
+            Some(core) if self.has_surface => Ok(core.present(Display::default())?),
             _ => Ok(()),
         }
     }

@@ -1,10 +1,13 @@
-// The camera image with the work region laid over it, code for code.
+// The camera image with the work region laid over it, code for code, or as much of it as is shown.
 //
 // Reads: frame_codes and region_codes, 8 bits. Writes: codes, opaque.
 
 struct Placement {
   origin_px: vec2u,
   size_px: vec2u,
+  // Part of the region's picture, the rest being the camera image: from 0 to 1.
+  effect: f32,
+  unused: f32,
 }
 
 @group(1) @binding(0) var<uniform> placement: Placement;
@@ -16,6 +19,12 @@ fn fs_place(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2u(at.xy);
   // Wraps to a large number left of the region and above it.
   let in_region = texel - placement.origin_px;
-  if all(in_region < placement.size_px) { return vec4f(textureLoad(region_codes, in_region, 0).rgb, 1.0); }
+  if all(in_region < placement.size_px) {
+    let region = textureLoad(region_codes, in_region, 0).rgb;
+    if placement.effect == 1.0 { return vec4f(region, 1.0); }
+    let frame = textureLoad(frame_codes, texel, 0).rgb;
+    let light = mix(linear_from_srgb(frame), linear_from_srgb(region), placement.effect);
+    return vec4f(srgb_from_linear(light), 1.0);
+  }
   return vec4f(textureLoad(frame_codes, texel, 0).rgb, 1.0);
 }

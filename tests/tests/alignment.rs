@@ -292,7 +292,7 @@ fn what_was_found_is_kept_as_long_as_it_holds() {
     assert!(first.lights.is_some());
     // The same lights in another picture of the same view are those that were found before.
     let mut again = input.clone();
-    again.image = Arc::new(Image::clone(&input.image));
+    again.image = Image::clone(input.image.rgba()).into();
     let again = aligner.align(&again).unwrap();
     assert_eq!(again.lights, first.lights);
     assert_eq!(again.report.lights, first.report.lights);
@@ -306,7 +306,7 @@ fn what_was_found_is_kept_as_long_as_it_holds() {
     assert_eq!((found.report.lights.len(), found.report.discovered.len()), (0, 1));
     // A picture that does not show the toy is not taken for the one before.
     let mut other = input.clone();
-    other.image = Arc::clone(&SESSION.0.plates[0].image);
+    other.image = Arc::clone(&SESSION.0.plates[0].image).into();
     assert_ne!(aligner.align(&other).unwrap().report, first.report);
 }
 
@@ -324,7 +324,7 @@ fn a_toy_that_stands_still_is_not_moved_by_its_tracker() {
         .map(|(along, mm)| {
             let mut input = disturbed(*along, *mm * DVec3::ONE, *mm);
             // Another picture, as far as anybody knows.
-            input.image = Arc::new(Image::clone(&input.image));
+            input.image = Image::clone(input.image.rgba()).into();
             aligner.align(&input).unwrap().world_from_object
         })
         .collect();
@@ -396,7 +396,7 @@ fn without_a_plate_the_pose_is_found_and_lights_stay() {
 #[test]
 fn a_toy_that_is_not_in_the_picture_is_not_found_there() {
     let mut input = SESSION.1.clone();
-    input.image = Arc::clone(&SESSION.0.plates[0].image);
+    input.image = Arc::clone(&SESSION.0.plates[0].image).into();
     let found = align(&input);
     assert_eq!(found.world_from_object, input.world_from_object);
     assert!(found.report.lights.is_empty());
@@ -434,7 +434,7 @@ fn nonsense_is_neither_found_nor_a_panic() {
 #[test]
 fn pictures_of_another_size_are_refused() {
     let mut input = SESSION.1.clone();
-    input.image = Arc::new(Image {
+    input.image = app_core::camera_frame::CameraImage::from(Image {
         width_px: 2,
         height_px: 2,
         rgba8: vec![255; 16],

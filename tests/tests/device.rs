@@ -6,7 +6,6 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::thread;
 
 use app_core::Core;
@@ -163,7 +162,7 @@ fn later(input: &FrameInput) -> FrameInput {
 
 fn photographed_again(input: &FrameInput) -> FrameInput {
     FrameInput {
-        image: Arc::new(input.image.as_ref().clone()),
+        image: input.image.rgba().as_ref().clone().into(),
         ..input.clone()
     }
 }

@@ -167,7 +167,7 @@ fn the_bundled_bulb_is_found_and_kept() {
     assert_eq!(found.applied_to(&input).lights, found.lights);
     // In another picture it is not looked for again.
     let mut again = input.clone();
-    again.image = Arc::new(app_core::scene::Image::clone(&input.image));
+    again.image = app_core::scene::Image::clone(input.image.rgba()).into();
     let again = aligner.align(&again).unwrap();
     assert_eq!(again.report.discovered, found.report.discovered);
 }
@@ -186,7 +186,7 @@ fn without_a_plate_it_is_found_too() {
 fn no_light_is_found_by_a_toy_that_is_not_there() {
     let (mut scene, mut input) = BUNDLED.clone();
     scene.lights.clear();
-    input.image = Arc::clone(&scene.plates[0].image);
+    input.image = Arc::clone(&scene.plates[0].image).into();
     let found = Aligner::new(scene).align(&input).unwrap();
     assert_eq!(
         found.report.no_light,

@@ -130,7 +130,7 @@ fn it_is_found_once_and_kept() {
     let mut aligner = Aligner::new(scene).with_unknown_focal_length();
     // A view without the toy does not tell it, and does not end the search.
     let empty = FrameInput {
-        image: Arc::clone(&SESSION.0.plates[0].image),
+        image: Arc::clone(&SESSION.0.plates[0].image).into(),
         ..input.clone()
     };
     let unseen = aligner.align(&empty).unwrap();
@@ -142,7 +142,7 @@ fn it_is_found_once_and_kept() {
     assert!((1.01 * ratio - 1.0).abs() < RATIO, "{ratio}");
     // Another picture, by a camera that zoomed: the same part of what is given.
     let zoomed = FrameInput {
-        image: Arc::new(Image::clone(&input.image)),
+        image: Image::clone(input.image.rgba()).into(),
         camera: lengthened(&input.camera, 1.002),
         ..input
     };

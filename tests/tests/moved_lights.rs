@@ -118,7 +118,7 @@ fn a_shadow_that_no_light_casts_is_said() {
     let mut aligner = Aligner::new(before.scene.clone());
     assert_eq!(aligner.align(&before.input).unwrap().lights, None);
     let input = FrameInput {
-        image: Arc::new(with_dark_bars(&before.input.image)),
+        image: with_dark_bars(before.input.image.rgba()).into(),
         ..before.input.clone()
     };
     let after = aligner.align(&input).unwrap();

@@ -218,7 +218,7 @@ fn a_folder_is_read_back_as_it_was() {
     let truth = session.truth(0).unwrap().unwrap();
     fs::remove_dir_all(&path).unwrap();
     assert!(session.warnings().is_empty(), "{:?}", session.warnings());
-    assert!(*frame.image == *shot.input.image);
+    assert!(*frame.image == **shot.input.image.rgba());
     assert!(truth.image == shot.truth.image && truth.mask == shot.truth.mask);
     assert_eq!(session.scene().lights, shot.scene.lights);
     let [read, written] = [frame.camera, shot.input.camera];

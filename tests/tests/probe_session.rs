@@ -169,7 +169,7 @@ fn without_a_shadow_the_probes_lights_stand() {
     let (_, shot) = &*SESSION;
     let (mut scene, mut input) = (shot.scene.clone(), shot.input.clone());
     scene.lights.clear();
-    input.image = Arc::clone(&scene.plates[0].image);
+    input.image = Arc::clone(&scene.plates[0].image).into();
     let found = Aligner::new(scene).align(&input).unwrap();
     let told = found.report.probe.unwrap();
     let lights: Vec<Light> = told.lights.iter().map(|light| light.light).collect();

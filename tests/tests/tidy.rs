@@ -14,6 +14,7 @@ const DRAWING_PASSES: &[&str] = &[
     "moved_mask",
     "gbuffer",
     "present",
+    "screen",
     "toy",
     "warp",
 ];

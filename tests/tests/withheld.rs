@@ -3,8 +3,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::sync::Arc;
-
 use app_core::alignment::{Aligner, Alignment};
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Light};
@@ -63,7 +61,7 @@ fn second(shots: &[Shot; 2], second: &FrameInput, are_shadows_withheld: bool) ->
 
 /// A picture with stripes over those pixels for which the mask says so.
 fn painted(shot: &Shot, is_painted: impl Fn(&[u8]) -> bool) -> FrameInput {
-    let mut image = Image::clone(&shot.input.image);
+    let mut image = Image::clone(shot.input.image.rgba());
     let mut n_painted = 0;
     let pixels = image
         .rgba8
@@ -78,7 +76,7 @@ fn painted(shot: &Shot, is_painted: impl Fn(&[u8]) -> bool) -> FrameInput {
     }
     assert!(n_painted > 200, "{n_painted} pixels");
     FrameInput {
-        image: Arc::new(image),
+        image: image.into(),
         ..shot.input.clone()
     }
 }

@@ -34,11 +34,13 @@ pub enum AlignError {
 pub(super) fn check(scene: &Scene, input: &FrameInput) -> Result<(), AlignError> {
     scene.check()?;
     input.check()?;
-    let plates = scene.plates.iter().map(|plate| ("plate", &plate.image));
     let size_px = [scene.width_px, scene.height_px];
-    let mut pictures = plates.chain([("camera frame", &input.image)]);
-    match pictures.find(|(_, image)| !image.is_of_size(size_px)) {
-        Some((what, _)) => Err(AlignError::Size { what, size_px }),
-        None => Ok(()),
+    let differs = |what| Err(AlignError::Size { what, size_px });
+    if scene.plates.iter().any(|plate| !plate.image.is_of_size(size_px)) {
+        return differs("plate");
     }
+    if !input.image.is_of_size(size_px) {
+        return differs("camera frame");
+    }
+    Ok(())
 }

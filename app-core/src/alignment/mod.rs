@@ -44,10 +44,10 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use crate::frame::warning::Warning;
-use crate::frame::{FrameInput, NoLight};
+use crate::camera_frame::CameraImage;
+use crate::frame::{FrameInput, NoLight, Warning};
 use crate::probe::ProbeReport;
-use crate::scene::{Camera, Image, Light, MAX_LIGHTS, Plate, Scene, check};
+use crate::scene::{Camera, Light, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use focal_length::FocalLength;
 use kept_lights::KeptLights;
@@ -148,7 +148,7 @@ struct Relit {
 /// Camera and pose in the latest view.
 #[derive(Clone, Debug)]
 struct AlignedView {
-    image: Arc<Image>,
+    image: CameraImage,
     given_camera: Camera,
     given: DMat4,
     camera: Camera,
@@ -272,7 +272,7 @@ impl Aligner {
         let Scene {
             plates, receivers, ..
         } = &self.scene;
-        let given = (&input.image, &input.camera, withheld.as_ref());
+        let given = (input.image.rgba(), &input.camera, withheld.as_ref());
         let found = self.cameras.find(given, plates, receivers);
         let (camera, camera_report) = corrected(&input.camera, found);
         let mut input_seen = FrameInput {
@@ -285,7 +285,7 @@ impl Aligner {
         input_seen.world_from_object = found.world_from_object;
         Ok(Seen {
             view: AlignedView {
-                image: Arc::clone(&input.image),
+                image: input.image.clone(),
                 given_camera: input.camera,
                 given: input.world_from_object,
                 camera,
@@ -474,7 +474,7 @@ impl Seen {
 
 impl AlignedView {
     fn is_of(&self, input: &FrameInput) -> bool {
-        Arc::ptr_eq(&self.image, &input.image)
+        self.image.is(&input.image)
             && self.given_camera == input.camera
             && self.given == input.world_from_object
     }

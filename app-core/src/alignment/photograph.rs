@@ -48,7 +48,7 @@ impl Photograph {
         let toy_in_world = input.world_from_object.w_axis.truncate();
         let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
         let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let frame = Picture::without(&input.image, withheld);
+        let frame = Picture::without(input.image.rgba(), withheld);
         Self {
             pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
             receivers,

@@ -4,21 +4,25 @@ mod error;
 mod fit_warnings;
 pub(crate) mod inspect;
 mod warm_up;
+mod window;
 
 use std::sync::Arc;
 
+use crate::camera_frame::{CameraImage, Display};
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
 use crate::gpu::context::{AdapterChoice, Gpu};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::surface::Window;
 use crate::gpu::timer::Timer;
 use crate::model::Model;
+use crate::passes::screen;
 use crate::preset::Preset;
 use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::stage::method::Method;
+
+use window::{Finished, Window};
 
 pub use error::CoreError;
 pub use warm_up::WarmUp;
@@ -97,12 +101,26 @@ impl Core {
     ///
     /// # Errors
     /// When the surface is lost for good; one that is only out of date is set up anew.
-    pub fn present(&mut self) -> Result<(), CoreError> {
+    pub fn present(&mut self, display: Display) -> Result<(), CoreError> {
         let Some(window) = &mut self.window else {
             return Ok(());
         };
-        let picture = self.stage.as_ref().map(|stage| &stage.output.view);
-        Ok(window.present(&self.gpu, picture)?)
+        let picture = self.stage.as_ref().map(Finished::of);
+        Ok(window.present(&self.gpu, picture, display)?)
+    }
+
+    /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the surface. The target's
+    /// format takes sRGB codes as they are, such as [`Bgra8Unorm`](wgpu::TextureFormat::Bgra8Unorm).
+    ///
+    /// # Errors
+    /// When there is no scene, or the device refuses.
+    pub fn draw_on(&self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        self.gpu.guarded(|| {
+            let screen = screen::Pass::new(&self.gpu, target.format());
+            window::show(&self.gpu, &screen, (Finished::of(stage), display), target);
+        })?;
+        Ok(())
     }
 
     /// Takes a scene; what was learned of another is forgotten.
@@ -117,7 +135,7 @@ impl Core {
             return Err(CoreError::SizeOutOfRange { size_px, largest_px });
         }
         for plate in &scene.plates {
-            check_size("plate", &scene, &plate.image)?;
+            check_size("plate", &scene, &Arc::clone(&plate.image).into())?;
         }
         let toy_in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         self.stage = None;
@@ -222,7 +240,7 @@ impl Core {
     }
 }
 
-fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(), CoreError> {
+fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {
     let expected_px = [scene.width_px, scene.height_px];
     if image.is_of_size(expected_px) {
         Ok(())
@@ -230,8 +248,8 @@ fn check_size(what: &'static str, scene: &Scene, image: &Arc<Image>) -> Result<(
         Err(CoreError::SizeDiffers {
             what,
             expected_px,
-            actual_px: [image.width_px, image.height_px],
-            n_bytes: image.rgba8.len(),
+            actual_px: image.size_px(),
+            n_bytes: image.n_bytes(),
         })
     }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
+use crate::camera_frame::CameraImage;
 use crate::scene::check;
-use crate::scene::{Camera, Image, InputError, Light, Pose};
+use crate::scene::{Camera, InputError, Light, Pose};
 use crate::session::SessionFrame;
 
 /// A camera frame of the real, static toy, and the pose to show.
@@ -14,7 +15,7 @@ use crate::session::SessionFrame;
 #[derive(Clone, Debug)]
 pub struct FrameInput {
     /// The camera's picture, of the scene's size.
-    pub image: Arc<Image>,
+    pub image: CameraImage,
     /// The camera that took it.
     pub camera: Camera,
     /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where it
@@ -27,6 +28,9 @@ pub struct FrameInput {
     pub lights: Option<Arc<[Light]>>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
+    /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
+    /// known. At 0 nothing is learned.
+    pub effect: f64,
 }
 
 impl FrameInput {
@@ -34,6 +38,7 @@ impl FrameInput {
     pub(crate) fn check(&self) -> Result<(), InputError> {
         check::camera("camera", &self.camera)?;
         InputError::at("exposure", check::number(self.exposure, &check::EXPOSURE))?;
+        InputError::at("effect", check::number(self.effect, &(0.0..=1.0)))?;
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
@@ -46,12 +51,13 @@ impl FrameInput {
 impl From<&SessionFrame> for FrameInput {
     fn from(frame: &SessionFrame) -> Self {
         Self {
-            image: Arc::clone(&frame.image),
+            image: Arc::clone(&frame.image).into(),
             camera: frame.camera,
             exposure: frame.exposure,
             world_from_object: frame.world_from_object,
             lights: None,
             shown_pose: frame.shown_pose.clone(),
+            effect: 1.0,
         }
     }
 }

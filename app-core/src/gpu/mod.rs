@@ -1,6 +1,6 @@
 //! The thin layer over wgpu: device and caches, textures and buffers, recording of what ran, read-back.
 //!
-//! Everything that is created on the device is created here, and counted, but for what wgpu's blitter makes in `surface`.
+//! Everything that is created on the device is created here, and counted.
 
 pub(crate) mod bindings;
 pub(crate) mod buffer;
@@ -13,7 +13,6 @@ pub(crate) mod recorder;
 pub(crate) mod samplers;
 pub(crate) mod shader;
 pub(crate) mod shared;
-pub(crate) mod surface;
 pub(crate) mod texture;
 pub(crate) mod timer;
 pub(crate) mod uniforms;

@@ -48,14 +48,10 @@ impl Texture {
         Self::new(gpu, label, shape)
     }
 
-    /// A picture to read from, sRGB-encoded.
-    pub(crate) fn picture(gpu: &Gpu, label: &str, size_px: UVec2) -> Self {
+    /// A plane of a picture to read from, as it is stored.
+    pub(crate) fn plane(gpu: &Gpu, label: &str, size_px: UVec2, format: TextureFormat) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-        Self::new(
-            gpu,
-            label,
-            Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage),
-        )
+        Self::new(gpu, label, Shape::of(size_px, format, usage))
     }
 
     /// A picture with its mips, each half the size of the level before, rounded down.
@@ -99,13 +95,20 @@ impl Texture {
 
     /// A view of the codes of an sRGB texture, not decoded.
     pub(crate) fn codes(&self, gpu: &Gpu) -> wgpu::TextureView {
-        gpu.device.view(
-            &self.raw,
-            &wgpu::TextureViewDescriptor {
-                format: Some(TextureFormat::Rgba8Unorm),
-                ..Default::default()
-            },
-        )
+        self.view_as(gpu, TextureFormat::Rgba8Unorm)
+    }
+
+    /// A view of a texture of sRGB codes that decodes them.
+    pub(crate) fn decoded(&self, gpu: &Gpu) -> wgpu::TextureView {
+        self.view_as(gpu, TextureFormat::Rgba8UnormSrgb)
+    }
+
+    fn view_as(&self, gpu: &Gpu, format: TextureFormat) -> wgpu::TextureView {
+        let descriptor = wgpu::TextureViewDescriptor {
+            format: Some(format),
+            ..Default::default()
+        };
+        gpu.device.view(&self.raw, &descriptor)
     }
 
     /// Fills the whole texture with rows of texels, nothing between them.
@@ -191,6 +194,7 @@ impl Shape {
         // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
         let view_formats: &[_] = match (self.format, self.n_samples) {
             (TextureFormat::Rgba8UnormSrgb, 1) => &[TextureFormat::Rgba8Unorm],
+            (TextureFormat::Rgba8Unorm, 1) => &[TextureFormat::Rgba8UnormSrgb],
             _ => &[],
         };
         gpu.device.texture(&wgpu::TextureDescriptor {

@@ -14,5 +14,7 @@ pub(crate) const FLATTEN: Part = part!("common/flatten");
 pub(crate) const FULLSCREEN: Part = part!("common/fullscreen");
 /// Whether a point of the toy has moved on the screen.
 pub(crate) const MOVED: Part = part!("common/moved");
+/// sRGB codes and linear light.
+pub(crate) const SRGB: Part = part!("common/srgb");
 /// Usable 8-bit codes.
 pub(crate) const PIXEL: Part = part!("common/pixel");

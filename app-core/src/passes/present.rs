@@ -1,4 +1,4 @@
-//! `present`: the camera image with the work region laid over it, code for code.
+//! `present`: the camera image with the work region laid over it, code for code, or as much of it as is shown.
 
 use wgpu::TextureFormat;
 
@@ -8,9 +8,10 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
-use crate::passes::parts::FULLSCREEN;
+use crate::passes::parts::{FULLSCREEN, SRGB};
 
-pub(crate) const SHADER: Shader = Shader::new(&[&FULLSCREEN, &part!("passes/present", structs: [Placement])]);
+pub(crate) const SHADER: Shader =
+    Shader::new(&[&SRGB, &FULLSCREEN, &part!("passes/present", structs: [Placement])]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Placement>(), Slot::Texture, Slot::Texture];
 /// Format of the region's picture.
 pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
@@ -18,10 +19,12 @@ pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 pub(crate) const OUTPUT_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 shared_struct! {
-    /// Position and size of the region.
+    /// Position and size of the region, and how much of its picture is shown.
     pub(crate) struct Placement {
         pub origin_px: [u32; 2],
         pub size_px: [u32; 2],
+        pub effect: f32,
+        pub unused: f32,
     }
 }
 

@@ -45,6 +45,7 @@ pub(super) struct Footprint {
 /// Why a camera frame is shown as it is.
 pub(super) enum PassThrough {
     PhysicalPose,
+    NoEffect,
     Warned(Warning),
 }
 
@@ -52,6 +53,7 @@ impl PassThrough {
     pub(super) fn tell(self, report: &mut FrameReport) {
         let why = match self {
             Self::PhysicalPose => "the shown pose is the physical pose",
+            Self::NoEffect => "nothing of the effect is shown",
             Self::Warned(warning) => {
                 report.warnings.push(warning);
                 "see the warnings"
@@ -73,6 +75,9 @@ impl Stage {
         let is_physical = input.shown_pose == self.scene.physical_pose;
         if is_physical && !self.is_shadow_withheld {
             return Ok(Err(PassThrough::PhysicalPose));
+        }
+        if input.effect == 0.0 {
+            return Ok(Err(PassThrough::NoEffect));
         }
         if self.lights.used.is_empty() {
             return warned(Warning::NoLight);

@@ -1,5 +1,6 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
+mod camera_texture;
 mod footprint;
 pub(crate) mod method;
 mod placement;
@@ -11,6 +12,7 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use glam::{DMat4, DVec3, UVec2};
 
+use crate::camera_frame::CameraImage;
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
 use crate::frame::warning::Warning;
@@ -33,6 +35,7 @@ use crate::readback::inject::InjectedVisibility;
 use crate::scene::{Camera, Image, Scene};
 use crate::toy::{self, PosedMesh, ToyError};
 
+use camera_texture::CameraTexture;
 use footprint::Footprint;
 use method::Method;
 use supported::{Lights, Receivers};
@@ -63,15 +66,15 @@ pub(crate) struct Stage {
     cached_footprint: Option<Arc<Footprint>>,
     toy: ToyMesh,
     posed: PosedMesh,
-    frame: Texture,
-    frame_codes: wgpu::TextureView,
-    frame_image: Option<Arc<Image>>,
+    camera: CameraTexture,
     plates: PlateStore,
     present: present::Pass,
     state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
     reached_rects: Vec<PlaneRect>,
     pub(crate) output: Texture,
+    /// The output, decoded where it is read.
+    finished: wgpu::TextureView,
 }
 
 /// The method with its state, and the latest frame that this was learned from.
@@ -80,7 +83,7 @@ struct MethodState {
     view: View,
     /// Relative, of `image`.
     exposure: f64,
-    image: Option<Arc<Image>>,
+    image: Option<CameraImage>,
     /// Of the lights that were learned under, in the list that they were given in.
     light_indices: Vec<usize>,
     /// It was learned from one view alone.
@@ -116,15 +119,13 @@ impl Stage {
             .toy
             .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
         let size_px = UVec2::new(scene.width_px, scene.height_px);
-        let frame = Texture::picture(gpu, "frame", size_px);
+        let output = Texture::target(gpu, "output", size_px, OUTPUT_FORMAT);
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
             toy: ToyMesh::new(gpu, &scene.toy, &posed),
             posed,
-            frame_codes: frame.codes(gpu),
-            frame,
-            frame_image: None,
+            camera: CameraTexture::new(gpu, size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
             present: present::Pass::new(gpu),
             state: None,
@@ -134,7 +135,8 @@ impl Stage {
             receivers: receivers.anchored,
             receiver_indices: receivers.indices,
             receivers_warning: receivers.warning,
-            output: Texture::target(gpu, "output", size_px, OUTPUT_FORMAT),
+            finished: output.decoded(gpu),
+            output,
             preset,
             world_from_object: scene.world_from_object,
             is_object_placed: true,
@@ -151,6 +153,11 @@ impl Stage {
             self.is_shadow_withheld = true;
             self.state = None;
         }
+    }
+
+    /// The latest picture, decoded where it is read.
+    pub(crate) fn finished(&self) -> &wgpu::TextureView {
+        &self.finished
     }
 
     /// The scene that is staged.
@@ -193,7 +200,7 @@ impl Stage {
 
     /// The picture that was learned from last.
     pub(crate) fn learned_image(&self) -> Option<&Image> {
-        self.state.as_ref()?.image.as_deref()
+        Some(self.state.as_ref()?.image.as_ref()?.rgba())
     }
 
     /// Indices, in the scene's list, of the receivers in use.
@@ -204,7 +211,7 @@ impl Stage {
     /// Drops what was learned and what was uploaded of frames, which a refused frame may have left half done.
     pub(crate) fn forget(&mut self, gpu: &Gpu) {
         self.drop_method(gpu);
-        self.frame_image = None;
+        self.camera.forget();
         self.plates.forget();
         self.is_object_placed = false;
     }
@@ -229,7 +236,7 @@ impl Stage {
         recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
-        self.take_image(recorder.gpu, &input.image);
+        self.camera.take(recorder, &input.image);
         self.follow_placement(recorder.gpu, input)?;
         let about_scene = self
             .receivers_warning
@@ -255,7 +262,7 @@ impl Stage {
             }
         };
         let method = made_by.map(|state| &state.method);
-        self.encode_present(recorder, method);
+        self.encode_present(recorder, method, input.effect);
         Ok(report)
     }
 
@@ -276,7 +283,7 @@ impl Stage {
         let exposure_ratio = (input.exposure / state.exposure) as f32;
         if change >= Change::Picture {
             state.exposure = input.exposure;
-            state.image = Some(Arc::clone(&input.image));
+            state.image = Some(input.image.clone());
         }
         let Some(MethodState { method, .. }) = &self.state else {
             return;
@@ -289,7 +296,7 @@ impl Stage {
             gpu.write(&self.plates.views, &[views]);
         }
         let pictures = Pictures {
-            frame: &self.frame.view,
+            frame: self.camera.view(),
             exposure_ratio,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
@@ -310,28 +317,22 @@ impl Stage {
     }
 
     /// Lays the region over the camera frame, or passes the frame through where no method ran.
-    fn encode_present(&self, recorder: &mut Recorder<'_>, method: Option<&Method>) {
+    fn encode_present(&self, recorder: &mut Recorder<'_>, method: Option<&Method>, effect: f64) {
         let placement = method
             .map(Method::region)
             .map_or(Placement::zeroed(), |region| Placement {
                 origin_px: region.origin_px.to_array(),
                 size_px: region.size_px.to_array(),
+                #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+                effect: effect as f32,
+                unused: 0.0,
             });
         let inputs = present::Inputs {
-            frame_codes: &self.frame_codes,
-            region_codes: method.map_or(&self.frame_codes, Method::picture),
+            frame_codes: self.camera.codes(),
+            region_codes: method.map_or(self.camera.codes(), Method::picture),
             placement,
         };
         self.present.encode(recorder, &inputs, &self.output.view);
-    }
-
-    /// Uploads the camera's picture unless it is the one that is there already.
-    fn take_image(&mut self, gpu: &Gpu, image: &Arc<Image>) {
-        if is_same_image(self.frame_image.as_ref(), image) {
-            return;
-        }
-        self.frame.write(gpu, &image.rgba8);
-        self.frame_image = Some(Arc::clone(image));
     }
 
     fn layout(&self) -> SceneLayout<'_> {
@@ -346,8 +347,4 @@ impl Stage {
         let image_px = UVec2::new(self.scene.width_px, self.scene.height_px);
         View::new(image_px, camera)
     }
-}
-
-fn is_same_image(known: Option<&Arc<Image>>, image: &Arc<Image>) -> bool {
-    known.is_some_and(|known| Arc::ptr_eq(known, image))
 }

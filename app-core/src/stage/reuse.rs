@@ -7,7 +7,7 @@ use glam::{UVec2, Vec4};
 
 use super::footprint::Footprint;
 use super::method::Method;
-use super::{MethodState, Stage, is_same_image};
+use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, uniform};
@@ -92,7 +92,7 @@ impl Stage {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region
-        } else if is_same_image(state.image.as_ref(), &input.image) {
+        } else if state.image.as_ref().is_some_and(|known| known.is(&input.image)) {
             Reuse::Picture
         } else {
             Reuse::View
@@ -216,7 +216,7 @@ impl Stage {
     pub(super) fn plate_views_at_exposure_of(&self, input: &FrameInput, footprint: &Footprint) -> PlateViews {
         let frame = Plate {
             camera: input.camera,
-            image: Arc::clone(&input.image),
+            image: Arc::clone(input.image.rgba()),
         };
         let plates = (&footprint.choice.indices[..], &self.plates.gains[..]);
         let gain = match_frame((&self.scene, &self.receivers), &frame, plates, &footprint.region);

@@ -77,7 +77,7 @@ fn rebuild_with(
         };
         if latest
             .as_ref()
-            .is_some_and(|image| image.rgba8 == input.image.rgba8)
+            .is_some_and(|image| image.rgba8 == input.image.rgba().rgba8)
         {
             continue;
         }
@@ -96,8 +96,8 @@ fn rebuild_with(
                     plate,
                     gain,
                 };
-                all = withheld.errors(&picture, &input.image, |alpha| alpha < 1.0);
-                clear = withheld.errors(&picture, &input.image, |alpha| alpha == 0.0);
+                all = withheld.errors(&picture, input.image.rgba(), |alpha| alpha < 1.0);
+                clear = withheld.errors(&picture, input.image.rgba(), |alpha| alpha == 0.0);
             }
         }
         rebuilt.push(Rebuilt {
@@ -108,7 +108,7 @@ fn rebuild_with(
             clear,
             picture,
         });
-        latest = Some(input.image);
+        latest = Some(Arc::clone(input.image.rgba()));
     }
     Ok(rebuilt)
 }

@@ -229,7 +229,7 @@ fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
 
 fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {
     let scene = capture.scene();
-    let mut picture = Image::clone(&given.image);
+    let mut picture = Image::clone(given.image.rgba());
     overlay::receivers(&mut picture, scene, given);
     overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
     overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);

@@ -20,7 +20,7 @@ pub fn write(folder: &Path, world: &World, shot: &Shot) -> Result<(), WriteError
     for plate in &shot.scene.plates {
         write_png(&folder.join("plate.png"), &plate.image)?;
     }
-    write_png(&folder.join("frame.png"), &shot.input.image)?;
+    write_png(&folder.join("frame.png"), shot.input.image.rgba())?;
     write_png(&folder.join("truth.png"), &shot.truth.image)?;
     write_png(&folder.join("mask.png"), &shot.truth.mask)?;
     write_whole(&folder.join("toy.glb"), &shot.glb)?;

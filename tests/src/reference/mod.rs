@@ -8,6 +8,7 @@
 
 pub mod appearance;
 pub mod box_filter;
+pub mod camera_planes;
 pub mod census;
 pub mod composite;
 pub mod detail;

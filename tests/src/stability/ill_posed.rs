@@ -85,7 +85,7 @@ fn judge(lab: &mut Lab, label: Label, world: &World, is_due: bool) -> anyhow::Re
         label.row("warning", SILENT, n)
     };
     warned.note = said.join("; ");
-    let floor = score(&shot.input.image, &shot.truth)?;
+    let floor = score(shot.input.image.rgba(), &shot.truth)?;
     let mut shadow = label.row("picture", WORSE, scores.shadow.rmse - floor.shadow.rmse);
     shadow.note = format!(
         "shadow {:.2} after {:.2}, toy {:.2}",

@@ -218,7 +218,7 @@ fn is_same(a: &Shot, b: &Shot) -> bool {
             .map(|plate| (Arc::as_ptr(&plate.image), plate.camera))
             .collect()
     };
-    Arc::ptr_eq(&a.input.image, &b.input.image)
+    Arc::ptr_eq(a.input.image.rgba(), b.input.image.rgba())
         && plates(a) == plates(b)
         && a.glb == b.glb
         && a.scene.lights == b.scene.lights

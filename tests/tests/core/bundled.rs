@@ -62,7 +62,7 @@ static SMALL: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
     };
     let small_input = FrameInput {
         camera: small_camera(&input.camera),
-        image: small(&input.image),
+        image: small(input.image.rgba()).into(),
         ..input
     };
     (small_scene, small_input)

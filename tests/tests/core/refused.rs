@@ -1,7 +1,5 @@
 //! What a shell may hand over by mistake: it is refused by name, and nothing that was learned is lost.
 
-use std::sync::Arc;
-
 use app_core::CoreError;
 use app_core::frame::{FrameInput, Path};
 use app_core::preset::Preset;
@@ -44,10 +42,10 @@ fn pictures_that_do_not_fit_are_refused() {
     );
 
     core.set_scene(scene(), Preset::Balanced).unwrap();
-    let mut cut = input.image.as_ref().clone();
+    let mut cut = input.image.rgba().as_ref().clone();
     cut.rgba8.pop();
     let refused = core.frame(&FrameInput {
-        image: Arc::new(cut),
+        image: cut.into(),
         ..input.clone()
     });
     assert!(matches!(

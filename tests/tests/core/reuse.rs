@@ -40,16 +40,17 @@ fn the_toys_colours_are_those_of_the_latest_picture() {
     let first = first_input();
     let dimmed: Vec<u8> = first
         .image
+        .rgba()
         .rgba8
         .chunks_exact(4)
         .flat_map(|p| [p[0] / 2, p[1] / 2, p[2] / 2, 255])
         .collect();
     let image = Arc::new(Image {
         rgba8: dimmed,
-        ..first.image.as_ref().clone()
+        ..first.image.rgba().as_ref().clone()
     });
     let second = FrameInput {
-        image,
+        image: image.into(),
         ..first.clone()
     };
     let at_rest = FrameInput {
@@ -248,11 +249,11 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
     let gain = |core: &Core| core.read_fit().unwrap().unwrap().gain[0];
     let before = gain(&core);
     let white = Image {
-        rgba8: vec![255; first.image.rgba8.len()],
-        ..first.image.as_ref().clone()
+        rgba8: vec![255; first.image.rgba().rgba8.len()],
+        ..first.image.rgba().as_ref().clone()
     };
     let overexposed = FrameInput {
-        image: Arc::new(white.clone()),
+        image: white.clone().into(),
         exposure: 2.0,
         ..first.clone()
     };
@@ -260,7 +261,7 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
     let doubled = gain(&core) / before;
     assert!((doubled - 2.0).abs() < 1e-5, "{doubled}");
     let again = |exposure: f64| FrameInput {
-        image: Arc::new(white.clone()),
+        image: white.clone().into(),
         exposure,
         ..overexposed.clone()
     };
@@ -292,7 +293,7 @@ fn from_afar() -> (Scene, FrameInput) {
         camera.intrinsics.fx_px *= 0.3;
         camera.intrinsics.fy_px *= 0.3;
     }
-    input.image = Arc::clone(&scene.plates[0].image);
+    input.image = Arc::clone(&scene.plates[0].image).into();
     (scene, input)
 }
 

@@ -26,7 +26,7 @@ fn a_clip_that_has_just_begun_is_the_camera_picture() {
         core.frame(&at(time_secs)).unwrap();
         let actual = core.read_picture().unwrap();
         let pair = Pair {
-            expected: &*input.image,
+            expected: &**input.image.rgba(),
             actual: &actual,
         };
         pair.difference().unwrap().max_abs

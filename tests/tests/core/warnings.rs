@@ -41,7 +41,7 @@ impl Case {
     }
 
     fn with_picture(mut self, image: Arc<Image>) -> Self {
-        self.input.image = image;
+        self.input.image = image.into();
         self
     }
 
@@ -125,7 +125,7 @@ fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
     let validity = core.read_map(Map::Validity).unwrap().unwrap();
     let [left, top] = rect.origin_px.to_array().map(|px| px as usize);
     let [n_columns, n_rows] = rect.size_px.to_array().map(|px| px as usize);
-    changed(&input.image, |k, pixel| {
+    changed(input.image.rgba(), |k, pixel| {
         let (x, y) = (k % width, k / width);
         if x < left || y < top || x >= left + n_columns || y >= top + n_rows {
             return pixel;
@@ -141,7 +141,7 @@ fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
 fn broken_input_is_told_by_its_cause() {
     let mut core = core();
     let plate = Arc::clone(&scene().plates[0].image);
-    let picture = first_input().image;
+    let picture = Arc::clone(first_input().image.rgba());
     let [black_shadow, white_shadow] = [0, 255].map(|code| picture_with_shadow_of(&mut core, code));
     let bundled = scene().lights[0];
     let camera = first_input().camera.world_from_camera;

@@ -31,6 +31,7 @@ const ROOMS: &[&str] = &[
     "geometry",
     "gpu",
     "session",
+    "camera_frame",
     "scene",
     "toy",
     "disjoint",

@@ -124,7 +124,8 @@ impl Run {
 /// A frame of a stand, from its camera.
 pub(crate) fn input(stand: &Stand, image: &Arc<Image>) -> FrameInput {
     FrameInput {
-        image: Arc::clone(image),
+        image: Arc::clone(image).into(),
+        effect: 1.0,
         camera: stand.camera,
         exposure: 1.0,
         world_from_object: stand.world_from_object,

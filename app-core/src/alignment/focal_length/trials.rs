@@ -188,7 +188,11 @@ fn photograph(
     }
     let pose = of_plate.world_from_camera;
     if !pose.abs_diff_eq(camera.world_from_camera, SAME_CAMERA) {
-        let found = cameras.find((&input.image, &camera, None), &scene.plates, &scene.receivers);
+        let found = cameras.find(
+            (input.image.rgba(), &camera, None),
+            &scene.plates,
+            &scene.receivers,
+        );
         if let Some(found) = found.filter(|found| found.is_better()) {
             camera.world_from_camera = found.world_from_camera;
         }

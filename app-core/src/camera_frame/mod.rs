@@ -1,0 +1,16 @@
+//! A camera frame as phones deliver it: planes of luma and chroma, when it was taken, and how it is to be shown.
+
+mod arrival;
+mod display;
+mod encoding;
+mod fade;
+mod image;
+mod planes;
+
+pub use arrival::{Arrival, Arrivals, Stamp};
+pub use display::{Display, Fit};
+pub use encoding::{CodeRange, LumaCoefficients, YcbcrEncoding};
+pub use fade::Fade;
+pub use image::CameraImage;
+pub(crate) use planes::half_size_px;
+pub use planes::{PlanarImage, Plane, PlaneError, Planes};

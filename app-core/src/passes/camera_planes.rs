@@ -1,0 +1,83 @@
+//! `camera_planes`: the camera's planes of luma and chroma as sRGB codes.
+
+use glam::UVec2;
+use wgpu::TextureFormat;
+
+use crate::camera_frame::{PlanarImage, half_size_px};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::shared::{Mat3Columns, shared_struct};
+use crate::gpu::texture::Texture;
+use crate::passes::parts::FULLSCREEN;
+
+pub(crate) const SHADER: Shader =
+    Shader::new(&[&FULLSCREEN, &part!("passes/camera_planes", structs: [Encoding])]);
+const SLOTS: &[Slot] = &[Slot::per_use::<Encoding>(), Slot::Texture, Slot::Texture];
+/// Format of what is written: codes of the frame.
+const CODES: TextureFormat = TextureFormat::Rgba8Unorm;
+
+shared_struct! {
+    /// Map from the planes' codes to sRGB codes.
+    pub(crate) struct Encoding {
+        pub srgb_from_ycbcr: Mat3Columns,
+        pub origin: [f32; 4],
+    }
+}
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+/// The planes on the device.
+pub(crate) struct Planes {
+    luma: Texture,
+    chroma: Texture,
+}
+
+impl Planes {
+    pub(crate) fn new(gpu: &Gpu, size_px: [u32; 2]) -> Self {
+        let half = UVec2::from(half_size_px(size_px));
+        Self {
+            luma: Texture::plane(gpu, "luma", size_px.into(), TextureFormat::R8Unorm),
+            chroma: Texture::plane(gpu, "chroma", half, TextureFormat::Rg8Unorm),
+        }
+    }
+
+    pub(crate) fn write(&self, gpu: &Gpu, image: &PlanarImage) {
+        self.luma.write(gpu, image.luma());
+        self.chroma.write(gpu, image.chroma());
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [&[][..], SLOTS, &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_decode", groups, &[CODES])),
+        }
+    }
+
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        (image, planes): (&PlanarImage, &Planes),
+        frame_codes: &wgpu::TextureView,
+    ) {
+        let map = image.encoding().srgb_from_ycbcr();
+        let column = |index| map.matrix.col(index).extend(0.0).to_array();
+        let encoding = Encoding {
+            srgb_from_ycbcr: [column(0), column(1), column(2)],
+            origin: map.origin.extend(0.0).to_array(),
+        };
+        let resources = [
+            Resource::PerUse,
+            (&planes.luma.view).into(),
+            (&planes.chroma.view).into(),
+        ];
+        let own = recorder.bind_with(&self.draw, GROUP_PASS, &encoding, &resources);
+        recorder.fullscreen(&self.draw, &[own], &[frame_codes]);
+    }
+}

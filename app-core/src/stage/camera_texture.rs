@@ -1,0 +1,69 @@
+//! The camera's picture on the device, in whichever form it came.
+
+use glam::UVec2;
+use wgpu::TextureFormat;
+
+use crate::camera_frame::{CameraImage, PlanarImage};
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::passes::camera_planes::{self, Planes};
+
+pub(super) struct CameraTexture {
+    texture: Texture,
+    /// View of its sRGB codes, not decoded.
+    codes: wgpu::TextureView,
+    /// The picture that is there.
+    image: Option<CameraImage>,
+    /// Once a picture has come as planes.
+    decoder: Option<(camera_planes::Pass, Planes)>,
+}
+
+impl CameraTexture {
+    pub(super) fn new(gpu: &Gpu, size_px: UVec2) -> Self {
+        let texture = Texture::target(gpu, "frame", size_px, TextureFormat::Rgba8UnormSrgb);
+        Self {
+            codes: texture.codes(gpu),
+            texture,
+            image: None,
+            decoder: None,
+        }
+    }
+
+    /// The picture, decoded where it is read.
+    pub(super) fn view(&self) -> &wgpu::TextureView {
+        &self.texture.view
+    }
+
+    /// The picture's sRGB codes.
+    pub(super) fn codes(&self) -> &wgpu::TextureView {
+        &self.codes
+    }
+
+    /// Uploads `image` unless it is the one that is there already.
+    pub(super) fn take(&mut self, recorder: &mut Recorder<'_>, image: &CameraImage) {
+        if self.image.as_ref().is_some_and(|known| known.is(image)) {
+            return;
+        }
+        match image {
+            CameraImage::Rgba(image) => self.texture.write(recorder.gpu, &image.rgba8),
+            CameraImage::Planes(image) => self.decode(recorder, image),
+        }
+        self.image = Some(image.clone());
+    }
+
+    fn decode(&mut self, recorder: &mut Recorder<'_>, image: &PlanarImage) {
+        let gpu = recorder.gpu;
+        let (pass, planes) = self.decoder.get_or_insert_with(|| {
+            let planes = Planes::new(gpu, image.size_px());
+            (camera_planes::Pass::new(gpu), planes)
+        });
+        planes.write(gpu, image);
+        pass.encode(recorder, (image, planes), &self.codes);
+    }
+
+    /// Takes what is there for unknown.
+    pub(super) fn forget(&mut self) {
+        self.image = None;
+    }
+}
