@@ -1,19 +1,19 @@
-//! Speed against error: presets over sessions, timed where nothing is learned or compiled any more.
+//! Speed against error: presets over sessions, timed by what is new in a frame, and where nothing is compiled any more.
 
 mod basin;
 mod exact;
+mod kinds;
 mod table;
 mod withheld;
 
 use std::ops::Range;
-use std::time::Instant;
 
 use app_core::core::{Core, CoreError};
-use app_core::frame::{FrameInput, PassTime, Path};
+use app_core::frame::FrameInput;
+use app_core::internals::Inspect;
 use app_core::internals::Map;
-use app_core::internals::{InjectedVisibility, Inspect};
 use app_core::preset::Preset;
-use app_core::session::Capture;
+use app_core::session::{Capture, Session};
 
 use crate::alignment::{Alignments, FocalLength, Lights};
 use crate::metrics::Scores;
@@ -23,6 +23,7 @@ use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
 
 pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
+pub use kinds::{FRAME_KINDS, FrameKind, KindTimes};
 pub(crate) use table::aligned;
 pub use table::{csv, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
@@ -64,25 +65,12 @@ pub struct Row {
     pub flicker: Option<Flicker>,
     /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
     pub align_ms: Option<f64>,
-    /// Times; none where visibility is the reference's.
-    pub times: Option<Times>,
+    /// Width and height of the pictures.
+    pub size_px: [u32; 2],
+    /// Times of each kind of frame; none where visibility is the reference's, or nothing was worked on.
+    pub times: Vec<KindTimes>,
     /// Candidates of the ring search for a texel that needed it, on average; none without a search.
     pub n_taps: Option<f64>,
-    /// Time of a frame over that of the preset `paper` on this session in this run.
-    pub ratio_to_paper: Option<f64>,
-}
-
-/// Medians over frames and repeats.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Times {
-    /// On the processor, until a steady frame is handed to the device.
-    pub cpu_ms: Option<f64>,
-    /// On the device, for a steady frame; none where it cannot tell.
-    pub gpu_ms: Option<f64>,
-    /// On the device, for the capture path.
-    pub capture_ms: Option<f64>,
-    /// Each pass of a steady frame on the device, in order.
-    pub passes: Vec<(&'static str, f64)>,
 }
 
 /// Measures all presets on one session.
@@ -95,14 +83,7 @@ pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Ve
     for &preset in &options.presets {
         rows.push(measure(session, core, preset, (options, &alignments))?);
     }
-    let frame_ms = |row: &Row| row.times.as_ref().and_then(|times| times.gpu_ms.or(times.cpu_ms));
-    let paper_ms = rows
-        .iter()
-        .find(|row| row.preset == Preset::Paper.name())
-        .and_then(frame_ms);
-    for row in &mut rows {
-        row.ratio_to_paper = frame_ms(row).zip(paper_ms).map(|(own, paper)| own / paper);
-    }
+    compare_with_paper(&mut rows);
     if options.with_exact {
         let presets = options
             .presets
@@ -113,6 +94,19 @@ pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Ve
         }
     }
     Ok(rows)
+}
+
+/// Divides the time of each kind of frame by that of the published method's.
+fn compare_with_paper(rows: &mut [Row]) {
+    let Some(paper) = rows.iter().find(|row| row.preset == Preset::Paper.name()) else {
+        return;
+    };
+    let paper = paper.times.clone();
+    for times in rows.iter_mut().flat_map(|row| &mut row.times) {
+        let same = paper.iter().find(|paper| paper.kind == times.kind);
+        let both = times.frame_ms().zip(same.and_then(KindTimes::frame_ms));
+        times.ratio_to_paper = both.map(|(own, paper)| own / paper);
+    }
 }
 
 fn measure(
@@ -137,9 +131,9 @@ fn measure(
         scores: report.mean.scores,
         flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
-        times: Some(times(core, &inputs, options.n_repeats)?),
+        size_px: [session.scene().width_px, session.scene().height_px],
+        times: kinds::measure(core, &inputs, options.n_repeats)?,
         n_taps: mean_taps(core, &inputs)?,
-        ratio_to_paper: None,
     })
 }
 
@@ -160,60 +154,10 @@ fn inputs(
     (report, preset): (&Report, Preset),
     alignments: &Alignments,
 ) -> Result<Vec<FrameInput>, ReplayError> {
-    use app_core::session::Session;
     let worked = report.frames.iter().filter(|frame| frame.region.is_some());
     worked
         .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?, preset)))
         .collect()
-}
-
-fn times(core: &mut Core, inputs: &[FrameInput], n_repeats: usize) -> Result<Times, CoreError> {
-    let Some(first) = inputs.first() else {
-        return Ok(Times::default());
-    };
-    core.time_passes(true)?;
-    let (mut cpu, mut steady, mut capture) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..n_repeats {
-        core.frame(first)?;
-        // Nothing is injected: only what was learned is learned again.
-        core.inject_visibility(&InjectedVisibility::default())?;
-        core.frame(first)?;
-        capture.extend(device_ms(&core.read_pass_times()?, Path::Capture));
-        for input in inputs {
-            // A camera that moves makes the core learn again: that is not the frame's own time.
-            core.frame(input)?;
-            core.read_pass_times()?;
-            let start = Instant::now();
-            core.frame(input)?;
-            cpu.push(start.elapsed().as_secs_f64() * 1e3);
-            steady.push(core.read_pass_times()?);
-        }
-    }
-    let names = steady.first().map(|times| times.iter().map(|time| time.pass));
-    let of_pass = |name: &'static str| {
-        let times = steady.iter().flatten().filter(|time| time.pass == name);
-        median(times.map(|time| time.gpu_ms).collect()).map(|ms| (name, ms))
-    };
-    Ok(Times {
-        cpu_ms: median(cpu),
-        gpu_ms: median(
-            steady
-                .iter()
-                .filter_map(|times| device_ms(times, Path::Frame))
-                .collect(),
-        ),
-        capture_ms: median(capture),
-        passes: names.into_iter().flatten().filter_map(of_pass).collect(),
-    })
-}
-
-/// Device time of all passes of a path; none where none was timed.
-fn device_ms(times: &[PassTime], path: Path) -> Option<f64> {
-    let own = times
-        .iter()
-        .filter(|time| time.path == path)
-        .map(|time| time.gpu_ms);
-    own.reduce(|sum, ms| sum + ms)
 }
 
 fn mean_taps(core: &mut Core, inputs: &[FrameInput]) -> Result<Option<f64>, CoreError> {

@@ -25,18 +25,21 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
     };
     let text = csv(&bench(&session, &mut core, &options).unwrap());
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
-    let [header, balanced, paper] = &lines[..] else {
+    let [header, rows @ ..] = &lines[..] else {
         panic!("{text}");
     };
     assert!(lines.iter().all(|line| line.len() == header.len()), "{text}");
     let column = |name: &str| header.iter().position(|head| *head == name).unwrap();
-    assert_eq!(
-        [balanced[0], balanced[1], balanced[2]],
-        ["llama", "balanced", "2"]
-    );
-    assert_eq!([paper[0], paper[1], paper[2]], ["llama", "paper", "2"]);
-
-    for line in [balanced, paper] {
+    let number = |line: &[&str], name: &str| line[column(name)].parse::<f64>().unwrap();
+    let named: Vec<[&str; 3]> = rows
+        .iter()
+        .map(|line| ["session", "preset", "frame_kind"].map(|name| line[column(name)]))
+        .collect();
+    let expected =
+        ["balanced", "paper"].map(|preset| ["pose", "picture", "view"].map(|kind| ["llama", preset, kind]));
+    assert_eq!(named, expected.as_flattened());
+    for line in rows {
+        assert_eq!([number(line, "width"), number(line, "height")], [640.0, 360.0]);
         for name in [
             "shadow_rmse",
             "shadow_ssim",
@@ -44,18 +47,40 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
             "frame_ssim",
             "shadow_flicker",
             "frame_flicker",
-            "cpu_ms",
+            "cpu_ms_median",
             "ratio_to_paper",
         ] {
-            let value: f64 = line[column(name)].parse().unwrap();
+            let value = number(line, name);
             assert!(value.is_finite() && value > 0.0, "{name}: {value}");
         }
+        let ratio = number(line, "ratio_to_paper") * number(line, "times_faster_than_paper");
+        assert!((ratio - 1.0).abs() < 1e-3, "{text}");
     }
-    assert_eq!(paper[column("ratio_to_paper")], "1.000000");
-    // Only the published method searches, and a search looks at whole rings.
-    let taps = column("taps_per_missing_texel");
-    assert_eq!(balanced[taps], "");
-    assert!(paper[taps].parse::<f64>().unwrap() >= 16.0, "{text}");
+    for (balanced, paper) in rows[..3].iter().zip(&rows[3..]) {
+        assert_eq!(paper[column("ratio_to_paper")], "1.000000");
+        // Only the published method searches, and a search looks at whole rings.
+        assert_eq!(balanced[column("taps_per_missing_texel")], "");
+        assert!(number(paper, "taps_per_missing_texel") >= 16.0, "{text}");
+    }
+    // Each kind runs what is new to it, by the passes that the device timed, where it can.
+    let ran = |line: &[&str], pass: &str| {
+        line[column("pass_ms")]
+            .split(' ')
+            .any(|entry| entry.starts_with(&format!("{pass}=")))
+    };
+    if !rows[0][column("gpu_ms_median")].is_empty() {
+        for (pass, runs) in [
+            ("composite", [true; 3]),
+            ("residual", [false, true, true]),
+            ("gbuffer", [false, false, true]),
+        ] {
+            assert_eq!(
+                [0, 1, 2].map(|kind| ran(&rows[kind], pass)),
+                runs,
+                "{pass}: {text}"
+            );
+        }
+    }
 }
 
 #[test]

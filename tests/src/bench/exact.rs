@@ -80,9 +80,9 @@ pub(super) fn measure(
         scores: mean_scores(&scores),
         flicker: mean_flicker(&flicker),
         align_ms: None,
-        times: None,
+        size_px: [session.scene().width_px, session.scene().height_px],
+        times: Vec::new(),
         n_taps: None,
-        ratio_to_paper: None,
     })
 }
 

@@ -3,58 +3,92 @@
 use crate::metrics::flicker::Flicker;
 use crate::metrics::{Score, Scores};
 
-use super::{Row, Times};
+use super::{FRAME_KINDS, FrameKind, KindTimes, Row};
 
-const CSV_HEADER: &str = "session,preset,n_frames,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,\
-frame_rmse,frame_ssim,shadow_flicker,toy_flicker,edge_flicker,frame_flicker,align_ms,cpu_ms,gpu_ms,capture_ms,ratio_to_paper,taps_per_missing_texel,pass_shares";
+const CSV_HEADER: &str = "session,preset,width,height,frame_kind,n_frames,gpu_ms_median,cpu_ms_median,align_ms,\
+ratio_to_paper,times_faster_than_paper,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,frame_rmse,frame_ssim,\
+shadow_flicker,toy_flicker,edge_flicker,frame_flicker,taps_per_missing_texel,pass_ms";
 
-/// One line a row under a header. What was not measured is empty; shares of passes are `name=share`, apart by spaces.
+/// One line for each row and kind of frame, under a header. What was not measured is empty; passes are
+/// `name=milliseconds`, apart by spaces.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {
-    let lines =
-        rows.iter().map(|row| {
-            let mut fields = vec![quoted(&row.session), row.preset.clone(), row.n_frames.to_string()];
-            fields.extend(regions(row).into_iter().flat_map(|score| {
-                [score.map(|score| score.rmse), score.map(|score| score.ssim)].map(number)
-            }));
-            fields.extend(flicker(row).map(number));
-            let times = row.times.as_ref();
-            let measured = [
-                row.align_ms,
-                times.and_then(|times| times.cpu_ms),
-                times.and_then(|times| times.gpu_ms),
-                times.and_then(|times| times.capture_ms),
-                row.ratio_to_paper,
-                row.n_taps,
-            ];
-            fields.extend(measured.map(number));
-            fields.push(shares(times));
-            fields.join(",")
-        });
     std::iter::once(CSV_HEADER.to_owned())
-        .chain(lines)
+        .chain(
+            rows.iter()
+                .flat_map(|row| kinds(row).into_iter().map(|kind| csv_line(row, kind))),
+        )
         .map(|line| line + "\n")
         .collect()
 }
 
-/// The rows in columns, and what the times are worth on this adapter.
+/// The kinds of frame that were timed, or one that was not.
+fn kinds(row: &Row) -> Vec<Option<&KindTimes>> {
+    if row.times.is_empty() {
+        return vec![None];
+    }
+    row.times.iter().map(Some).collect()
+}
+
+fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
+    let of_kind = |of: fn(&KindTimes) -> Option<f64>| kind.and_then(of);
+    let ratio = of_kind(|times| times.ratio_to_paper);
+    let mut fields = vec![
+        quoted(&row.session),
+        row.preset.clone(),
+        row.size_px[0].to_string(),
+        row.size_px[1].to_string(),
+        kind.map_or_else(String::new, |times| times.kind.name().to_owned()),
+        row.n_frames.to_string(),
+    ];
+    let times = [
+        of_kind(|times| times.gpu_ms),
+        of_kind(|times| times.cpu_ms),
+        row.align_ms,
+        ratio,
+        ratio.filter(|ratio| *ratio > 0.0).map(f64::recip),
+    ];
+    fields.extend(times.map(number));
+    fields.extend(
+        regions(row)
+            .into_iter()
+            .flat_map(|score| [score.map(|score| score.rmse), score.map(|score| score.ssim)].map(number)),
+    );
+    fields.extend(flicker(row).map(number));
+    fields.push(number(row.n_taps));
+    fields.push(kind.map_or_else(String::new, passes));
+    fields.join(",")
+}
+
+/// The rows in columns, then their times by kind of frame, and what these are worth on this adapter.
 #[must_use]
 pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
+    let mut text = aligned(&errors(rows));
+    text.push_str("Scores are RMSE in 8-bit codes (SSIM); flicker is that of changes from frame to frame, in the shadow and on the toy; alignment is a mean over all frames.\n\n");
+    text.push_str(&aligned(&times(rows)));
+    text.push_str(
+        "Medians. What is new in a frame: the pose shown; the camera's picture; the camera's place, too.\n",
+    );
+    for row in rows.iter().filter(|row| row.n_taps.is_some()) {
+        for kind in &row.times {
+            let (name, passes) = (kind.kind.name(), passes(kind));
+            text.push_str(&format!(
+                "{} {} {name}, ms of each pass: {passes}\n",
+                row.session, row.preset
+            ));
+        }
+    }
+    if is_software {
+        text.push_str(&format!(
+            "{adapter} draws on the processor: its times say nothing about a phone.\n"
+        ));
+    }
+    text
+}
+
+fn errors(rows: &[Row]) -> Vec<Vec<String>> {
     let heads = [
-        "session",
-        "preset",
-        "shadow",
-        "toy",
-        "edge",
-        "frame",
-        "flicker",
-        "toy's",
-        "align ms",
-        "CPU ms",
-        "GPU ms",
-        "capture ms",
-        "x paper",
-        "taps",
+        "session", "preset", "shadow", "toy", "edge", "frame", "flicker", "toy's", "align ms", "taps",
     ];
     let mut cells = vec![heads.map(str::to_owned).to_vec()];
     for row in rows {
@@ -63,7 +97,6 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
                 format!("{:.2} ({:.4})", score.rmse, score.ssim)
             })
         };
-        let times = row.times.as_ref();
         let mut line = vec![row.session.clone(), row.preset.clone()];
         line.extend(regions(row).map(score));
         let [of_shadow, of_toy, ..] = flicker(row);
@@ -71,29 +104,37 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
             short(of_shadow, 2),
             short(of_toy, 2),
             short(row.align_ms, 1),
-            short(times.and_then(|times| times.cpu_ms), 2),
-            short(times.and_then(|times| times.gpu_ms), 2),
-            short(times.and_then(|times| times.capture_ms), 2),
-            short(row.ratio_to_paper, 2),
             short(row.n_taps, 0),
         ]);
         cells.push(line);
     }
-    let mut text = aligned(&cells);
-    text.push_str("Scores are RMSE in 8-bit codes (SSIM); flicker is that of changes from frame to frame, in the shadow and on the toy; times are medians of frames that learn nothing, but that of alignment, a mean over all frames.\n");
-    for row in rows.iter().filter(|row| row.n_taps.is_some()) {
-        let shares = shares(row.times.as_ref());
-        text.push_str(&format!(
-            "{} {}, share of each pass: {shares}\n",
-            row.session, row.preset
-        ));
+    cells
+}
+
+/// Three columns for each kind of frame.
+fn times(rows: &[Row]) -> Vec<Vec<String>> {
+    let of_kind =
+        |kind: FrameKind| ["CPU ms", "GPU ms", "x paper"].map(|head| format!("{} {head}", kind.name()));
+    let heads = ["session", "preset"].map(str::to_owned);
+    let mut cells = vec![
+        heads
+            .into_iter()
+            .chain(FRAME_KINDS.into_iter().flat_map(of_kind))
+            .collect(),
+    ];
+    for row in rows.iter().filter(|row| !row.times.is_empty()) {
+        let mut line = vec![row.session.clone(), row.preset.clone()];
+        for kind in FRAME_KINDS {
+            let times = row.times.iter().find(|times| times.kind == kind);
+            line.extend([
+                short(times.and_then(|times| times.cpu_ms), 2),
+                short(times.and_then(|times| times.gpu_ms), 2),
+                short(times.and_then(|times| times.ratio_to_paper), 2),
+            ]);
+        }
+        cells.push(line);
     }
-    if is_software {
-        text.push_str(&format!(
-            "{adapter} draws on the processor: its times say nothing about a phone.\n"
-        ));
-    }
-    text
+    cells
 }
 
 fn regions(row: &Row) -> [Option<Score>; 4] {
@@ -116,13 +157,9 @@ fn flicker(row: &Row) -> [Option<f64>; 4] {
     ]
 }
 
-fn shares(times: Option<&Times>) -> String {
-    let passes = times.map_or(&[][..], |times| &times.passes);
-    let total_ms: f64 = passes.iter().map(|(_, ms)| ms).sum();
-    let share = |(name, ms): &(&str, f64)| format!("{name}={:.3}", ms / total_ms);
-    let is_measured = total_ms > 0.0;
-    let shares: Vec<String> = passes.iter().filter(|_| is_measured).map(share).collect();
-    shares.join(" ")
+fn passes(kind: &KindTimes) -> String {
+    let passes = kind.passes.iter().map(|(name, ms)| format!("{name}={ms:.3}"));
+    passes.collect::<Vec<_>>().join(" ")
 }
 
 pub(crate) fn aligned(cells: &[Vec<String>]) -> String {

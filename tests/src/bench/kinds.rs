@@ -1,0 +1,149 @@
+//! Times of the three kinds of frame: a new pose on a known picture, a new picture of a known view, a new view.
+
+use std::time::Instant;
+
+use app_core::camera_frame::CameraImage;
+use app_core::core::{Core, CoreError};
+use app_core::frame::{FrameInput, PassTime};
+use app_core::scene::{Camera, Image};
+use glam::DMat4;
+
+/// Turn of the camera about its own axis to the right that makes a new view, some five pixels, and back.
+const TURN_RAD: f64 = 0.005;
+/// Frames that are timed in turn, of those of a session.
+const MOST_INPUTS: usize = 4;
+
+/// What is new in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameKind {
+    /// The shown pose alone: a paused camera.
+    Pose,
+    /// The camera's picture, too: a phone on a stand.
+    Picture,
+    /// The camera's place, too: a phone in the hand.
+    View,
+}
+
+/// All of them, from the cheapest on.
+pub const FRAME_KINDS: [FrameKind; 3] = [FrameKind::Pose, FrameKind::Picture, FrameKind::View];
+
+impl FrameKind {
+    /// As files have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pose => "pose",
+            Self::Picture => "picture",
+            Self::View => "view",
+        }
+    }
+}
+
+/// Medians over frames and repeats.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KindTimes {
+    /// Of which frames.
+    pub kind: FrameKind,
+    /// On the processor, until a frame is handed to the device.
+    pub cpu_ms: Option<f64>,
+    /// On the device; none where it cannot tell.
+    pub gpu_ms: Option<f64>,
+    /// Each pass on the device, all of its runs in a frame together, in order.
+    pub passes: Vec<(&'static str, f64)>,
+    /// Time of such a frame over that of the preset `paper` on this session in this run.
+    pub ratio_to_paper: Option<f64>,
+}
+
+impl KindTimes {
+    /// On the device, or else on the processor.
+    pub(super) fn frame_ms(&self) -> Option<f64> {
+        self.gpu_ms.or(self.cpu_ms)
+    }
+}
+
+/// Times each kind on the first frames of `inputs`, whose scene is set.
+pub(super) fn measure(
+    core: &mut Core,
+    inputs: &[FrameInput],
+    n_repeats: usize,
+) -> Result<Vec<KindTimes>, CoreError> {
+    core.time_passes(true)?;
+    let measured = FRAME_KINDS
+        .iter()
+        .map(|kind| of_kind(core, inputs, *kind, n_repeats));
+    measured.collect()
+}
+
+fn of_kind(
+    core: &mut Core,
+    inputs: &[FrameInput],
+    kind: FrameKind,
+    n_repeats: usize,
+) -> Result<KindTimes, CoreError> {
+    let (mut cpu, mut device) = (Vec::new(), Vec::new());
+    for input in inputs.iter().take(MOST_INPUTS) {
+        let others = [input.clone(), other(input, kind)];
+        // Where either is new, what was learned of the place stays.
+        for known in &others {
+            core.frame(known)?;
+        }
+        for next in others.iter().cycle().take(2 * n_repeats) {
+            core.read_pass_times()?;
+            let start = Instant::now();
+            core.frame(next)?;
+            cpu.push(start.elapsed().as_secs_f64() * 1e3);
+            device.push(core.read_pass_times()?);
+        }
+    }
+    Ok(KindTimes {
+        kind,
+        cpu_ms: super::median(cpu),
+        gpu_ms: super::median(device.iter().filter_map(|times| total_ms(times)).collect()),
+        passes: passes(&device),
+        ratio_to_paper: None,
+    })
+}
+
+/// The frame with something new in it.
+fn other(input: &FrameInput, kind: FrameKind) -> FrameInput {
+    let picture = || CameraImage::from(Image::clone(input.image.rgba()));
+    let turn = DMat4::from_rotation_x(TURN_RAD);
+    match kind {
+        FrameKind::Pose => input.clone(),
+        FrameKind::Picture => FrameInput {
+            image: picture(),
+            ..input.clone()
+        },
+        FrameKind::View => FrameInput {
+            image: picture(),
+            camera: Camera {
+                world_from_camera: input.camera.world_from_camera * turn,
+                ..input.camera
+            },
+            ..input.clone()
+        },
+    }
+}
+
+fn total_ms(times: &[PassTime]) -> Option<f64> {
+    times.iter().map(|time| time.gpu_ms).reduce(|sum, ms| sum + ms)
+}
+
+/// Median of each pass, in the order of their first runs.
+fn passes(frames: &[Vec<PassTime>]) -> Vec<(&'static str, f64)> {
+    let mut names: Vec<&'static str> = Vec::new();
+    for time in frames.iter().flatten() {
+        if !names.contains(&time.pass) {
+            names.push(time.pass);
+        }
+    }
+    let in_frame = |frame: &Vec<PassTime>, name: &str| {
+        let runs = frame.iter().filter(|time| time.pass == name);
+        runs.map(|time| time.gpu_ms).sum()
+    };
+    let of_pass = |name: &'static str| {
+        let each = frames.iter().map(|frame| in_frame(frame, name)).collect();
+        super::median(each).map(|ms| (name, ms))
+    };
+    names.into_iter().filter_map(of_pass).collect()
+}
