@@ -47,12 +47,34 @@ fn light_fraction(i: u32, point: ReceiverPoint) -> vec3f {
   return light_part(i, point, plate_falloff(point));
 }
 
-// `visibility` holds up to four lights, light 0 in x.
-fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
-  let total = plate_falloff(point);
-  var ratio = ambient_part(point, ambient, total);
+// The model's coefficients at a point, the same for every pose: of A, of A (1 - A), and of V for each light.
+// An array, since drivers of older Adreno keep structs in fragment shaders at 16 bits.
+alias ReceiverLight = array<vec3f, 6>; // 2 + MAX_LIGHTS
+
+fn receiver_light(point: ReceiverPoint) -> ReceiverLight {
+  let receiver = receiver_of(point);
+  var total = vec3f(1.0);
+  var light: ReceiverLight;
+  light[0] = vec3f(1.0);
+  light[1] = fit.receivers[receiver].bounce.rgb;
   for (var i = 0u; i < globals.n_lights; i++) {
-    ratio += light_part(i, point, total) * fit.intensity[i].rgb * visibility[i];
+    let fraction = fit.receivers[receiver].direct_fraction[i].rgb;
+    let here = fraction * falloff(i, point);
+    total += here - fraction;
+    light[0] -= fraction;
+    light[2u + i] = here * fit.intensity[i].rgb;
   }
-  return ratio;
+  light[0] /= total;
+  for (var i = 0u; i < globals.n_lights; i++) { light[2u + i] /= total; }
+  return light;
+}
+
+// `visibility` holds up to four lights, light 0 in x.
+fn model_in(light: ReceiverLight, ambient: f32, visibility: vec4f) -> vec3f {
+  return light[0] * ambient + light[1] * bounced(ambient)
+    + mat4x3f(light[2], light[3], light[4], light[5]) * visibility;
+}
+
+fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
+  return model_in(receiver_light(point), ambient, visibility);
 }

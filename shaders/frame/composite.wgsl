@@ -95,9 +95,7 @@ fn shadow_likeness(residual: vec3f) -> f32 {
 }
 
 // The model, and 1 where the plate is clipped and no real shadow shows how far above white it is: there none shows.
-fn shown_model(plate: vec3f, point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
-  let model = receiver_model(point, ambient, visibility);
-  let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
+fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
@@ -122,10 +120,12 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
     return mix(lit, f, evident.r);
   }
   let uv = at / globals.region_size_px;
-  let before = shown_model(b.rgb, point, textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r,
-    textureLoad(physical_visibility, texel, 0));
-  let after = shown_model(b.rgb, point, textureSampleLevel(ambient, linear_sampler, uv, 0.0).r,
-    textureLoad(visibility, texel, 0));
+  let light = receiver_light(point);
+  let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
+  let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
+  let before = shown_model(b.rgb, clipped, model_in(light, a_before, textureLoad(physical_visibility, texel, 0)));
+  let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
+  let after = shown_model(b.rgb, clipped, model_in(light, a_after, textureLoad(visibility, texel, 0)));
   let most = largest(abs(after - before));
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
