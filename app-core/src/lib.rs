@@ -86,6 +86,7 @@ pub mod frame;
 pub mod gpu;
 pub mod preset;
 pub mod probe;
+pub mod recording;
 pub mod scene;
 pub mod session;
 pub mod toy;

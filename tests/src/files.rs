@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use anyhow::{Context, ensure};
 use app_core::session::{FileError, Files, check_path};
 use thiserror::Error;
 
@@ -46,6 +47,41 @@ impl Folder {
             return Err(error(io::ErrorKind::NotADirectory.into()));
         }
         Ok(Self { root })
+    }
+
+    /// Whether a folder is this one or lies in it.
+    ///
+    /// # Errors
+    /// When it cannot be found.
+    pub fn holds(&self, folder: &Path) -> io::Result<bool> {
+        Ok(folder.canonicalize()?.starts_with(&self.root))
+    }
+
+    /// Paths of its files and of those in its folders, with `/` between their parts.
+    ///
+    /// # Errors
+    /// When one is a link, which could lead out of it, has a name that is no text, or a folder cannot be read.
+    pub fn paths(&self) -> anyhow::Result<Vec<String>> {
+        let mut paths = Vec::new();
+        let mut folders = vec![String::new()];
+        while let Some(folder) = folders.pop() {
+            let at = self.root.join(&folder);
+            for entry in fs::read_dir(&at).with_context(|| at.display().to_string())? {
+                let entry = entry?;
+                let label = || entry.path().display().to_string();
+                let kind = entry.file_type()?;
+                ensure!(!kind.is_symlink(), "{}: is a link", label());
+                let name = entry.file_name().into_string().ok().with_context(label)?;
+                let path = format!("{folder}{name}");
+                if kind.is_dir() {
+                    folders.push(path + "/");
+                } else {
+                    paths.push(path);
+                }
+            }
+        }
+        paths.sort_unstable();
+        Ok(paths)
     }
 }
 

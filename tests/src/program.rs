@@ -1,7 +1,22 @@
-//! How a program of the harness ends.
+//! How a program of the harness opens its session, and how it ends.
 
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
+
+use crate::stored::{Stored, StoredError};
+
+/// Opens a folder or a recording, and says on standard error what is lost of it.
+///
+/// # Errors
+/// When there is none.
+pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
+    let session = Stored::open(path)?;
+    for loss in session.losses() {
+        let _ = writeln!(io::stderr(), "warning: {}: {loss}", path.display());
+    }
+    Ok(session)
+}
 
 /// Success, or failure with one line on standard error that tells the whole cause.
 #[must_use]

@@ -44,6 +44,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Make a recording of a session's folder, or a folder of a recording (`convert --help` tells more)
+    #[command(disable_help_flag = true)]
+    Convert {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Measure presets over sessions: time against error (`bench --help` tells more)
     #[command(disable_help_flag = true)]
     Bench {
@@ -111,6 +118,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
         Command::Check { args } => return harness::run_on_processor(&toolchain, "check", &args),
         Command::Align { args } => return harness::run_on_processor(&toolchain, "align", &args),
+        Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::Bless { args } => return bless(&toolchain, &args),

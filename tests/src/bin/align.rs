@@ -8,16 +8,16 @@ use app_core::session::{Capture, Session};
 use clap::Parser;
 use harness::alignment::{Alignments, Asked, FocalLength};
 use harness::check::aligned_session;
-use harness::files::Folder;
-use harness::program::exit_code;
+use harness::program::{exit_code, open_session};
+use harness::stored::Stored;
 
 /// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it is.
 #[derive(Parser)]
 #[command(name = "align", bin_name = "cargo xtask align")]
 struct Args {
-    /// Folder of the session
+    /// Folder of the session, or a recording
     session: PathBuf,
-    /// Folder for the corrected session, which must not be there yet
+    /// Folder for the corrected session, or a recording where it ends in .mcap, which must not be there yet
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Look for the focal length, too, which takes several times as long as all else
@@ -30,14 +30,15 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
+    let session = open_session(&args.session)?;
     let capture =
-        Capture::open(Folder::open(&args.session)?).with_context(|| args.session.display().to_string())?;
+        Capture::open(Stored::open(&args.session)?).with_context(|| args.session.display().to_string())?;
     let asked = Asked {
         focal_length: args.focal_length,
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?;
-    let n_corrected = aligned_session::write(&args.session, &args.out, &alignments)?;
+    let n_corrected = aligned_session::write(&session, &args.out, &alignments)?;
     println!(
         "{n_corrected} of {} frames have a corrected camera, focal length, pose or lights: {}",
         capture.n_frames(),

@@ -16,9 +16,9 @@ use harness::alignment::{FocalLength, Lights};
 use harness::bench::{
     Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, rebuild, rebuilt_table, table,
 };
-use harness::files::{BUNDLED_SESSION, Folder};
+use harness::files::BUNDLED_SESSION;
 use harness::output::{make_folder, remove_file, write_png, write_whole};
-use harness::program::exit_code;
+use harness::program::{exit_code, open_session};
 
 /// Where the result goes that was given no place, below the top of the repository.
 const RESULTS: &str = "target/bench";
@@ -29,7 +29,7 @@ const CSV_FILE: &str = "bench.csv";
 #[derive(Parser)]
 #[command(name = "bench", bin_name = "cargo xtask bench")]
 struct Args {
-    /// Folders of sessions [default: the bundled one]
+    /// Folders of sessions, or recordings [default: the bundled one]
     sessions: Vec<PathBuf>,
     /// Folder for bench.csv [default: target/bench]
     #[arg(long, value_name = "DIR")]
@@ -120,7 +120,7 @@ fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut text = String::new();
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());
-        let capture = Capture::open(Folder::open(folder)?)?;
+        let capture = Capture::open(open_session(folder)?)?;
         let draws = basin(&capture, args.seed, args.draws);
         let draws = draws.with_context(|| folder.display().to_string())?;
         let name = &capture.scene().name;
@@ -145,7 +145,7 @@ fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) ->
     let mut all = Vec::new();
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());
-        let capture = Capture::open(Folder::open(folder)?)?;
+        let capture = Capture::open(open_session(folder)?)?;
         let rebuilt = rebuild(&capture, core, &presets(args), !args.as_given);
         all.extend(rebuilt.with_context(|| folder.display().to_string())?);
     }
@@ -167,7 +167,7 @@ fn presets(args: &Args) -> Vec<Preset> {
 }
 
 fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
-    let capture = Capture::open(Folder::open(folder)?)?;
+    let capture = Capture::open(open_session(folder)?)?;
     let options = Options {
         presets: presets(args),
         n_repeats: usize::from(args.repeats),

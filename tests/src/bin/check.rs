@@ -18,7 +18,7 @@ const RESULTS: &str = "target/check";
 #[derive(Parser)]
 #[command(name = "check", bin_name = "cargo xtask check")]
 struct Args {
-    /// Folder of the session
+    /// Folder of the session, or a recording
     session: PathBuf,
     /// Folder for the drawing [default: target/check]
     #[arg(long, value_name = "DIR")]

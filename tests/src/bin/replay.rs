@@ -13,9 +13,9 @@ use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
 use harness::alignment::{FocalLength, Lights};
-use harness::files::{BUNDLED_SESSION, Folder};
+use harness::files::BUNDLED_SESSION;
 use harness::page::PAGE_FILE;
-use harness::program::exit_code;
+use harness::program::{exit_code, open_session};
 use harness::progress::{Progress, Quiet, on_stderr};
 use harness::replay::{Options, REPORT_FILE, replay};
 use harness::report::Report;
@@ -28,9 +28,9 @@ const RESULTS: &str = "target/replay";
 #[derive(Parser)]
 #[command(name = "replay", bin_name = "cargo xtask replay")]
 struct Args {
-    /// Folder of the session [default: the bundled one]
+    /// Folder of the session, or a recording [default: the bundled one]
     session: Option<PathBuf>,
-    /// Folder for pictures, report and page [default: target/replay/ and the name of the session's folder]
+    /// Folder for pictures, report and page [default: target/replay/ and the name of folder or recording]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// How much work a frame may cost; several are shown side by side
@@ -66,7 +66,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         Some(out) => out.clone(),
         None => default_out(folder)?,
     };
-    let capture = Capture::open(Folder::open(folder)?).with_context(|| folder.display().to_string())?;
+    let capture = Capture::open(open_session(folder)?).with_context(|| folder.display().to_string())?;
     let adapter = args
         .adapter
         .clone()
@@ -110,7 +110,12 @@ fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
         .with_context(|| session.display().to_string())?;
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let results = package.parent().unwrap_or(package).join(RESULTS);
-    Ok(results.join(session.file_name().unwrap_or("session".as_ref())))
+    let name = if session.is_file() {
+        session.file_stem()
+    } else {
+        session.file_name()
+    };
+    Ok(results.join(name.unwrap_or("session".as_ref())))
 }
 
 fn without_repeats(presets: &[Preset]) -> Vec<Preset> {

@@ -1,59 +1,32 @@
-//! A session's folder with corrected cameras, poses and lights.
+//! A session with corrected cameras, poses and lights.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use anyhow::{Context, ensure};
+use anyhow::Context;
 use app_core::scene::Light;
+use app_core::session::Files;
 use glam::DMat4;
 use serde_json::{Value, json};
 
 use crate::alignment::Alignments;
+use crate::convert;
 use crate::files::SESSION_FILE;
-use crate::output::{make_folder, write_whole};
+use crate::stored::Stored;
 
-/// Copies a session's files, and writes its index with what was found. Returns the number of corrected frames.
+/// No longer index is read.
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+
+/// Writes a session anew, as a folder or as a recording, its index with what was found. Returns the number of corrected
+/// frames.
 ///
 /// # Errors
-/// When the folder is there already or would lie in the session, or a file is a link or cannot be read or written.
-pub fn write(from: &Path, to: &Path, alignments: &Alignments) -> anyhow::Result<usize> {
-    ensure!(!to.exists(), "{}: is there already", to.display());
-    let text = fs::read_to_string(from.join(SESSION_FILE))
-        .with_context(|| from.join(SESSION_FILE).display().to_string())?;
-    let mut index: Value = serde_json::from_str(&text)?;
+/// When the new one is there already or would lie in the session, or a file is a link or cannot be read or written.
+pub fn write(from: &Stored, to: &Path, alignments: &Alignments) -> anyhow::Result<usize> {
+    let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
+    let mut index: Value = serde_json::from_slice(&bytes)?;
     let n_corrected = correct(&mut index, alignments);
-    let files = files_below(from, Path::new(""))?;
-    make_folder(to)?;
-    let is_inside = to.canonicalize()?.starts_with(from.canonicalize()?);
-    if is_inside {
-        fs::remove_dir(to)?;
-    }
-    ensure!(!is_inside, "{}: lies in the session itself", to.display());
-    for file in files.iter().filter(|file| *file != Path::new(SESSION_FILE)) {
-        if let Some(folder) = file.parent() {
-            make_folder(&to.join(folder))?;
-        }
-        fs::copy(from.join(file), to.join(file)).with_context(|| from.join(file).display().to_string())?;
-    }
-    write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
+    convert::write(from, Some(format!("{index:#}\n").into_bytes()), to)?;
     Ok(n_corrected)
-}
-
-/// Files of a folder and of those in it, as paths within the session; a link could lead out of it.
-fn files_below(session: &Path, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let at = session.join(folder);
-    let mut files = Vec::new();
-    for entry in fs::read_dir(&at).with_context(|| at.display().to_string())? {
-        let entry = entry?;
-        let (kind, path) = (entry.file_type()?, folder.join(entry.file_name()));
-        ensure!(!kind.is_symlink(), "{}: is a link", session.join(&path).display());
-        if kind.is_dir() {
-            files.extend(files_below(session, &path)?);
-        } else {
-            files.push(path);
-        }
-    }
-    Ok(files)
 }
 
 fn correct(index: &mut Value, alignments: &Alignments) -> usize {

@@ -3,14 +3,14 @@
 use app_core::session::{Files, schema};
 use serde_json::Value;
 
-use crate::files::{Folder, SESSION_FILE};
+use crate::files::SESSION_FILE;
 
 /// No longer index is read.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// Those of a session's index; none where it cannot be read, which the reader tells.
-pub(super) fn unknown(folder: &Folder) -> Vec<String> {
-    let bytes = folder.read(SESSION_FILE, MOST_BYTES).unwrap_or_default();
+pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
+    let bytes = session.read(SESSION_FILE, MOST_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
     let mut unknown = Vec::new();
     look(&index, &schema(), "", &mut unknown);

@@ -17,8 +17,8 @@ use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
 use crate::alignment::{Alignments, Asked, FocalLength};
-use crate::files::Folder;
 use crate::output::{remove_file, write_png};
+use crate::stored::Stored;
 
 pub use pictures::wrong_of_picture;
 
@@ -39,17 +39,20 @@ pub struct Findings {
 /// Looks at a session's index, files, numbers and pictures, and draws what it predicts into `out`.
 ///
 /// # Errors
-/// When the folder cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
+/// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
 pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::Result<Findings> {
-    let folder = Folder::open(session)?;
+    let stored = Stored::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
     let mut findings = Findings {
-        wrong: keys::unknown(&folder),
+        wrong: keys::unknown(&stored),
         ..Findings::default()
     };
-    findings.wrong.extend(pictures::wrong(&folder));
-    let capture = match Capture::open(folder) {
+    findings
+        .wrong
+        .extend(stored.losses().iter().map(ToString::to_string));
+    findings.wrong.extend(pictures::wrong(&stored));
+    let capture = match Capture::open(stored) {
         Ok(capture) => capture,
         Err(error) => {
             findings.wrong.push(error.to_string());

@@ -10,7 +10,7 @@ use image::{ImageDecoder, Limits};
 use serde_json::Value;
 
 use super::icc;
-use crate::files::{Folder, SESSION_FILE};
+use crate::files::SESSION_FILE;
 
 /// No longer index is read, nor a longer picture: 16-bit RGBA of the most pixels that one may have, and room for tags.
 const MOST_INDEX_BYTES: u64 = 16 << 20;
@@ -28,8 +28,8 @@ const SRGB_CHRM: [u32; 8] = [31_270, 32_900, 64_000, 33_000, 30_000, 60_000, 15_
 const SAME: u32 = 200;
 
 /// Of all pictures that an index names; none where it cannot be read, which the reader tells.
-pub(super) fn wrong(folder: &Folder) -> Vec<String> {
-    let bytes = folder.read(SESSION_FILE, MOST_INDEX_BYTES).unwrap_or_default();
+pub(super) fn wrong(session: &dyn Files) -> Vec<String> {
+    let bytes = session.read(SESSION_FILE, MOST_INDEX_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
     let mut wrong = Vec::new();
     let mut known = HashSet::new();
@@ -37,7 +37,7 @@ pub(super) fn wrong(folder: &Folder) -> Vec<String> {
         if !known.insert(file) {
             continue;
         }
-        let bytes = folder.read(file, MOST_PICTURE_BYTES).unwrap_or_default();
+        let bytes = session.read(file, MOST_PICTURE_BYTES).unwrap_or_default();
         let orientation = exif_orientation(&bytes);
         if orientation != 1 {
             let turned = SessionWarning::Turned {

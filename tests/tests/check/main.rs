@@ -15,6 +15,7 @@ use harness::alignment::{Alignments, Asked, FocalLength};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
+use harness::stored::Stored;
 use serde_json::{Value, json};
 
 /// A new folder, which goes with it.
@@ -203,7 +204,7 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
-    aligned_session::write(&session.0, &out, &alignments).unwrap();
+    aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap();
     let cameras = [&recorded.0, &session.0, &out].map(|folder| {
         let capture = Capture::open(Folder::open(folder).unwrap()).unwrap();
         let frames = [0, 1].map(|index| capture.frame(index).unwrap().camera);
@@ -229,13 +230,13 @@ fn an_aligned_session_is_right() {
     let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), Asked::default()).unwrap();
     assert_eq!(
-        aligned_session::write(&session.0, &out, &alignments).unwrap(),
+        aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap(),
         capture.n_frames()
     );
     assert_eq!(wrong(&out), Vec::<String>::new());
     // Nothing is written over, nor into the session that is read.
     let inside = session.0.join("inside");
-    assert!(aligned_session::write(&session.0, &inside, &alignments).is_err());
+    assert!(aligned_session::write(&Stored::open(&session.0).unwrap(), &inside, &alignments).is_err());
     assert!(!inside.exists());
-    assert!(aligned_session::write(&session.0, &out, &alignments).is_err());
+    assert!(aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).is_err());
 }

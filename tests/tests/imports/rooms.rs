@@ -30,6 +30,7 @@ const ROOMS: &[&str] = &[
     "readback",
     "geometry",
     "gpu",
+    "recording",
     "session",
     "camera_frame",
     "scene",

@@ -1,0 +1,238 @@
+//! What a scan finds: places of pictures and files, texts of frames and notes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use super::MAX_INDEX_BYTES;
+use super::error::Loss;
+use super::message::{FrameMessage, NamedPicture, SessionMessage};
+use super::topics::Topic;
+use super::viewer::image_file;
+use super::wire::{CHANNEL, MESSAGE, Rest};
+
+/// Texts of notes that are kept, bytes.
+const MAX_NOTE_BYTES: u64 = 64 << 20;
+
+/// Bytes of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Span {
+    pub(super) at: u64,
+    pub(super) n_bytes: u64,
+}
+
+/// A frame as it was recorded.
+pub(super) struct FoundFrame {
+    /// Its entry of the index, JSON.
+    pub(super) entry: String,
+    /// Path of its picture.
+    pub(super) path: String,
+    /// Number of its picture.
+    pub(super) picture: u32,
+}
+
+/// A message of one of the channels that take any JSON object.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Nanoseconds, from an origin of the recording's own.
+    pub time_ns: u64,
+    /// Its channel.
+    pub topic: Topic,
+    /// The message, JSON.
+    pub message: String,
+}
+
+/// All that was found.
+#[derive(Default)]
+pub(super) struct Found {
+    /// The last chunk's session; none before the first.
+    pub(super) session: Option<SessionMessage>,
+    pub(super) frames: Vec<FoundFrame>,
+    pub(super) pictures: BTreeMap<u32, Span>,
+    pub(super) files: BTreeMap<String, Span>,
+    pub(super) notes: Vec<Note>,
+    pub(super) losses: Vec<Loss>,
+    /// Which chunks were found.
+    chunks: BTreeSet<u32>,
+    channels: BTreeMap<u16, Option<Topic>>,
+    /// Bytes of the texts of frames, and of notes.
+    n_frame_bytes: u64,
+    n_note_bytes: u64,
+    n_frames_left_out: u32,
+    n_notes_left_out: u32,
+}
+
+/// A message whose channel is known.
+struct Message<'a> {
+    topic: Topic,
+    sequence: u32,
+    time_ns: u64,
+    data: &'a [u8],
+    /// Where its data begins, within the chunk's records.
+    at: usize,
+}
+
+impl Found {
+    /// Takes a whole chunk's records, which begin at byte `records_at`. None where they are no records; then nothing of
+    /// the chunk is taken.
+    pub(super) fn chunk(&mut self, records_at: u64, records: &[u8]) -> Option<()> {
+        let mut messages = Vec::new();
+        let mut rest = Rest(records);
+        while !rest.0.is_empty() {
+            let (opcode, body) = rest.record()?;
+            let end = records.len() - rest.0.len();
+            match opcode {
+                CHANNEL => self.channel(body)?,
+                MESSAGE => messages.extend(self.message(body, end)?),
+                _ => {}
+            }
+        }
+        // Of texts that are not what they should be nothing is taken, either: their chunk is not ours.
+        let read = messages.iter().map(Read::new).collect::<Option<Vec<_>>>()?;
+        for (message, read) in messages.iter().zip(read) {
+            self.take(records_at, message, read);
+        }
+        Some(())
+    }
+
+    /// Takes an attached file; the last one of a path holds.
+    pub(super) fn file(&mut self, path: String, span: Span) {
+        self.files.insert(path, span);
+    }
+
+    fn channel(&mut self, body: &[u8]) -> Option<()> {
+        let mut rest = Rest(body);
+        let id = rest.u16()?;
+        let _schema = rest.u16()?;
+        self.channels.insert(id, Topic::named(rest.text()?));
+        Some(())
+    }
+
+    /// The message of a record that ends at `end`. The inner none is a channel that is not ours.
+    fn message<'a>(&self, body: &'a [u8], end: usize) -> Option<Option<Message<'a>>> {
+        let mut rest = Rest(body);
+        let channel = rest.u16()?;
+        let sequence = rest.u32()?;
+        let time_ns = rest.u64()?;
+        let _published_ns = rest.u64()?;
+        let topic = self.channels.get(&channel).copied().flatten();
+        Some(topic.map(|topic| Message {
+            topic,
+            sequence,
+            time_ns,
+            data: rest.0,
+            at: end - rest.0.len(),
+        }))
+    }
+
+    fn take(&mut self, records_at: u64, message: &Message, read: Read) {
+        match read {
+            Read::Session(session) => {
+                self.chunks.insert(session.chunk);
+                self.session = Some(*session);
+            }
+            Read::Image(file) => {
+                let span = Span {
+                    at: records_at + (message.at + file.start) as u64,
+                    n_bytes: file.len() as u64,
+                };
+                self.pictures.insert(message.sequence, span);
+            }
+            Read::Frame(frame) => {
+                self.n_frame_bytes += frame.entry.len() as u64;
+                if self.n_frame_bytes > MAX_INDEX_BYTES {
+                    self.n_frames_left_out += 1;
+                } else {
+                    self.frames.push(frame);
+                }
+            }
+            Read::Note(text) => {
+                self.n_note_bytes += text.len() as u64;
+                if self.n_note_bytes > MAX_NOTE_BYTES {
+                    self.n_notes_left_out += 1;
+                } else {
+                    self.notes.push(Note {
+                        time_ns: message.time_ns,
+                        topic: message.topic,
+                        message: text.to_owned(),
+                    });
+                }
+            }
+            Read::Other => {}
+        }
+    }
+
+    /// What the whole shows to be lost: chunks and files that were counted, pictures that frames name, texts beyond the
+    /// limits.
+    pub(super) fn tell_losses(&mut self) {
+        let mut expected = 0;
+        for chunk in &self.chunks {
+            if *chunk > expected {
+                self.losses.push(Loss::Chunks {
+                    first: expected,
+                    n_chunks: chunk - expected,
+                });
+            }
+            expected = chunk.saturating_add(1);
+        }
+        let n_written = self.session.as_ref().map_or(0, |session| session.n_files);
+        let n_files = n_written.saturating_sub(u32::try_from(self.files.len()).unwrap_or(u32::MAX));
+        if n_files > 0 {
+            self.losses.push(Loss::Files { n_files, n_written });
+        }
+        let n_frames = self.frames.len();
+        self.frames
+            .retain(|frame| self.pictures.contains_key(&frame.picture));
+        if self.frames.len() < n_frames {
+            let n_frames = u32::try_from(n_frames - self.frames.len()).unwrap_or(u32::MAX);
+            self.losses.push(Loss::Pictures { n_frames });
+        }
+        for (n_messages, max_bytes) in [
+            (self.n_frames_left_out, MAX_INDEX_BYTES),
+            (self.n_notes_left_out, MAX_NOTE_BYTES),
+        ] {
+            if n_messages > 0 {
+                self.losses.push(Loss::TooMany {
+                    n_messages,
+                    max_bytes,
+                });
+            }
+        }
+    }
+}
+
+/// What a message says.
+enum Read<'a> {
+    Session(Box<SessionMessage>),
+    Image(Range<usize>),
+    Frame(FoundFrame),
+    Note(&'a str),
+    /// For viewers.
+    Other,
+}
+
+impl<'a> Read<'a> {
+    fn new(message: &Message<'a>) -> Option<Self> {
+        Some(match message.topic {
+            Topic::Session => {
+                let session: SessionMessage = serde_json::from_slice(message.data).ok()?;
+                if !session.session.get().starts_with('{') {
+                    return None;
+                }
+                Self::Session(Box::new(session))
+            }
+            Topic::Image => Self::Image(image_file(message.data)?),
+            Topic::Frame => {
+                let frame: FrameMessage = serde_json::from_slice(message.data).ok()?;
+                let entry = frame.entry.get().to_owned();
+                let named: NamedPicture = serde_json::from_str(&entry).ok()?;
+                Self::Frame(FoundFrame {
+                    path: named.image,
+                    picture: frame.picture,
+                    entry,
+                })
+            }
+            Topic::Calibration | Topic::Transform => Self::Other,
+            _ => Self::Note(std::str::from_utf8(message.data).ok()?),
+        })
+    }
+}

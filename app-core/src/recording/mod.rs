@@ -1,0 +1,36 @@
+//! Recordings: a session in one MCAP file, written while it is taken and read as a folder is.
+//!
+//! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this crate opens no
+//! file itself, and times come from the caller.
+//!
+#![doc = include_str!("../../doc/recording.md")]
+
+mod chunk;
+mod error;
+mod found;
+mod message;
+mod protobuf;
+mod queue;
+mod reader;
+mod scan;
+mod source;
+mod summary;
+mod topics;
+mod viewer;
+mod wire;
+mod writer;
+
+pub use error::{Damage, Loss, RecordingError, Stop, WriteError};
+pub use found::Note;
+pub use queue::{Inlet, Item, Outlet, queue};
+pub use reader::Recording;
+pub use source::Source;
+pub use topics::Topic;
+pub use writer::{Flushed, Limits, Picture, Writer};
+
+/// What a session's index is called.
+const INDEX_PATH: &str = "capture.json";
+/// Texts of all frames, and of the rest of the index; bytes. No longer index is read from a folder.
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+/// The largest chunk that is read; bytes. Pictures, which have at most half of it, are larger than what else is in one.
+const MAX_CHUNK_BYTES: u64 = 256 << 20;

@@ -1,0 +1,219 @@
+//! Sessions written anew: into a folder, or into a recording.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs::{self, File};
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use app_core::recording::{Limits, Note, Picture, Topic, Writer};
+use app_core::session::{FileError, Files};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+use crate::files::SESSION_FILE;
+use crate::output::{make_folder, write_whole};
+use crate::stored::Stored;
+
+/// What makes a path that of a recording.
+pub const EXTENSION: &str = "mcap";
+/// In a folder: messages of the platform's channels, one a line.
+const NOTES_FILE: &str = "notes.jsonl";
+/// In a folder: what is known of the device.
+const DEVICE_FILE: &str = "device.json";
+/// No file of a session is larger, the toy's 256 MiB included.
+const MAX_FILE_BYTES: u64 = 512 << 20;
+
+/// A line of the file of notes.
+#[derive(Serialize, Deserialize)]
+struct NoteLine {
+    time_ns: u64,
+    topic: String,
+    message: Box<RawValue>,
+}
+
+/// Of the index no more than what is put elsewhere.
+#[derive(Deserialize)]
+struct Index<'a> {
+    #[serde(borrow, default)]
+    frames: Vec<&'a RawValue>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    image: String,
+    #[serde(default)]
+    time: f64,
+}
+
+/// Writes a session to `out`, as a recording where the path ends so, else as a folder. With `index` that is its
+/// `capture.json`.
+///
+/// # Errors
+/// When `out` is there already or lies in the session's folder, a file of the session cannot be read or is a link, or the
+/// system refuses.
+pub fn write(session: &Stored, index: Option<Vec<u8>>, out: &Path) -> anyhow::Result<()> {
+    ensure!(!out.exists(), "{}: is there already", out.display());
+    let index = match index {
+        Some(index) => index,
+        None => read(session, SESSION_FILE)?,
+    };
+    let paths = session.paths()?;
+    if out.extension().is_some_and(|extension| extension == EXTENSION) {
+        write_recording(session, &index, &paths, out)
+    } else {
+        write_folder(session, &index, &paths, out)
+    }
+}
+
+fn read(session: &dyn Files, path: &str) -> anyhow::Result<Vec<u8>> {
+    session
+        .read(path, MAX_FILE_BYTES)
+        .with_context(|| path.to_owned())
+}
+
+fn write_folder(session: &Stored, index: &[u8], paths: &[String], out: &Path) -> anyhow::Result<()> {
+    make_folder(out)?;
+    if let Stored::Folder(folder) = session
+        && folder.holds(out)?
+    {
+        fs::remove_dir(out)?;
+        anyhow::bail!("{}: lies in the session itself", out.display());
+    }
+    for path in paths.iter().filter(|path| *path != SESSION_FILE) {
+        let file = out.join(path);
+        if let Some(folder) = file.parent() {
+            make_folder(folder)?;
+        }
+        write_whole(&file, &read(session, path)?)?;
+    }
+    if let Stored::Recording(recording) = session {
+        if !recording.notes().is_empty() {
+            let lines = recording.notes().iter().map(note_line);
+            let lines = lines.collect::<Result<Vec<_>, _>>()?.concat();
+            write_whole(&out.join(NOTES_FILE), lines.as_bytes())?;
+        }
+        if !recording.device().is_empty() {
+            let device = serde_json::to_vec_pretty(recording.device())?;
+            write_whole(&out.join(DEVICE_FILE), &device)?;
+        }
+    }
+    // Last, so that a folder with an index is whole.
+    Ok(write_whole(&out.join(SESSION_FILE), index)?)
+}
+
+fn note_line(note: &Note) -> serde_json::Result<String> {
+    let line = NoteLine {
+        time_ns: note.time_ns,
+        topic: note.topic.name().to_owned(),
+        message: RawValue::from_string(note.message.replace(['\n', '\r'], " "))?,
+    };
+    Ok(serde_json::to_string(&line)? + "\n")
+}
+
+fn write_recording(session: &Stored, index: &[u8], paths: &[String], out: &Path) -> anyhow::Result<()> {
+    let index = std::str::from_utf8(index).context(SESSION_FILE)?;
+    let frames = serde_json::from_str::<Index>(index).context(SESSION_FILE)?.frames;
+    let entries = frames.iter().enumerate().map(|(place, frame)| {
+        let entry: Entry =
+            serde_json::from_str(frame.get()).with_context(|| format!("{SESSION_FILE} (frames[{place}])"))?;
+        anyhow::Ok((entry, frame.get()))
+    });
+    let entries = entries.collect::<Result<Vec<_>, _>>()?;
+    let (notes, device) = told(session)?;
+    // Under another name until it is whole.
+    let partial = out.with_extension(format!("{}.partial", std::process::id()));
+    let context = || partial.display().to_string();
+    let written = File::create(&partial).with_context(context).and_then(|file| {
+        let mut writer = Writer::new(file, index, device, Limits::default())?;
+        let of_frames: Vec<&str> = entries.iter().map(|(entry, _)| entry.image.as_str()).collect();
+        let first_ns = entries.first().map_or(0, |(entry, _)| time_ns(entry.time));
+        let others = paths
+            .iter()
+            .filter(|path| !of_frames.contains(&path.as_str()) && !is_of_recording(path));
+        for path in others {
+            writer.file(first_ns, path, &read(session, path)?)?;
+        }
+        write_frames(session, &mut writer, &entries, &notes)?;
+        let (file, _) = writer.finish()?;
+        Ok(file.sync_all()?)
+    });
+    let moved = written.and_then(|()| fs::rename(&partial, out).with_context(context));
+    if moved.is_err() {
+        let _ = fs::remove_file(&partial);
+    }
+    moved
+}
+
+/// Whether a recording has a place of its own for that file.
+fn is_of_recording(path: &str) -> bool {
+    [SESSION_FILE, NOTES_FILE, DEVICE_FILE].contains(&path)
+}
+
+fn write_frames(
+    session: &Stored,
+    writer: &mut Writer<File>,
+    entries: &[(Entry, &str)],
+    notes: &[Note],
+) -> anyhow::Result<()> {
+    let mut numbers = HashMap::new();
+    let mut notes = notes.iter().peekable();
+    for (entry, text) in entries {
+        let time_ns = time_ns(entry.time);
+        while let Some(note) = notes.next_if(|note| note.time_ns <= time_ns) {
+            writer.note(note.time_ns, note.topic, &note.message)?;
+        }
+        let number = match numbers.get(&entry.image) {
+            Some(number) => writer.frame(time_ns, Picture::Again(*number), text)?,
+            None => {
+                let picture = read(session, &entry.image)?;
+                writer.frame(time_ns, Picture::New(&picture), text)?
+            }
+        };
+        numbers.insert(&entry.image, number);
+    }
+    for note in notes {
+        writer.note(note.time_ns, note.topic, &note.message)?;
+    }
+    Ok(())
+}
+
+/// Nanoseconds of a time in seconds; nought before the origin.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a cast saturates"
+)]
+fn time_ns(secs: f64) -> u64 {
+    (secs * 1e9).round() as u64
+}
+
+/// What a session says of the platform and of the device.
+fn told(session: &Stored) -> anyhow::Result<(Vec<Note>, BTreeMap<String, String>)> {
+    let folder = match session {
+        Stored::Recording(recording) => {
+            return Ok((recording.notes().to_vec(), recording.device().clone()));
+        }
+        Stored::Folder(folder) => folder,
+    };
+    let file = |path: &str| match folder.read(path, MAX_FILE_BYTES) {
+        Err(FileError::Missing) => Ok(None),
+        read => read.map(Some).with_context(|| path.to_owned()),
+    };
+    let device = match file(DEVICE_FILE)? {
+        Some(bytes) => serde_json::from_slice(&bytes).context(DEVICE_FILE)?,
+        None => BTreeMap::new(),
+    };
+    let lines = file(NOTES_FILE)?.unwrap_or_default();
+    let lines = std::str::from_utf8(&lines).context(NOTES_FILE)?.lines();
+    let notes = lines.enumerate().map(|(place, line)| {
+        let context = || format!("{NOTES_FILE} (line {})", place + 1);
+        let line: NoteLine = serde_json::from_str(line).with_context(context)?;
+        let topic = Topic::named(&line.topic).with_context(context)?;
+        anyhow::Ok(Note {
+            time_ns: line.time_ns,
+            topic,
+            message: line.message.get().to_owned(),
+        })
+    });
+    Ok((notes.collect::<Result<_, _>>()?, device))
+}
