@@ -94,6 +94,7 @@ pub mod toy;
 mod baseline;
 mod disjoint;
 mod geometry;
+mod lens;
 mod model;
 mod passes;
 mod plan;

@@ -101,7 +101,7 @@ fn write_inputs(
     truth: Option<&dyn GroundTruth>,
     index: usize,
 ) -> Result<Inputs, ReplayError> {
-    let before = pictures.write("before", index, session.frame(index)?.image)?;
+    let before = pictures.write("before", index, session.photograph(index)?)?;
     let truth = match truth {
         Some(truth) => truth.truth(index)?,
         None => None,

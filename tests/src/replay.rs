@@ -358,6 +358,7 @@ fn run_frame(
     let picture = core.read_picture().map_err(failed)?;
     let wall = start.elapsed();
     let times = core.read_pass_times().map_err(failed)?;
+    let picture = session.through_lens(index, picture)?;
     let warnings = frame.warnings.iter().map(ToString::to_string);
     let entry = FrameEntry {
         index,

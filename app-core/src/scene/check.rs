@@ -68,6 +68,11 @@ pub enum FieldError {
     /// A list whose entries are not in their order.
     #[error("it is not above that of the entry before")]
     Unordered,
+    /// A lens that shows two places at one.
+    #[error(
+        "the lens folds the picture: with growing distance from its middle, places must stay in their order"
+    )]
+    Folds,
     /// A matrix whose last row is not 0 0 0 1.
     #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
     NotAffine,

@@ -15,14 +15,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DMat4;
 use serde::Deserialize;
 
-use self::field::{INDEX_FILE, WHOLE_FILE, frame_field, in_index, read_named};
+use self::field::{INDEX_FILE, LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::Files;
 use super::picture::{PictureSize, decode_mask, decode_photo};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
-use crate::scene::{Camera, Image, Pose, Scene};
+use crate::lens::{Distortion, Lens};
+use crate::scene::{Camera, Image, Intrinsics, Pose, Scene};
 
 #[cfg(feature = "schema")]
 pub use schema::schema;
@@ -39,13 +40,19 @@ pub struct Capture {
     warnings: Vec<SessionWarning>,
     frames: Vec<Frame>,
     /// The last frame's picture: a still camera repeats one picture over and over.
-    last_picture: Mutex<Option<(String, Photo)>>,
+    last_picture: Mutex<Option<(FrameKey, Photo)>>,
 }
+
+/// A picture, and the camera whose lens it was freed of.
+type FrameKey = (String, Option<Lens>);
 
 /// A photograph, and how its file asks to turn it.
 #[derive(Clone)]
 struct Photo {
+    /// As by a pinhole.
     image: Arc<Image>,
+    /// As the camera gave it.
+    as_taken: Arc<Image>,
     orientation: u8,
 }
 
@@ -101,14 +108,18 @@ impl Capture {
         })
     }
 
-    fn frame_picture(&self, path: &str, field: &str) -> Result<Photo, SessionError> {
+    fn frame_picture(&self, index: usize) -> Result<(&Frame, Photo), SessionError> {
+        let frame = self.frame_at(index)?;
+        let path = &frame.picture;
+        let key = (path.clone(), self.store.lens(&frame.camera.intrinsics)?);
         let mut last = self.last_picture.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, photo)) = last.as_ref().filter(|(last_path, _)| last_path == path) {
-            return Ok(photo.clone());
+        if let Some((_, photo)) = last.as_ref().filter(|(of_last, _)| *of_last == key) {
+            return Ok((frame, photo.clone()));
         }
-        let photo = self.store.photo(path, field)?;
-        *last = Some((path.to_owned(), photo.clone()));
-        Ok(photo)
+        let field = frame_field(index, ".image");
+        let photo = self.store.photo(path, &field, &frame.camera.intrinsics)?;
+        *last = Some((key, photo.clone()));
+        Ok((frame, photo))
     }
 }
 
@@ -126,10 +137,8 @@ impl Session for Capture {
     }
 
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
-        let frame = self.frame_at(index)?;
-        let field = frame_field(index, ".image");
-        let photo = self.frame_picture(&frame.picture, &field)?;
-        let turned = photo.warning(&frame.picture, &field);
+        let (frame, photo) = self.frame_picture(index)?;
+        let turned = photo.warning(&frame.picture, &frame_field(index, ".image"));
         Ok(SessionFrame {
             time_secs: frame.time_secs,
             image: photo.image,
@@ -138,6 +147,21 @@ impl Session for Capture {
             exposure: frame.exposure,
             shown_pose: frame.shown_pose.clone(),
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
+        })
+    }
+
+    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
+        Ok(self.frame_picture(index)?.1.as_taken)
+    }
+
+    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError> {
+        let (frame, photo) = self.frame_picture(index)?;
+        let lens = self.store.lens(&frame.camera.intrinsics)?;
+        Ok(match lens {
+            Some(lens) if made.is_of_size([photo.image.width_px, photo.image.height_px]) => {
+                lens.with_changes(&photo.as_taken, [&photo.image, &made])
+            }
+            _ => made,
         })
     }
 }
@@ -161,13 +185,28 @@ impl GroundTruth for Capture {
 struct PictureStore {
     files: Box<dyn Files>,
     size: PictureSize,
+    /// Of all photographs, but not of labels.
+    distortion: Option<Distortion>,
 }
 
 impl PictureStore {
-    fn photo(&self, path: &str, field: &str) -> Result<Photo, SessionError> {
+    /// The lens of a camera.
+    fn lens(&self, intrinsics: &Intrinsics) -> Result<Option<Lens>, SessionError> {
+        let size_px = [self.size.width_px, self.size.height_px];
+        let lens = self
+            .distortion
+            .map(|distortion| Lens::new(distortion, intrinsics, size_px));
+        at(LENS, lens.transpose())
+    }
+
+    /// A photograph by a camera.
+    fn photo(&self, path: &str, field: &str, intrinsics: &Intrinsics) -> Result<Photo, SessionError> {
+        let lens = self.lens(intrinsics)?;
         self.read(path, field, |bytes, size| {
+            let as_taken = Arc::new(decode_photo(bytes, size)?);
             Ok(Photo {
-                image: Arc::new(decode_photo(bytes, size)?),
+                image: lens.map_or_else(|| Arc::clone(&as_taken), |lens| lens.to_pinhole(&as_taken).into()),
+                as_taken,
                 orientation: exif_orientation(bytes),
             })
         })

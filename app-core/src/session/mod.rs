@@ -43,6 +43,19 @@ pub trait Session {
     /// # Errors
     /// When there is no such frame, or its picture cannot be read.
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
+
+    /// The photograph of the frame `index` as its camera gave it, distortion and all: [`SessionFrame::image`] where the session has no lens.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError>;
+
+    /// The photograph of the frame `index` with what was changed in [`SessionFrame::image`] to make `made`, of the same size: `made`
+    /// itself where the session has no lens. Pixels whose surroundings did not change are the photograph's own.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError>;
 }
 
 /// One camera frame and the pose to show in it.
@@ -50,7 +63,7 @@ pub trait Session {
 pub struct SessionFrame {
     /// When the frame was taken, from an origin of the session's own.
     pub time_secs: f64,
-    /// The camera's picture of the real toy. Frames that repeat a picture share it.
+    /// The camera's picture of the real toy, as a pinhole would have seen it. Frames that repeat a picture share it.
     pub image: Arc<Image>,
     /// The camera that took it.
     pub camera: Camera,
@@ -64,7 +77,7 @@ pub struct SessionFrame {
     pub warnings: Vec<SessionWarning>,
 }
 
-/// The photographs that the camera would have taken if the toy really had moved.
+/// The photographs that the camera would have taken if the toy really had moved, through the lens that it has.
 ///
 /// For scoring only. It is not part of [`Session`], so code that makes pictures from a session cannot reach them.
 pub trait GroundTruth {

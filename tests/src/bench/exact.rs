@@ -67,7 +67,7 @@ pub(super) fn measure(
             core.frame(&input).map_err(failed)?;
         }
         if let Some(truth) = session.truth(index)? {
-            let picture = core.read_picture().map_err(failed)?;
+            let picture = session.through_lens(index, core.read_picture().map_err(failed)?)?;
             let failed = |reason| ReplayError::Score { index, reason };
             scores.push(score(&picture, &truth).map_err(failed)?);
             flicker.extend(follower.next(index, &picture, &truth).map_err(failed)?);

@@ -5,6 +5,7 @@
 mod document;
 mod folder;
 mod follows;
+mod lens;
 mod parts;
 mod schema;
 mod turned;

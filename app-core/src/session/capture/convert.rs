@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
 use super::light_probe::probe;
-use super::place::{camera, intrinsics, light, plates, receiver};
+use super::place::{camera, distortion, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles};
 use crate::scene::{Intrinsics, Pose, Scene, check};
@@ -24,6 +24,7 @@ pub(super) fn capture_from_record(
 ) -> Result<Capture, SessionError> {
     let size = picture_size(&record)?;
     let intrinsics = intrinsics("intrinsics", &record.intrinsics)?;
+    let distortion = record.lens.as_ref().map(distortion).transpose()?;
     let world_from_object = at(
         "toy.world_from_object",
         check::similarity(record.toy.world_from_object),
@@ -47,7 +48,14 @@ pub(super) fn capture_from_record(
         frame_from_record(&toy, &defaults, field, frame)
     })?;
 
-    let store = PictureStore { files, size };
+    let store = PictureStore {
+        files,
+        size,
+        distortion,
+    };
+    for frame in &frames {
+        store.lens(&frame.camera.intrinsics)?;
+    }
     let plates = plates(&store, &intrinsics, &record.backgrounds, &mut warnings)?;
     let probe = record
         .probe

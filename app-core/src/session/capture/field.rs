@@ -5,6 +5,8 @@ use crate::session::error::{SessionError, SessionErrorKind};
 use crate::session::files::{FileError, Files, check_path};
 
 pub(super) const INDEX_FILE: &str = "capture.json";
+/// The distortion, of which each camera makes a lens.
+pub(super) const LENS: &str = "lens";
 /// Path that is given when no single field is at fault.
 pub(super) const WHOLE_FILE: &str = "the whole file";
 

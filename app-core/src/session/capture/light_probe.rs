@@ -47,9 +47,10 @@ pub(super) fn probe(
         };
         return Err(in_index("probe.pictures", error));
     }
+    let main_camera = camera("probe", world_from_camera, own)?;
     let main = ProbePicture {
-        camera: camera("probe", world_from_camera, own)?,
-        image: photo(store, &record.image, "probe.image", warnings)?,
+        camera: main_camera,
+        image: photo(store, (&record.image, "probe.image"), &main_camera, warnings)?,
         world_from_probe,
         exposure_ratio,
     };
@@ -107,12 +108,13 @@ fn picture(
     (intrinsics, (world_from_probe, exposure_ratio)): (&Intrinsics, (&DMat4, f64)),
     warnings: &mut Vec<SessionWarning>,
 ) -> Result<ProbePicture, SessionError> {
+    let camera = camera(
+        field,
+        record.world_from_camera,
+        (record.intrinsics.as_ref(), intrinsics),
+    )?;
     Ok(ProbePicture {
-        camera: camera(
-            field,
-            record.world_from_camera,
-            (record.intrinsics.as_ref(), intrinsics),
-        )?,
+        camera,
         world_from_probe: match record.world_from_lens {
             Some(matrix) => at(&format!("{field}.world_from_lens"), check::rigid(matrix))?,
             None => *world_from_probe,
@@ -124,17 +126,22 @@ fn picture(
             )?,
             None => exposure_ratio,
         },
-        image: photo(store, &record.image, &format!("{field}.image"), warnings)?,
+        image: photo(
+            store,
+            (&record.image, &format!("{field}.image")),
+            &camera,
+            warnings,
+        )?,
     })
 }
 
 fn photo(
     store: &PictureStore,
-    file: &str,
-    field: &str,
+    (file, field): (&str, &str),
+    camera: &Camera,
     warnings: &mut Vec<SessionWarning>,
 ) -> Result<Arc<Image>, SessionError> {
-    let photo = store.photo(file, field)?;
+    let photo = store.photo(file, field, &camera.intrinsics)?;
     warnings.extend(photo.warning(file, field));
     Ok(photo.image)
 }

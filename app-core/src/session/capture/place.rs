@@ -1,15 +1,15 @@
 //! The scene, from `capture.json`: camera, receivers, lights, plates.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::PictureStore;
-use super::field::{at, in_index};
+use super::field::{LENS, at, in_index};
 use super::record::{
-    BackgroundRecord, IntrinsicsRecord, LightKind, LightRecord, ReceiverRecord, SurfaceRecord,
+    BackgroundRecord, IntrinsicsRecord, LensRecord, LightKind, LightRecord, ReceiverRecord, SurfaceRecord,
 };
+use crate::lens::{COEFFICIENT, Distortion, Lens};
 use crate::scene::check;
 use crate::scene::{
     Camera, FieldError, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
@@ -27,6 +27,14 @@ pub(super) fn intrinsics(field: &str, record: &IntrinsicsRecord) -> Result<Intri
         fy_px: number("fy", record.fy, &check::FOCAL_PX)?,
         cx_px: number("cx", record.cx, &check::POSITION_PX)?,
         cy_px: number("cy", record.cy, &check::POSITION_PX)?,
+    })
+}
+
+pub(super) fn distortion(record: &LensRecord) -> Result<Distortion, SessionError> {
+    let coefficient = |name: &str, value| at(&format!("{LENS}.{name}"), check::number(value, &COEFFICIENT));
+    Ok(Distortion {
+        k1: coefficient("k1", record.k1)?,
+        k2: coefficient("k2", record.k2.unwrap_or(0.0))?,
     })
 }
 
@@ -112,7 +120,7 @@ pub(super) fn plates(
     warnings: &mut Vec<SessionWarning>,
 ) -> Result<Vec<Plate>, SessionError> {
     at("backgrounds", check::at_most(records.len(), MAX_SCENE_PLATES))?;
-    let mut pictures: HashMap<&str, Arc<Image>> = HashMap::new();
+    let mut pictures: Vec<(&str, Option<Lens>, Arc<Image>)> = Vec::new();
     let mut plates = Vec::new();
     for (i, record) in records.iter().enumerate() {
         let field = format!("backgrounds[{i}]");
@@ -121,8 +129,10 @@ pub(super) fn plates(
             record.world_from_camera,
             (record.intrinsics.as_ref(), intrinsics),
         )?;
-        let image = match pictures.get(record.image.as_str()) {
-            Some(image) => Arc::clone(image),
+        let lens = store.lens(&camera.intrinsics)?;
+        let mut known = pictures.iter();
+        let image = match known.find(|known| (known.0, known.1) == (&record.image[..], lens)) {
+            Some((.., image)) => Arc::clone(image),
             None => {
                 let n_pixels = store.size.n_pixels() * (pictures.len() as u64 + 1);
                 if n_pixels > MAX_PLATE_PIXELS {
@@ -132,9 +142,9 @@ pub(super) fn plates(
                     return Err(in_index("backgrounds", error));
                 }
                 let field = format!("{field}.image");
-                let photo = store.photo(&record.image, &field)?;
+                let photo = store.photo(&record.image, &field, &camera.intrinsics)?;
                 warnings.extend(photo.warning(&record.image, &field));
-                pictures.insert(&record.image, Arc::clone(&photo.image));
+                pictures.push((&record.image, lens, Arc::clone(&photo.image)));
                 photo.image
             }
         };

@@ -8,6 +8,7 @@ use serde::Deserialize;
 #[cfg(feature = "schema")]
 use {
     super::rules::{Within, needs_of_its_kind},
+    crate::lens,
     crate::scene::{MAX_FACETS, MAX_FURTHER_PICTURES, MAX_SCENE_PLATES, check},
     schemars::JsonSchema,
 };
@@ -44,8 +45,10 @@ pub(super) struct CaptureRecord {
     #[serde(rename = "encoding")]
     _encoding: Encoding,
     /// Projection of every camera that has none of its own. A pinhole without distortion: the point (x, y, z) of camera
-    /// space is seen at u = cx + fx x / -z, v = cy - fy y / -z.
+    /// space is seen at u = cx + fx x / -z, v = cy - fy y / -z. Where a lens is given, it moves that place.
     pub(super) intrinsics: IntrinsicsRecord,
+    /// Distortion of all photographs, each about its own principal point; a pinhole where there is none.
+    pub(super) lens: Option<LensRecord>,
     /// The toy: its model, where it really stands and in which pose.
     pub(super) toy: ToyRecord,
     /// Planes that catch the shadow, in any order.
@@ -89,6 +92,19 @@ pub(super) struct IntrinsicsRecord {
     /// Principal point, pixels below the picture's top border.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::POSITION_PX)))]
     pub(super) cy: f64,
+}
+
+/// Radial distortion. With x = (u - cx) / fx, y = (v - cy) / fy and r2 = x x + y y, what a pinhole sees at (x, y) is in the
+/// photograph at (1 + k1 r2 + k2 r2 r2) (x, y).
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct LensRecord {
+    /// Coefficient of r2: below 0 a barrel, above it a cushion.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(lens::COEFFICIENT)))]
+    pub(super) k1: f64,
+    /// Coefficient of r2 r2; 0 where there is none.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(lens::COEFFICIENT)))]
+    pub(super) k2: Option<f64>,
 }
 
 #[derive(Deserialize)]
