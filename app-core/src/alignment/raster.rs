@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3, IVec2};
 
+use super::faces::Faces;
 use super::rectangle::{index_in, places};
 use crate::scene::Intrinsics;
 
 /// Samples of each pixel: 8 rows of 16.
 const N_SUB_ROWS: i32 = 8;
 const N_SUB_COLUMNS: i32 = 16;
-const PIXELS_A_WORD: i32 = 4;
 /// Where the samples of each sub-row lie within a column; together they are spread evenly.
 const SHIFTS: [f64; N_SUB_ROWS as usize] = [0.0625, 0.5625, 0.3125, 0.8125, 0.1875, 0.6875, 0.4375, 0.9375];
 
@@ -38,6 +38,12 @@ impl Coverage {
         depth.copied().unwrap_or(f32::INFINITY)
     }
 
+    /// First pixel of each row of the rectangle, and the column before which it ends.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (IVec2, i32)> + use<> {
+        let (origin, size) = (self.origin_px, self.size_px);
+        (0..size.y).map(move |row| (origin + IVec2::new(0, row), origin.x + size.x))
+    }
+
     fn index(&self, at: IVec2) -> Option<usize> {
         index_in(self.size_px, at - self.origin_px)
     }
@@ -50,8 +56,8 @@ impl Coverage {
 }
 
 /// Projects points in camera space: u, v in pixels, and depth in metres.
-pub(super) fn project(points: &[DVec3], k: &Intrinsics) -> Vec<DVec3> {
-    let projected = points.iter().map(|point| {
+pub(super) fn project(points: impl IntoIterator<Item = DVec3>, k: &Intrinsics) -> Vec<DVec3> {
+    let projected = points.into_iter().map(|point| {
         let depth_m = -point.z;
         DVec3::new(
             k.cx_px + k.fx_px * point.x / depth_m,
@@ -62,118 +68,182 @@ pub(super) fn project(points: &[DVec3], k: &Intrinsics) -> Vec<DVec3> {
     projected.collect()
 }
 
-/// Draws meshes on the processor; its buffer is reused.
+/// Draws meshes on the processor; its buffers are reused.
 #[derive(Debug, Default)]
 pub(super) struct Rasterizer {
-    /// One bit a sample, sub-rows one after the other.
-    bits: Vec<u64>,
-    n_words: usize,
+    /// Whether each triangle faces the eye, and one more that does not.
+    facing: Vec<bool>,
+    /// Where the outline crosses the sub-rows, and the end of each sub-row among them.
+    crossings: Vec<Crossing>,
+    ends: Vec<u32>,
+    sorted: Vec<u32>,
+    /// How many more samples each pixel of a row has than the one before it.
+    more: Vec<i32>,
+}
+
+/// Where an edge of the outline crosses a sub-row.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    line: u32,
+    /// Twice the first column of samples beyond it, and one more where the mesh ends there.
+    place: u32,
 }
 
 impl Rasterizer {
     /// Coverage by the union of the triangles that face the eye, of projected `corners`, in a picture of `size_px`.
     ///
-    /// Triangles that reach behind the camera are left out.
-    pub(super) fn coverage(&mut self, corners: &[DVec3], triangles: &[[u32; 3]], size_px: IVec2) -> Coverage {
-        self.draw(corners, triangles, size_px, false)
-    }
-
-    /// The same, with depths.
-    pub(super) fn with_depth(
-        &mut self,
-        corners: &[DVec3],
-        triangles: &[[u32; 3]],
-        size_px: IVec2,
-    ) -> Coverage {
-        self.draw(corners, triangles, size_px, true)
-    }
-
-    fn draw(
-        &mut self,
-        corners: &[DVec3],
-        triangles: &[[u32; 3]],
-        size_px: IVec2,
-        has_depth: bool,
-    ) -> Coverage {
+    /// Triangles that reach behind the camera are left out. Of all edges the outline alone is drawn, which is where a triangle that
+    /// faces the eye meets one that does not: how often the mesh lies over a sample is how often its outline goes round it.
+    pub(super) fn coverage(&mut self, corners: &[DVec3], faces: &Faces, size_px: IVec2) -> Coverage {
         let Some(mut out) = rectangle(corners, size_px) else {
             return Coverage::default();
         };
-        let n_pixels = (out.size_px.x * out.size_px.y) as usize;
-        out.values.resize(n_pixels, 0.0);
-        if has_depth {
-            out.depths_m.resize(n_pixels, f32::INFINITY);
-        }
-        self.n_words = (out.size_px.x as usize).div_ceil(PIXELS_A_WORD as usize);
-        self.bits.clear();
-        self.bits
-            .resize(self.n_words * (out.size_px.y * N_SUB_ROWS) as usize, 0);
-        let origin = out.origin_px.as_dvec2().extend(0.0);
-        for triangle in triangles {
-            let corners = triangle.map(|corner| corners[corner as usize] - origin);
-            let [a, b, c] = corners;
-            // Rows go down: triangles that face the eye turn to the left.
-            let is_facing = (b - a).truncate().perp_dot((c - a).truncate()) < 0.0;
-            if !is_facing || a.z <= 0.0 || b.z <= 0.0 || c.z <= 0.0 {
-                continue;
-            }
-            self.set(corners.map(DVec3::truncate), out.size_px);
-            if has_depth {
-                add_depths(corners, &mut out);
-            }
-        }
-        self.count(&mut out);
+        self.draw(corners, faces, &mut out);
         out
     }
 
-    /// Sets the bits within a triangle.
-    fn set(&mut self, mut corners: [DVec2; 3], size_px: IVec2) {
-        corners.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
-        let [a, b, c] = corners;
+    /// The same, with depths.
+    pub(super) fn with_depth(&mut self, corners: &[DVec3], faces: &Faces, size_px: IVec2) -> Coverage {
+        let mut out = self.coverage(corners, faces, size_px);
+        out.depths_m.resize(out.values.len(), f32::INFINITY);
+        let origin = out.origin_px.as_dvec2().extend(0.0);
+        if out.values.is_empty() {
+            return out;
+        }
+        let facing = faces.triangles.iter().zip(&self.facing);
+        for (triangle, _) in facing.filter(|(_, is_facing)| **is_facing) {
+            add_depths(triangle.map(|corner| corners[corner as usize] - origin), &mut out);
+        }
+        out
+    }
+
+    fn draw(&mut self, corners: &[DVec3], faces: &Faces, out: &mut Coverage) {
+        self.facing.clear();
+        self.facing.extend(
+            faces
+                .triangles
+                .iter()
+                .map(|triangle| is_facing(triangle.map(|corner| corners[corner as usize]))),
+        );
+        self.facing.push(false);
+        self.crossings.clear();
+        let origin = out.origin_px.as_dvec2();
+        for edge in &faces.edges {
+            let [is_left, is_right] = edge.sides.map(|side| self.facing[side as usize]);
+            if is_left == is_right {
+                continue;
+            }
+            let ends = edge
+                .corners
+                .map(|corner| corners[corner as usize].truncate() - origin);
+            self.cross(ends, is_left, out.size_px);
+        }
+        self.sort((out.size_px.y * N_SUB_ROWS) as usize);
+        self.fill(out);
+    }
+
+    /// Adds an edge; `is_left`: whether the triangle that has its ends in this order is the one that faces the eye.
+    fn cross(&mut self, [from, to]: [DVec2; 2], is_left: bool, size_px: IVec2) {
+        let is_down = from.y < to.y;
+        let [a, b] = if is_down { [from, to] } else { [to, from] };
         let rows = f64::from(N_SUB_ROWS);
         let n_lines = f64::from(size_px.y * N_SUB_ROWS);
         let n_columns = f64::from(size_px.x * N_SUB_COLUMNS);
-        let [first, end] = [a.y, c.y].map(|y| round_up((y * rows - 0.5).min(n_lines)));
-        let slope = |from: DVec2, to: DVec2| (to.x - from.x) / (to.y - from.y);
-        let (long, upper, lower) = (slope(a, c), slope(a, b), slope(b, c));
+        let [first, end] = [a.y, b.y].map(|y| round_up((y * rows - 0.5).min(n_lines)));
+        if first >= end {
+            return;
+        }
+        let slope = (b.x - a.x) / (b.y - a.y);
+        // Triangles that face the eye turn to the left, and rows go down: edges that go down have them on their right.
+        let is_end = u32::from(is_down != is_left);
         for line in first..end {
             #[allow(clippy::cast_precision_loss, reason = "lines of a picture")]
             let y = (line as f64 + 0.5) / rows;
-            let one = a.x + (y - a.y) * long;
-            let other = if y < b.y {
-                a.x + (y - a.y) * upper
-            } else {
-                b.x + (y - b.y) * lower
-            };
+            let x = a.x + (y - a.y) * slope;
             // Sub-rows have their samples in different places within a column: upright edges are as exact as slanted ones.
             let shift = SHIFTS[line % SHIFTS.len()];
-            let column = |x: f64| round_up((x * f64::from(N_SUB_COLUMNS) - shift).min(n_columns));
-            let words = &mut self.bits[line * self.n_words..][..self.n_words];
-            set_run(words, column(one.min(other)), column(one.max(other)));
+            let column = round_up((x * f64::from(N_SUB_COLUMNS) - shift).min(n_columns));
+            #[allow(clippy::cast_possible_truncation, reason = "samples of a picture's side")]
+            self.crossings.push(Crossing {
+                line: line as u32,
+                place: 2 * column as u32 + is_end,
+            });
         }
     }
 
-    /// Turns bits into coverage.
-    fn count(&self, out: &mut Coverage) {
-        const OF_SAMPLE: f32 = 1.0 / (N_SUB_ROWS * N_SUB_COLUMNS) as f32;
-        let rows = out.values.chunks_exact_mut(out.size_px.x as usize);
-        let bits = self.bits.chunks_exact(self.n_words * N_SUB_ROWS as usize);
-        for (row, bits) in rows.zip(bits) {
-            for sub_row in bits.chunks_exact(self.n_words) {
-                for (pixels, word) in row.chunks_mut(PIXELS_A_WORD as usize).zip(sub_row) {
-                    if *word == 0 {
-                        continue;
-                    }
-                    let mut rest = *word;
-                    for pixel in pixels {
-                        #[allow(clippy::cast_precision_loss, reason = "at most 16")]
-                        let n_set = (rest & 0xffff).count_ones() as f32;
-                        *pixel += OF_SAMPLE * n_set;
-                        rest >>= N_SUB_COLUMNS;
-                    }
-                }
-            }
+    /// Sorts the crossings by line and by place.
+    fn sort(&mut self, n_lines: usize) {
+        self.ends.clear();
+        self.ends.resize(n_lines, 0);
+        for crossing in &self.crossings {
+            self.ends[crossing.line as usize] += 1;
+        }
+        let mut end = 0;
+        for count in &mut self.ends {
+            let first = end;
+            end += *count;
+            *count = first;
+        }
+        self.sorted.clear();
+        self.sorted.resize(self.crossings.len(), 0);
+        for crossing in &self.crossings {
+            let place = &mut self.ends[crossing.line as usize];
+            self.sorted[*place as usize] = crossing.place;
+            *place += 1;
+        }
+        let mut first = 0;
+        for end in &self.ends {
+            self.sorted[first..*end as usize].sort_unstable();
+            first = *end as usize;
         }
     }
+
+    /// Turns runs of samples into coverage.
+    fn fill(&mut self, out: &mut Coverage) {
+        const OF_SAMPLE: f32 = 1.0 / (N_SUB_ROWS * N_SUB_COLUMNS) as f32;
+        let width = out.size_px.x as usize;
+        let mut first = 0;
+        for ends in self.ends.chunks_exact(N_SUB_ROWS as usize) {
+            self.more.clear();
+            self.more.resize(width + 2, 0);
+            for end in ends {
+                let mut depth = 0;
+                for place in &self.sorted[first..*end as usize] {
+                    let (column, is_end) = (place / 2, place % 2 == 1);
+                    let before = depth;
+                    depth += if is_end { -1 } else { 1 };
+                    if before == 0 || depth == 0 {
+                        add_run(&mut self.more, column, if is_end { -1 } else { 1 });
+                    }
+                }
+                first = *end as usize;
+            }
+            let mut n_samples = 0;
+            out.values.extend(self.more[..width].iter().map(|more| {
+                n_samples += more;
+                #[allow(clippy::cast_precision_loss, reason = "at most 128")]
+                let covered = OF_SAMPLE * n_samples as f32;
+                covered
+            }));
+        }
+    }
+}
+
+/// Whether a projected triangle faces the eye and lies before it.
+fn is_facing([a, b, c]: [DVec3; 3]) -> bool {
+    // Rows go down: triangles that face the eye turn to the left.
+    let turns_left = (b - a).truncate().perp_dot((c - a).truncate()) < 0.0;
+    // Every second one does: no branch that would be guessed wrong as often.
+    turns_left & (a.z.min(b.z).min(c.z) > 0.0)
+}
+
+/// All samples of a sub-row from a column on: one more of each, or one less.
+fn add_run(more: &mut [i32], column: u32, sign: i32) {
+    const OF_PIXEL: u32 = N_SUB_COLUMNS as u32;
+    let pixel = (column / OF_PIXEL) as usize;
+    let passed = (column % OF_PIXEL).cast_signed();
+    more[pixel] += sign * (N_SUB_COLUMNS - passed);
+    more[pixel + 1] += sign * passed;
 }
 
 /// An empty coverage of the pixels that a mesh can reach; none where it is out of the picture.
@@ -202,23 +272,6 @@ fn rectangle(corners: &[DVec3], size_px: IVec2) -> Option<Coverage> {
 fn round_up(value: f64) -> usize {
     let down = value as usize;
     down + usize::from((down as f64) < value)
-}
-
-/// Sets the bits from `first` to before `end`.
-fn set_run(words: &mut [u64], first: usize, end: usize) {
-    if first >= end {
-        return;
-    }
-    let (first_word, last_word) = (first / 64, (end - 1) / 64);
-    let from = u64::MAX << (first % 64);
-    let to = u64::MAX >> (63 - (end - 1) % 64);
-    if first_word == last_word {
-        words[first_word] |= from & to;
-        return;
-    }
-    words[first_word] |= from;
-    words[first_word + 1..last_word].fill(u64::MAX);
-    words[last_word] |= to;
 }
 
 /// Keeps the nearest depth at each pixel's centre: 1 / depth is affine over the picture.

@@ -1,9 +1,10 @@
 //! The physical toy as a shape in camera space.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DVec3};
 
+use super::faces::Faces;
 use crate::geometry::bounds::Bounds;
 use crate::scene::Scene;
 use crate::toy::{PosedMesh, ToyError};
@@ -13,8 +14,8 @@ use crate::toy::{PosedMesh, ToyError};
 pub(super) struct Shape {
     /// In camera space.
     pub(super) points: Vec<DVec3>,
-    /// Corners among the points, counter-clockwise seen from outside.
-    pub(super) triangles: Vec<[u32; 3]>,
+    /// Corners are among the points.
+    pub(super) faces: Faces,
     /// Middle of the box around it.
     pub(super) centre: DVec3,
     /// Half of that box's diagonal, in metres.
@@ -44,9 +45,11 @@ impl Shape {
         let bounds = Bounds::around(points.iter().copied());
         let triangles = corners.as_chunks().0.iter();
         Ok(Self {
-            triangles: triangles
-                .map(|corners: &[u32; 3]| corners.map(|vertex| places[vertex as usize]))
-                .collect(),
+            faces: Faces::new(
+                triangles
+                    .map(|corners: &[u32; 3]| corners.map(|vertex| places[vertex as usize]))
+                    .collect(),
+            ),
             centre: bounds.centre(),
             radius_m: 0.5 * (bounds.max - bounds.min).length(),
             points,
@@ -77,12 +80,27 @@ impl Shape {
             })
             .collect();
         let merged = self
+            .faces
             .triangles
             .iter()
             .map(|corners| corners.map(|corner| places[corner as usize]));
+        // Many come to lie on one another.
+        let mut known = BTreeSet::new();
+        let merged = merged.filter(|[a, b, c]| a != b && b != c && c != a);
+        let merged = merged.filter(|[a, b, c]| {
+            let least = *a.min(b).min(c);
+            known.insert(if least == *a {
+                [*a, *b, *c]
+            } else if least == *b {
+                [*b, *c, *a]
+            } else {
+                [*c, *a, *b]
+            })
+        });
+        let faces = Faces::new(merged.collect());
         Self {
             points: sums.into_iter().map(|(sum, n)| sum / n).collect(),
-            triangles: merged.filter(|[a, b, c]| a != b && b != c && c != a).collect(),
+            faces,
             ..*self
         }
     }

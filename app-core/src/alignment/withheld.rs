@@ -36,8 +36,8 @@ pub(super) fn shadows(
     let mut raster = Rasterizer::default();
     for light in lights {
         for flat in flat_shadows(light, &shape, &receivers, &camera_from_world, &points) {
-            let corners = project(&flat, &input.camera.intrinsics);
-            let coverage = raster.coverage(&corners, &shape.triangles, size_px);
+            let corners = project(flat, &input.camera.intrinsics);
+            let coverage = raster.coverage(&corners, &shape.faces, size_px);
             for at in coverage.pixels().filter(|at| coverage.at(*at) > 0.0) {
                 mask.mark(at);
             }

@@ -22,6 +22,8 @@ pub(super) type Ambient = [f32; N_AMBIENT];
 pub(super) struct Caster<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
+    /// The shape's points in the plane space of each receiver.
+    in_planes: Vec<Vec<DVec3>>,
     intrinsics: Intrinsics,
     size_px: IVec2,
 }
@@ -36,6 +38,7 @@ impl<'a> Caster<'a> {
         Self {
             shape,
             receivers,
+            in_planes: in_planes(shape, receivers),
             intrinsics,
             size_px,
         }
@@ -49,6 +52,7 @@ impl<'a> Caster<'a> {
         Caster {
             shape,
             receivers: self.receivers,
+            in_planes: in_planes(shape, self.receivers),
             intrinsics: self.intrinsics,
             size_px: self.size_px,
         }
@@ -145,13 +149,18 @@ impl<'a> Caster<'a> {
             let coverage = self.hard(raster, receiver, point);
             #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
             let weights = weights.map(|weight| (weight / total) as f32);
-            let [first, end] = [coverage.origin_px.y, coverage.origin_px.y + coverage.size_px.y]
-                .map(|row| pixels.partition_point(|pixel| pixel.at.y < row));
-            let rows = taken[first..end].iter_mut().zip(&pixels[first..end]);
-            for (taken, pixel) in rows.filter(|(_, pixel)| pixel.receiver == receiver) {
-                let covered = coverage.at(pixel.at);
-                for (taken, weight) in taken.iter_mut().zip(weights) {
-                    *taken += weight * covered;
+            let mut first = pixels.partition_point(|pixel| pixel.at.y < coverage.origin_px.y);
+            for (at, end) in coverage.rows() {
+                // No more than two rows on.
+                let next = &pixels[first..pixels.len().min(first + 2 * self.size_px.x as usize)];
+                first += next.partition_point(|pixel| (pixel.at.y, pixel.at.x) < (at.y, at.x));
+                let row = taken[first..].iter_mut().zip(&pixels[first..]);
+                let row = row.take_while(|(_, pixel)| pixel.at.y == at.y && pixel.at.x < end);
+                for (taken, pixel) in row.filter(|(_, pixel)| pixel.receiver == receiver) {
+                    let covered = coverage.at(pixel.at);
+                    for (taken, weight) in taken.iter_mut().zip(weights) {
+                        *taken += weight * covered;
+                    }
                 }
             }
         }
@@ -159,20 +168,34 @@ impl<'a> Caster<'a> {
 
     /// The hard shadow from one point.
     fn hard(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
-        let flat = flattened(self.shape, &self.receivers[receiver].plane_from_camera, light);
-        let corners = project(&flat, &self.intrinsics);
-        raster.coverage(&corners, &self.shape.triangles, self.size_px)
+        let camera_from_plane = self.receivers[receiver].plane_from_camera.inverse();
+        let in_plane = self.in_planes[receiver].iter();
+        let flat = in_plane.map(|point| on_plane(*point, light, &camera_from_plane));
+        let corners = project(flat, &self.intrinsics);
+        raster.coverage(&corners, &self.shape.faces, self.size_px)
     }
+}
+
+fn in_planes(shape: &Shape, receivers: &[SeenReceiver]) -> Vec<Vec<DVec3>> {
+    let receivers = receivers.iter();
+    receivers
+        .map(|receiver| in_plane(shape, &receiver.plane_from_camera))
+        .collect()
+}
+
+fn in_plane(shape: &Shape, plane_from_camera: &DMat4) -> Vec<DVec3> {
+    let points = shape.points.iter();
+    points
+        .map(|point| plane_from_camera.transform_point3(*point))
+        .collect()
 }
 
 /// A shape's points on a receiver, along rays from a point of a light, homogeneous in plane space; in camera space.
 pub(super) fn flattened(shape: &Shape, plane_from_camera: &DMat4, light: DVec4) -> Vec<DVec3> {
     let camera_from_plane = plane_from_camera.inverse();
-    let in_plane = shape
-        .points
-        .iter()
-        .map(|point| plane_from_camera.transform_point3(*point));
+    let in_plane = in_plane(shape, plane_from_camera);
     in_plane
+        .into_iter()
         .map(|point| on_plane(point, light, &camera_from_plane))
         .collect()
 }

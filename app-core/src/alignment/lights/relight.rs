@@ -43,8 +43,8 @@ impl Relight {
             frame: over(&level.frame, level.plate.as_ref()?),
             plate: None,
         };
-        let corners = project(&shape.points, &level.intrinsics);
-        let coverage = Rasterizer::default().coverage(&corners, &shape.triangles, level.frame.size_px);
+        let corners = project(shape.points.iter().copied(), &level.intrinsics);
+        let coverage = Rasterizer::default().coverage(&corners, &shape.faces, level.frame.size_px);
         Some(Self {
             ratio: Backdrop::of(
                 &ratio,

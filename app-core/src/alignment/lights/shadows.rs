@@ -80,8 +80,8 @@ impl<'a> Shadows<'a> {
         rect: Option<[IVec2; 2]>,
     ) -> Self {
         let size_px = level.frame.size_px;
-        let corners = project(&shape.points, &level.intrinsics);
-        let coverage = raster.coverage(&corners, &shape.triangles, size_px);
+        let corners = project(shape.points.iter().copied(), &level.intrinsics);
+        let coverage = raster.coverage(&corners, &shape.faces, size_px);
         let caster = Caster::new(shape, receivers, level.intrinsics, size_px);
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());

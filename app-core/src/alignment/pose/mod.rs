@@ -196,7 +196,7 @@ fn outline(
     k: &Intrinsics,
     size_px: IVec2,
 ) -> (Coverage, Vec<Element>) {
-    let coverage = raster.with_depth(&project(points, k), &shape.triangles, size_px);
+    let coverage = raster.with_depth(&project(points.iter().copied(), k), &shape.faces, size_px);
     let elements = contour(&coverage, size_px);
     (coverage, elements)
 }
