@@ -92,8 +92,8 @@ fn learned(core: &mut Core, input: &FrameInput) -> Learned {
     // The light on one receiver and on the toy is fitted; of a known scene, the intensities as well.
     let fits = [
         2 * plan.n_fit_steps,
-        3 * plan.n_refine_steps,
-        plan.n_refine_steps,
+        2 * plan.n_refine_steps + plan.n_intensity_steps,
+        plan.n_intensity_steps,
         0,
     ];
     let of_fits = [Learned::Scene, Learned::View, Learned::Picture, Learned::Nothing];

@@ -134,7 +134,7 @@ fn fit_intensities(plan: &Plan) -> Step {
     Step::Fit(Task {
         subject: Subject::Intensities,
         receiver: 0,
-        n_steps: plan.n_refine_steps,
+        n_steps: plan.n_intensity_steps,
         is_refinement: false,
     })
 }
