@@ -141,8 +141,7 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
     if given.is_far() {
         motion = search.coarse(motion, None);
     }
-    let converged = search.fine(motion, &FINE)?;
-    search.found(given, converged)
+    search.freed(given, motion)
 }
 
 /// How well a pose is known that another is looked for from.
@@ -277,12 +276,13 @@ impl<'a> Search<'a> {
         last
     }
 
-    fn found(&mut self, given: Fit, converged: Converged) -> Option<Found> {
+    /// With all six freedoms, in all bands.
+    fn freed(&mut self, given: Fit, motion: Motion) -> Option<Found> {
         let Converged {
             motion,
             information,
             mean_weight,
-        } = converged;
+        } = self.fine(motion, &FINE)?;
         let found = self.fit(&motion)?;
         Some(Found {
             motion: motion.matrix(),

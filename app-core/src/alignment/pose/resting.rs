@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::motion::{Held, Motion};
-use super::{Converged, FINE, Found, Search};
+use super::{Found, Search};
 use crate::alignment::picture::Pyramid;
 use crate::alignment::shape::Shape;
 
@@ -35,10 +35,8 @@ pub(in crate::alignment) fn find_resting(shape: &Shape, pyramid: &Pyramid, norma
         }
     }
     starts.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let freed = starts.iter().take(N_FREED).filter_map(|(_, motion)| {
-        let converged: Converged = search.fine(*motion, &FINE)?;
-        search.found(given, converged)
-    });
+    let freed = starts.iter().take(N_FREED);
+    let freed = freed.filter_map(|(_, motion)| search.freed(given, *motion));
     let outline_px = |found: &Found| found.found.outline_px();
     freed.min_by(|a, b| outline_px(a).total_cmp(&outline_px(b)))
 }
