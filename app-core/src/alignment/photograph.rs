@@ -23,6 +23,8 @@ use crate::toy::ToyError;
 const POSE_GAIN: f64 = 0.5;
 /// A pose whose outline stays farther from the picture's, in pixels, was not found.
 pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
+/// A toy rests on a plane from which its lowest point is no farther, over its radius.
+const RESTING: f64 = 0.05;
 /// Found lights are applied where the loss falls to less than this part of the given lights'.
 const LIGHT_GAIN: f64 = 0.96;
 /// And where one of them turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
@@ -76,7 +78,26 @@ impl Photograph {
                 return Ok(found);
             }
         }
-        self.pose_from(scene, input, &given)
+        let found = self.pose_from(scene, input, &given)?;
+        if held.is_some() || found.is_seen() {
+            return Ok(found);
+        }
+        // The first view: a person may have put it there.
+        let resting = self.pose_resting(scene, input)?;
+        Ok(resting.filter(FoundPose::is_seen).unwrap_or(found))
+    }
+
+    /// Where a toy is that rests on a receiver, as it does where it is given; none where it does not.
+    fn pose_resting(&self, scene: &Scene, input: &FrameInput) -> Result<Option<FoundPose>, ToyError> {
+        let start = input.world_from_object;
+        let shape = self.shape(scene, &start)?;
+        let mut receivers = self.receivers.iter();
+        let normal =
+            receivers.find_map(|receiver| receiver.normal_under(&shape.points, RESTING * shape.radius_m));
+        Ok(normal.map(|normal| {
+            let found = pose::find_resting(&shape, &self.pyramid, normal);
+            self.judged(input, (&start, &shape), found)
+        }))
     }
 
     /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
@@ -122,11 +143,22 @@ impl Photograph {
     fn pose_from(&self, scene: &Scene, input: &FrameInput, start: &DMat4) -> Result<FoundPose, ToyError> {
         let camera_from_object = self.camera_from_object(start);
         let shape = Shape::new(scene, &camera_from_object)?;
-        let Some(found) = pose::find(&shape, &self.pyramid) else {
-            return Ok(FoundPose {
+        Ok(self.judged(input, (start, &shape), pose::find(&shape, &self.pyramid)))
+    }
+
+    /// A pose that was found from a start, or the start where it is no better.
+    fn judged(
+        &self,
+        input: &FrameInput,
+        (start, shape): (&DMat4, &Shape),
+        found: Option<pose::Found>,
+    ) -> FoundPose {
+        let camera_from_object = self.camera_from_object(start);
+        let Some(found) = found else {
+            return FoundPose {
                 world_from_object: *start,
                 report: None,
-            });
+            };
         };
         let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
         let is_better = found.is_better(POSE_GAIN)
@@ -136,7 +168,7 @@ impl Photograph {
         let middle = camera_from_object.inverse().transform_point3(shape.centre);
         let (moved_m, turned_rad) = apart(&input.world_from_object, &corrected, middle);
         let picture_px = self.pyramid.picture_px();
-        Ok(FoundPose {
+        FoundPose {
             world_from_object,
             report: Some(PoseAlignment {
                 is_applied: world_from_object != input.world_from_object,
@@ -147,7 +179,7 @@ impl Photograph {
                 outline_px: picture_px * found.found.outline_px(),
                 deviation: found.deviation,
             }),
-        })
+        }
     }
 
     /// Where the lights are, by the toy in its place; none where too little of their shadows is seen.

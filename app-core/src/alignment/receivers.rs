@@ -35,6 +35,16 @@ impl SeenReceiver {
         }
     }
 
+    /// Its normal in camera space, where the lowest of points is within a distance of its plane; rounded to 32 bits, as poses are.
+    pub(super) fn normal_under(&self, points: &[DVec3], most_m: f64) -> Option<DVec3> {
+        let heights_m = points
+            .iter()
+            .map(|point| self.plane_from_camera.transform_point3(*point).y);
+        let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
+        let normal = self.plane_from_camera.inverse().y_axis.truncate().as_vec3();
+        (lowest_m.abs() <= most_m).then(|| normal.as_dvec3().normalize())
+    }
+
     /// Depth in metres at which a ray of depth 1 from the camera meets its front; none where it does not.
     fn depth_m(&self, ray: DVec3) -> Option<f64> {
         let eye = self.plane_from_camera.w_axis.truncate();

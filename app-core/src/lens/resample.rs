@@ -7,6 +7,8 @@ use crate::scene::Image;
 
 /// Pixels a side of what is summed for one.
 const SIDE: usize = 4;
+/// Change of light, over the larger of both values, from which another surface may be seen.
+const ANOTHER_SURFACE: f32 = 0.25;
 
 /// Where each pixel of a picture comes from, rows from the top.
 fn places(image: &Image) -> impl Iterator<Item = DVec2> {
@@ -40,20 +42,28 @@ pub(super) fn with_changes(
             continue;
         }
         let [was, is] = [before, after].map(|image| around.sum(image, &linear));
+        let kept = kept(was, is);
         for channel in 0..3 {
-            let seen = linear[usize::from(texel[channel])];
-            texel[channel] = code_of_linear(changed(seen, was[channel], is[channel]));
+            let lost = linear[usize::from(texel[channel])] - was[channel];
+            texel[channel] = code_of_linear(is[channel] + kept * lost);
         }
     }
     made
 }
 
-/// A value of the photograph whose surroundings were changed.
-///
-/// What resampling loses, the difference between the photograph and its resampled copy, is of the surface that was seen there: it is kept
-/// in the part to which that is still seen, as in a shadow.
-fn changed(seen: f32, was: f32, is: f32) -> f32 {
-    is + (seen - was)
+/// How much of what resampling loses is kept, by how much the light of its channels changed: all where nothing changed, and none where
+/// another surface may be seen, on which it would draw the outline of the one before.
+fn kept(was: [f32; 3], is: [f32; 3]) -> f32 {
+    let change = |channel: usize| {
+        let most = was[channel].max(is[channel]);
+        if most > 0.0 {
+            (is[channel] - was[channel]).abs() / most
+        } else {
+            0.0
+        }
+    };
+    let most = change(0).max(change(1)).max(change(2));
+    (1.0 - most / ANOTHER_SURFACE).max(0.0)
 }
 
 fn code_of_linear(linear: f32) -> u8 {

@@ -9,6 +9,7 @@ mod lines;
 mod matte;
 mod motion;
 mod odds;
+mod resting;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -19,8 +20,10 @@ use super::shape::Shape;
 use crate::scene::Intrinsics;
 use contour::{Element, contour};
 use matte::Band;
-use motion::{Matrix6, Measured, Motion, Vector6, solve};
+use motion::{Held, Matrix6, Measured, Motion, Vector6, solve};
 use odds::Odds;
+
+pub(super) use resting::find_resting;
 
 /// Rounds along lines: the level, and how far they reach in its pixels.
 const COARSE: [(usize, i32); 11] = [
@@ -136,20 +139,9 @@ pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
     let given = search.fit(&start)?;
     let mut motion = start;
     if given.is_far() {
-        motion = search.coarse(motion);
+        motion = search.coarse(motion, None);
     }
-    let Converged {
-        motion,
-        information,
-        mean_weight,
-    } = search.fine(motion, &FINE)?;
-    let found = search.fit(&motion)?;
-    Some(Found {
-        motion: motion.matrix(),
-        given,
-        deviation: deviation(&information, mean_weight * found.loss_px2, shape.radius_m),
-        found,
-    })
+    search.freed(given, motion)
 }
 
 /// How well a pose is known that another is looked for from.
@@ -169,7 +161,7 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
         Start::Near => &FINE[N_WIDE_BANDS..],
         Start::Given => {
             if search.fit(&motion)?.is_far() {
-                motion = search.coarse(motion);
+                motion = search.coarse(motion, None);
             }
             &FINE[..]
         }
@@ -244,13 +236,19 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn coarse(&mut self, mut motion: Motion) -> Motion {
+    /// Freely, or held to a plane.
+    fn coarse(&mut self, mut motion: Motion, held: Option<&Held>) -> Motion {
         for (level, reach_px) in COARSE {
             let level = self.pyramid.level(level);
             let (coverage, elements) = self.outline(&motion, level);
             let odds = Odds::learn(level, &coverage, LEARNED_AROUND * reach_px);
             let measured = lines::measure(&elements, &coverage, &odds, reach_px);
-            if let Some((step, _)) = solve(&measured, &level.intrinsics, &motion, &self.damping) {
+            let k = &level.intrinsics;
+            let step = match held {
+                Some(held) => held.solve(&measured, k, &motion, &self.damping),
+                None => solve(&measured, k, &motion, &self.damping).map(|(step, _)| step),
+            };
+            if let Some(step) = step {
                 motion = motion.then(&step);
             }
         }
@@ -276,6 +274,22 @@ impl<'a> Search<'a> {
             }
         }
         last
+    }
+
+    /// With all six freedoms, in all bands.
+    fn freed(&mut self, given: Fit, motion: Motion) -> Option<Found> {
+        let Converged {
+            motion,
+            information,
+            mean_weight,
+        } = self.fine(motion, &FINE)?;
+        let found = self.fit(&motion)?;
+        Some(Found {
+            motion: motion.matrix(),
+            given,
+            deviation: deviation(&information, mean_weight * found.loss_px2, self.shape.radius_m),
+            found,
+        })
     }
 }
 

@@ -102,6 +102,17 @@ pub(super) fn solve(
     motion: &Motion,
     damping: &Matrix6,
 ) -> Option<(Vector6, Matrix6)> {
+    let (information, gradient) = normal_equations(measured, k, motion, damping);
+    let factor = information.cholesky()?;
+    (!measured.is_empty()).then(|| (factor.solve(&gradient), information))
+}
+
+fn normal_equations(
+    measured: &[Measured],
+    k: &Intrinsics,
+    motion: &Motion,
+    damping: &Matrix6,
+) -> (Matrix6, Vector6) {
     let mut information = *damping;
     let mut gradient = Vector6::zeros();
     for one in measured {
@@ -110,6 +121,44 @@ pub(super) fn solve(
         information += weight * row * row.transpose();
         gradient += weight * one.offset_px * row;
     }
-    let factor = information.cholesky()?;
-    (!measured.is_empty()).then(|| (factor.solve(&gradient), information))
+    (information, gradient)
+}
+
+/// Motions that keep a toy upright on its plane: a turn about the plane's normal and shifts in two directions of it.
+pub(super) struct Held {
+    normal: DVec3,
+    freedoms: SMatrix<f64, 6, 3>,
+}
+
+impl Held {
+    /// By the plane's unit normal in camera space.
+    pub(super) fn to_plane(normal: DVec3) -> Self {
+        let (a, b) = normal.any_orthonormal_pair();
+        let turn = |axis: DVec3| Vector6::new(axis.x, axis.y, axis.z, 0.0, 0.0, 0.0);
+        let shift = |along: DVec3| Vector6::new(0.0, 0.0, 0.0, along.x, along.y, along.z);
+        Self {
+            normal,
+            freedoms: SMatrix::from_columns(&[turn(normal), shift(a), shift(b)]),
+        }
+    }
+
+    /// A turn about the normal.
+    pub(super) fn turn(&self, angle_rad: f64, radius_m: f64) -> Vector6 {
+        let turn = angle_rad * radius_m * self.normal;
+        Vector6::new(turn.x, turn.y, turn.z, 0.0, 0.0, 0.0)
+    }
+
+    /// As [`solve`] with these freedoms alone.
+    pub(super) fn solve(
+        &self,
+        measured: &[Measured],
+        k: &Intrinsics,
+        motion: &Motion,
+        damping: &Matrix6,
+    ) -> Option<Vector6> {
+        let (information, gradient) = normal_equations(measured, k, motion, damping);
+        let factor = (self.freedoms.transpose() * information * self.freedoms).cholesky()?;
+        let step = self.freedoms * factor.solve(&(self.freedoms.transpose() * gradient));
+        (!measured.is_empty()).then_some(step)
+    }
 }
