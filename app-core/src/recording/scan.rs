@@ -10,7 +10,8 @@ use super::error::{Damage, Loss, RecordingError};
 use super::found::{Found, Span};
 use super::source::Source;
 use super::wire::{
-    ATTACHMENT, CHUNK, DATA_END, FIRST_PRIVATE, FOOTER, HEAD_BYTES, HEADER, MAGIC, MESSAGE, Rest, parse_head,
+    ATTACHMENT, CHUNK, DATA_END, FIRST_PRIVATE, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE, Rest,
+    parse_head,
 };
 
 /// Bytes that are read at once where nothing larger is wanted.
@@ -31,6 +32,7 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
         source,
         n_bytes: source.n_bytes(),
         at: 0,
+        trusted: 0,
         trials_left: source.n_bytes().saturating_mul(MAX_TRIALS),
         has_footer: false,
         buffer: Vec::new(),
@@ -44,6 +46,8 @@ struct Scan<'a> {
     source: &'a dyn Source,
     n_bytes: u64,
     at: u64,
+    /// What is before was vouched for, or looked at for what can be. What follows up to `at` is indices, as it seems.
+    trusted: u64,
     /// Bytes.
     trials_left: u64,
     has_footer: bool,
@@ -97,11 +101,12 @@ impl Scan<'_> {
                 Err(Bad::Damage(damage)) => self.skip_damage(damage)?,
             }
         };
-        let is_told = matches!(
-            self.found.losses.last(),
-            Some(Loss::Cut { .. } | Loss::Skipped { .. })
-        );
-        if !is_finished && !(is_told && self.at < self.n_bytes) {
+        let is_told = match self.found.losses.last() {
+            Some(Loss::Cut { .. }) => true,
+            Some(Loss::Skipped { to, .. }) => *to == self.n_bytes,
+            _ => false,
+        };
+        if !is_finished && !is_told {
             self.lose(Loss::Unfinished { at: self.n_bytes });
         }
         Ok(())
@@ -116,7 +121,6 @@ impl Scan<'_> {
     /// Up to `n_bytes` bytes, fewer where the file ends.
     fn head_bytes(&self, at: u64, n_bytes: u64) -> Result<Vec<u8>, RecordingError> {
         let n_bytes = n_bytes.min(self.n_bytes.saturating_sub(at)).min(MAX_CHUNK_BYTES);
-        #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
         let mut bytes = vec![0; n_bytes as usize];
         self.source
             .read_at(at, &mut bytes)
@@ -126,7 +130,7 @@ impl Scan<'_> {
 
     /// Reads the record at the place of the scan, and returns where it ends.
     fn record(&mut self) -> Result<u64, Bad> {
-        let mut head = [0; HEAD_BYTES as usize];
+        let mut head = [0; HEAD_LEN];
         self.source.read_at(self.at, &mut head)?;
         let (opcode, n_bytes) = parse_head(head);
         let body_at = self.at + HEAD_BYTES;
@@ -135,8 +139,14 @@ impl Scan<'_> {
             .filter(|end| *end <= self.n_bytes)
             .ok_or(Damage::Length)?;
         match opcode {
-            CHUNK => self.chunk(body_at, n_bytes)?,
-            ATTACHMENT => self.file(body_at, n_bytes)?,
+            CHUNK => {
+                self.chunk(body_at, n_bytes)?;
+                self.trusted = end;
+            }
+            ATTACHMENT => {
+                self.file(body_at, n_bytes)?;
+                self.trusted = end;
+            }
             MESSAGE => return Err(Damage::Unguarded.into()),
             FOOTER => self.has_footer = true,
             // Announcements of the summary, indices and metadata tell nothing that chunks do not.
@@ -236,7 +246,7 @@ impl Scan<'_> {
             hasher.update(&window);
             at += window.len() as u64;
         }
-        let mut checksum = [0; CHECKSUM_BYTES as usize];
+        let mut checksum = [0; size_of::<u32>()];
         self.source.read_at(end, &mut checksum)?;
         let checksum = u32::from_le_bytes(checksum);
         if checksum != 0 && checksum != hasher.finalize() {
@@ -245,16 +255,19 @@ impl Scan<'_> {
         Ok((path, span))
     }
 
-    /// Goes on with the next chunk or file whose checksum holds, behind the first byte of what is damaged.
+    /// Goes on with the next chunk or file whose checksum holds. What seemed to be indices before the damage may have been
+    /// something else, so that they are looked through again.
     fn skip_damage(&mut self, damage: Damage) -> Result<(), RecordingError> {
-        let from = self.at;
-        let mut at = from + 1;
+        let (from, damaged_at) = (self.trusted, self.at);
+        let mut at = from;
         while at + HEAD_BYTES <= self.n_bytes {
             let window = self.head_bytes(at, WINDOW_BYTES)?;
-            for (offset, head) in window.windows(HEAD_BYTES as usize).enumerate() {
+            for (offset, head) in window.windows(HEAD_LEN).enumerate() {
                 let Some(head) = head.first_chunk() else { continue };
                 if self.is_good(at + offset as u64, *head)? {
                     self.at = at + offset as u64;
+                    // Where its records are none of ours it is not found again.
+                    self.trusted = self.at + 1;
                     self.lose(Loss::Skipped {
                         from,
                         to: self.at,
@@ -267,7 +280,7 @@ impl Scan<'_> {
         }
         // Nothing follows: a record that reaches beyond the end is one that was cut.
         let loss = match damage {
-            Damage::Length => Loss::Cut { at: from },
+            Damage::Length => Loss::Cut { at: damaged_at },
             reason => Loss::Skipped {
                 from,
                 to: self.n_bytes,
@@ -280,7 +293,7 @@ impl Scan<'_> {
     }
 
     /// Whether a chunk or file begins here, whose checksum holds.
-    fn is_good(&mut self, at: u64, head: [u8; HEAD_BYTES as usize]) -> Result<bool, RecordingError> {
+    fn is_good(&mut self, at: u64, head: [u8; HEAD_LEN]) -> Result<bool, RecordingError> {
         let (opcode, n_bytes) = parse_head(head);
         let body_at = at + HEAD_BYTES;
         if body_at.checked_add(n_bytes).is_none_or(|end| end > self.n_bytes) {
