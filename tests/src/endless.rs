@@ -90,14 +90,14 @@ pub fn write(out: &Path, mut acknowledge: impl Write) -> anyhow::Result<()> {
     let file = File::create(out)?;
     let mut writer = Writer::new(file, &session().to_string(), BTreeMap::new(), Limits::default())?;
     writer.file(0, FILE, &picture(u32::MAX))?;
-    let mut told = None;
+    let mut told = 0;
     for frame in 0.. {
         add(&mut writer, frame)?;
         let n_frames = writer.flushed().n_frames;
-        if told != Some(n_frames) {
+        if told != n_frames {
             writeln!(acknowledge, "{n_frames}")?;
             acknowledge.flush()?;
-            told = Some(n_frames);
+            told = n_frames;
         }
     }
     Ok(())

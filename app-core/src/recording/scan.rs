@@ -10,8 +10,8 @@ use super::error::{Damage, Loss, RecordingError};
 use super::found::{Found, Span};
 use super::source::Source;
 use super::wire::{
-    ATTACHMENT, CHUNK, DATA_END, FIRST_PRIVATE, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE, Rest,
-    parse_head,
+    ATTACHMENT, CHUNK, DATA_END, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE, MESSAGE_INDEX,
+    METADATA, Rest, parse_head,
 };
 
 /// Bytes that are read at once where nothing larger is wanted.
@@ -34,6 +34,7 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
         at: 0,
         trusted: 0,
         trials_left: source.n_bytes().saturating_mul(MAX_TRIALS),
+        has_data_end: false,
         has_footer: false,
         buffer: Vec::new(),
         found: Found::default(),
@@ -50,6 +51,7 @@ struct Scan<'a> {
     trusted: u64,
     /// Bytes.
     trials_left: u64,
+    has_data_end: bool,
     has_footer: bool,
     /// Of a chunk, used again.
     buffer: Vec<u8>,
@@ -148,12 +150,27 @@ impl Scan<'_> {
                 self.trusted = end;
             }
             MESSAGE => return Err(Damage::Unguarded.into()),
-            FOOTER => self.has_footer = true,
-            // Announcements of the summary, indices and metadata tell nothing that chunks do not.
-            HEADER..=DATA_END | FIRST_PRIVATE.. => {}
+            MESSAGE_INDEX => self.index(body_at, n_bytes)?,
+            METADATA => {}
+            HEADER if self.at == MAGIC.len() as u64 => {}
+            DATA_END => self.has_data_end = true,
+            FOOTER if self.has_data_end => self.has_footer = true,
+            // The summary tells nothing that chunks do not.
+            _ if self.has_data_end => {}
             _ => return Err(Damage::Kind.into()),
         }
         Ok(end)
+    }
+
+    /// An index is one by its lengths: where it is none, it may be a chunk whose kind has one wrong bit.
+    fn index(&self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+        const HEAD: u64 = 6;
+        const ENTRY: u64 = 16;
+        let head = self.head_bytes(body_at, HEAD.min(n_bytes)).map_err(Bad::Io)?;
+        let mut rest = Rest(&head);
+        let n_entry_bytes = rest.u16().and_then(|_channel| rest.u32()).map(u64::from);
+        let is_index = n_entry_bytes.is_some_and(|n| n % ENTRY == 0 && n + HEAD == n_bytes);
+        Ok(if is_index { Ok(()) } else { Err(Damage::Kind) }?)
     }
 
     /// Size of a chunk's records, after a look at its first bytes.
@@ -268,6 +285,7 @@ impl Scan<'_> {
                     self.at = at + offset as u64;
                     // Where its records are none of ours it is not found again.
                     self.trusted = self.at + 1;
+                    self.has_data_end = false;
                     self.lose(Loss::Skipped {
                         from,
                         to: self.at,

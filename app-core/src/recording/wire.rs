@@ -26,9 +26,6 @@ pub(super) const METADATA: u8 = 0x0c;
 pub(super) const METADATA_INDEX: u8 = 0x0d;
 pub(super) const SUMMARY_OFFSET: u8 = 0x0e;
 pub(super) const DATA_END: u8 = 0x0f;
-/// Opcodes from here on belong to applications.
-pub(super) const FIRST_PRIVATE: u8 = 0x80;
-
 /// The body of a record that is written.
 #[derive(Default)]
 pub(super) struct Body(Vec<u8>);
