@@ -181,7 +181,8 @@ pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
         let path = named.image.as_str();
         let number = path.trim_matches(|c: char| !c.is_ascii_digit()).parse()?;
         // As text: a parser may err in the last digit of a number.
-        ensure!(found.get() == entry(number).to_string(), "frame {number}");
+        let written = entry(number).to_string();
+        ensure!(found.get() == written.as_str(), "frame {number}");
         ensure!(
             recording.read(path, u64::MAX)? == picture(number),
             "picture {number}"
