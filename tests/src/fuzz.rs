@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use app_core::recording::Recording;
 use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_path};
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
@@ -18,8 +19,13 @@ pub const TOY: &[u8] = include_bytes!("../fuzz/seeds/toy/skinned.glb");
 /// A picture of 2 x 2 pixels, colours and alpha.
 pub const PICTURE: &[u8] = include_bytes!("../fuzz/seeds/picture/good.png");
 
+/// A recording of a session of these files, finished.
+pub const RECORDING: &[u8] = include_bytes!("../fuzz/seeds/recording/good.mcap");
+
 /// Frames of a session that are looked at.
 const MAX_FRAMES: usize = 4;
+/// No file of a small session is larger.
+const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Reads a toy's file and poses it.
 ///
@@ -56,6 +62,68 @@ pub fn picture(bytes: &[u8]) {
     session(INDEX, TOY, bytes);
 }
 
+/// Opens a recording whose bytes these are, and the session in it; then once more without its checksums, which would
+/// hold up most of what is changed.
+///
+/// # Panics
+/// Where a session that is accepted holds a number that is not finite.
+pub fn recording(bytes: &[u8]) {
+    recorded(bytes.to_vec());
+    recorded(without_checksums(bytes));
+}
+
+/// Whether a recording can be opened, nothing of it is lost, and every frame of its session can be read.
+#[must_use]
+pub fn opens_recording(bytes: &[u8]) -> bool {
+    let is_whole = |recording: &Recording| recording.losses().is_empty();
+    let recording = Recording::open(bytes.to_vec()).ok().filter(is_whole);
+    recording
+        .and_then(|recording| Capture::open(recording).ok())
+        .is_some_and(|capture| (0..capture.n_frames()).all(|index| capture.frame(index).is_ok()))
+}
+
+fn recorded(bytes: Vec<u8>) {
+    let Ok(recording) = Recording::open(bytes) else {
+        return;
+    };
+    for path in recording.paths() {
+        let _ = recording.read(path, MAX_FILE_BYTES);
+    }
+    if let Ok(capture) = Capture::open(recording) {
+        check_capture(&capture);
+    }
+}
+
+/// A recording whose chunks and attached files have the checksum nought, which stands for none.
+#[must_use]
+pub fn without_checksums(bytes: &[u8]) -> Vec<u8> {
+    const CHUNK: u8 = 6;
+    const ATTACHMENT: u8 = 9;
+    let mut bytes = bytes.to_vec();
+    let mut at = 8;
+    while let Some((opcode, length)) = bytes
+        .get(at..)
+        .and_then(|rest| rest.split_first())
+        .and_then(|(opcode, rest)| Some((*opcode, u64::from_le_bytes(*rest.first_chunk()?))))
+    {
+        let body = at + 9;
+        let end = usize::try_from(length)
+            .ok()
+            .and_then(|length| body.checked_add(length))
+            .unwrap_or(usize::MAX);
+        let checksum = match opcode {
+            CHUNK => body + 24..body + 28,
+            ATTACHMENT if end > 4 => end - 4..end,
+            _ => 0..0,
+        };
+        if let Some(checksum) = bytes.get_mut(checksum) {
+            checksum.fill(0);
+        }
+        at = end;
+    }
+    bytes
+}
+
 /// Whether a session of these three files can be opened, and every frame read.
 #[must_use]
 pub fn opens(index: &[u8], toy: &[u8], picture: &[u8]) -> bool {
@@ -73,9 +141,12 @@ fn open(index: &[u8], toy: &[u8], picture: &[u8]) -> Option<Capture> {
 }
 
 fn session(index: &[u8], toy: &[u8], picture: &[u8]) {
-    let Some(capture) = open(index, toy, picture) else {
-        return;
-    };
+    if let Some(capture) = open(index, toy, picture) {
+        check_capture(&capture);
+    }
+}
+
+fn check_capture(capture: &Capture) {
     let scene = capture.scene();
     assert!(scene.world_from_object.is_finite());
     for index in 0..capture.n_frames().min(MAX_FRAMES) {

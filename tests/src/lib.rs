@@ -5,6 +5,7 @@ pub mod bench;
 pub mod check;
 pub mod compare;
 pub mod convert;
+pub mod endless;
 pub mod false_color;
 pub mod files;
 pub mod fuzz;

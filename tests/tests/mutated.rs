@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use app_core::toy::{NodePose, Pose, Toy, Trs};
 use glam::{DMat4, DQuat, DVec3};
-use harness::fuzz::{self, INDEX, PICTURE, TOY};
+use harness::fuzz::{self, INDEX, PICTURE, RECORDING, TOY};
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -142,6 +142,11 @@ proptest! {
     }
 
     #[test]
+    fn a_changed_recording_is_read_or_refused(changes in changes()) {
+        fuzz::recording(&changed(RECORDING, &changes));
+    }
+
+    #[test]
     fn a_changed_picture_is_read_or_refused(changes in changes()) {
         fuzz::picture(&changed(PICTURE, &changes));
     }
@@ -218,6 +223,9 @@ fn the_seeds_are_good() {
     assert_eq!(toy.clip_names(), ["Wave"]);
     assert!(fuzz::opens(INDEX, TOY, PICTURE));
     assert!(!fuzz::opens(b"{}", TOY, PICTURE));
+    assert!(fuzz::opens_recording(RECORDING));
+    assert!(fuzz::opens_recording(&fuzz::without_checksums(RECORDING)));
+    assert!(!fuzz::opens_recording(&RECORDING[..RECORDING.len() - 1]));
 }
 
 /// A pose that is not finite would be found.

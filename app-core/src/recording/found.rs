@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::MAX_INDEX_BYTES;
+use super::bounds::MAX_INDEX_BYTES;
 use super::error::Loss;
 use super::message::{FrameMessage, NamedPicture, SessionMessage};
 use super::topics::Topic;

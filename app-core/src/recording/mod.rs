@@ -5,6 +5,7 @@
 //!
 #![doc = include_str!("../../doc/recording.md")]
 
+mod bounds;
 mod chunk;
 mod error;
 mod found;
@@ -27,10 +28,3 @@ pub use reader::Recording;
 pub use source::Source;
 pub use topics::Topic;
 pub use writer::{Flushed, Limits, Picture, Writer};
-
-/// What a session's index is called.
-const INDEX_PATH: &str = "capture.json";
-/// Texts of all frames, and of the rest of the index; bytes. No longer index is read from a folder.
-const MAX_INDEX_BYTES: u64 = 16 << 20;
-/// The largest chunk that is read; bytes. Pictures, which have at most half of it, are larger than what else is in one.
-const MAX_CHUNK_BYTES: u64 = 256 << 20;

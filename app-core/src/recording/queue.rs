@@ -94,7 +94,6 @@ impl Inlet {
     ///
     /// # Errors
     /// With the item.
-    #[expect(clippy::result_large_err, reason = "the item, which the caller had before")]
     pub fn offer(&self, time_ns: u64, item: Item) -> Result<(), Item> {
         let n_bytes = item.n_bytes();
         let waiting = &self.counts.waiting_bytes;

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::value::RawValue;
 
+use super::bounds::{INDEX_PATH, MAX_INDEX_BYTES};
 use super::error::{Loss, RecordingError};
 use super::found::{Found, Note, Span};
 use super::scan::scan;
 use super::source::Source;
-use super::{INDEX_PATH, MAX_INDEX_BYTES};
 use crate::session::{FileError, Files, check_path};
 
 /// A recording that is read: its files are those of a session's folder, `capture.json` made of its messages.

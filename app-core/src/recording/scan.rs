@@ -4,13 +4,14 @@
 //! byte by byte: it is one only if its own checksum holds. The summary at the end is not looked at, since a recording that
 //! was cut has none.
 
-use super::MAX_CHUNK_BYTES;
+use super::bounds::MAX_CHUNK_BYTES;
 use super::chunk::CHUNK_HEAD_BYTES;
 use super::error::{Damage, Loss, RecordingError};
 use super::found::{Found, Span};
 use super::source::Source;
 use super::wire::{
-    ATTACHMENT, CHUNK, DATA_END, FIRST_PRIVATE, FOOTER, HEAD_BYTES, HEADER, MAGIC, MESSAGE, Rest, parse_head,
+    ATTACHMENT, CHUNK, DATA_END, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE, MESSAGE_INDEX,
+    METADATA, Rest, parse_head,
 };
 
 /// Bytes that are read at once where nothing larger is wanted.
@@ -31,7 +32,9 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
         source,
         n_bytes: source.n_bytes(),
         at: 0,
+        trusted: 0,
         trials_left: source.n_bytes().saturating_mul(MAX_TRIALS),
+        has_data_end: false,
         has_footer: false,
         buffer: Vec::new(),
         found: Found::default(),
@@ -44,8 +47,11 @@ struct Scan<'a> {
     source: &'a dyn Source,
     n_bytes: u64,
     at: u64,
+    /// What is before was vouched for, or looked at for what can be. What follows up to `at` is indices, as it seems.
+    trusted: u64,
     /// Bytes.
     trials_left: u64,
+    has_data_end: bool,
     has_footer: bool,
     /// Of a chunk, used again.
     buffer: Vec<u8>,
@@ -97,11 +103,12 @@ impl Scan<'_> {
                 Err(Bad::Damage(damage)) => self.skip_damage(damage)?,
             }
         };
-        let is_told = matches!(
-            self.found.losses.last(),
-            Some(Loss::Cut { .. } | Loss::Skipped { .. })
-        );
-        if !is_finished && !(is_told && self.at < self.n_bytes) {
+        let is_told = match self.found.losses.last() {
+            Some(Loss::Cut { .. }) => true,
+            Some(Loss::Skipped { to, .. }) => *to == self.n_bytes,
+            _ => false,
+        };
+        if !is_finished && !is_told {
             self.lose(Loss::Unfinished { at: self.n_bytes });
         }
         Ok(())
@@ -116,7 +123,6 @@ impl Scan<'_> {
     /// Up to `n_bytes` bytes, fewer where the file ends.
     fn head_bytes(&self, at: u64, n_bytes: u64) -> Result<Vec<u8>, RecordingError> {
         let n_bytes = n_bytes.min(self.n_bytes.saturating_sub(at)).min(MAX_CHUNK_BYTES);
-        #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
         let mut bytes = vec![0; n_bytes as usize];
         self.source
             .read_at(at, &mut bytes)
@@ -126,7 +132,7 @@ impl Scan<'_> {
 
     /// Reads the record at the place of the scan, and returns where it ends.
     fn record(&mut self) -> Result<u64, Bad> {
-        let mut head = [0; HEAD_BYTES as usize];
+        let mut head = [0; HEAD_LEN];
         self.source.read_at(self.at, &mut head)?;
         let (opcode, n_bytes) = parse_head(head);
         let body_at = self.at + HEAD_BYTES;
@@ -135,15 +141,36 @@ impl Scan<'_> {
             .filter(|end| *end <= self.n_bytes)
             .ok_or(Damage::Length)?;
         match opcode {
-            CHUNK => self.chunk(body_at, n_bytes)?,
-            ATTACHMENT => self.file(body_at, n_bytes)?,
+            CHUNK => {
+                self.chunk(body_at, n_bytes)?;
+                self.trusted = end;
+            }
+            ATTACHMENT => {
+                self.file(body_at, n_bytes)?;
+                self.trusted = end;
+            }
             MESSAGE => return Err(Damage::Unguarded.into()),
-            FOOTER => self.has_footer = true,
-            // Announcements of the summary, indices and metadata tell nothing that chunks do not.
-            HEADER..=DATA_END | FIRST_PRIVATE.. => {}
+            MESSAGE_INDEX => self.index(body_at, n_bytes)?,
+            METADATA => {}
+            HEADER if self.at == MAGIC.len() as u64 => {}
+            DATA_END => self.has_data_end = true,
+            FOOTER if self.has_data_end => self.has_footer = true,
+            // The summary tells nothing that chunks do not.
+            _ if self.has_data_end => {}
             _ => return Err(Damage::Kind.into()),
         }
         Ok(end)
+    }
+
+    /// An index is one by its lengths: where it is none, it may be a chunk whose kind has one wrong bit.
+    fn index(&self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+        const HEAD: u64 = 6;
+        const ENTRY: u64 = 16;
+        let head = self.head_bytes(body_at, HEAD.min(n_bytes)).map_err(Bad::Io)?;
+        let mut rest = Rest(&head);
+        let n_entry_bytes = rest.u16().and_then(|_channel| rest.u32()).map(u64::from);
+        let is_index = n_entry_bytes.is_some_and(|n| n % ENTRY == 0 && n + HEAD == n_bytes);
+        Ok(if is_index { Ok(()) } else { Err(Damage::Kind) }?)
     }
 
     /// Size of a chunk's records, after a look at its first bytes.
@@ -236,7 +263,7 @@ impl Scan<'_> {
             hasher.update(&window);
             at += window.len() as u64;
         }
-        let mut checksum = [0; CHECKSUM_BYTES as usize];
+        let mut checksum = [0; size_of::<u32>()];
         self.source.read_at(end, &mut checksum)?;
         let checksum = u32::from_le_bytes(checksum);
         if checksum != 0 && checksum != hasher.finalize() {
@@ -245,16 +272,20 @@ impl Scan<'_> {
         Ok((path, span))
     }
 
-    /// Goes on with the next chunk or file whose checksum holds, behind the first byte of what is damaged.
+    /// Goes on with the next chunk or file whose checksum holds. What seemed to be indices before the damage may have been
+    /// something else, so that they are looked through again.
     fn skip_damage(&mut self, damage: Damage) -> Result<(), RecordingError> {
-        let from = self.at;
-        let mut at = from + 1;
+        let (from, damaged_at) = (self.trusted, self.at);
+        let mut at = from;
         while at + HEAD_BYTES <= self.n_bytes {
             let window = self.head_bytes(at, WINDOW_BYTES)?;
-            for (offset, head) in window.windows(HEAD_BYTES as usize).enumerate() {
+            for (offset, head) in window.windows(HEAD_LEN).enumerate() {
                 let Some(head) = head.first_chunk() else { continue };
                 if self.is_good(at + offset as u64, *head)? {
                     self.at = at + offset as u64;
+                    // Where its records are none of ours it is not found again.
+                    self.trusted = self.at + 1;
+                    self.has_data_end = false;
                     self.lose(Loss::Skipped {
                         from,
                         to: self.at,
@@ -267,7 +298,7 @@ impl Scan<'_> {
         }
         // Nothing follows: a record that reaches beyond the end is one that was cut.
         let loss = match damage {
-            Damage::Length => Loss::Cut { at: from },
+            Damage::Length => Loss::Cut { at: damaged_at },
             reason => Loss::Skipped {
                 from,
                 to: self.n_bytes,
@@ -280,7 +311,7 @@ impl Scan<'_> {
     }
 
     /// Whether a chunk or file begins here, whose checksum holds.
-    fn is_good(&mut self, at: u64, head: [u8; HEAD_BYTES as usize]) -> Result<bool, RecordingError> {
+    fn is_good(&mut self, at: u64, head: [u8; HEAD_LEN]) -> Result<bool, RecordingError> {
         let (opcode, n_bytes) = parse_head(head);
         let body_at = at + HEAD_BYTES;
         if body_at.checked_add(n_bytes).is_none_or(|end| end > self.n_bytes) {

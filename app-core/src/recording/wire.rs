@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 /// First and last bytes of a file.
 pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// Bytes of a record before its body.
-pub(super) const HEAD_BYTES: u64 = 9;
+pub(super) const HEAD_BYTES: u64 = HEAD_LEN as u64;
+/// The same, for arrays.
+pub(super) const HEAD_LEN: usize = 9;
 
 pub(super) const HEADER: u8 = 0x01;
 pub(super) const FOOTER: u8 = 0x02;
@@ -24,9 +26,6 @@ pub(super) const METADATA: u8 = 0x0c;
 pub(super) const METADATA_INDEX: u8 = 0x0d;
 pub(super) const SUMMARY_OFFSET: u8 = 0x0e;
 pub(super) const DATA_END: u8 = 0x0f;
-/// Opcodes from here on belong to applications.
-pub(super) const FIRST_PRIVATE: u8 = 0x80;
-
 /// The body of a record that is written.
 #[derive(Default)]
 pub(super) struct Body(Vec<u8>);
@@ -87,14 +86,14 @@ impl Body {
 }
 
 /// Opcode and length.
-pub(super) fn head(opcode: u8, n_bytes: u64) -> [u8; HEAD_BYTES as usize] {
-    let mut head = [opcode; HEAD_BYTES as usize];
+pub(super) fn head(opcode: u8, n_bytes: u64) -> [u8; HEAD_LEN] {
+    let mut head = [opcode; HEAD_LEN];
     head[1..].copy_from_slice(&n_bytes.to_le_bytes());
     head
 }
 
 /// Opcode and length of a head.
-pub(super) fn parse_head(head: [u8; HEAD_BYTES as usize]) -> (u8, u64) {
+pub(super) fn parse_head(head: [u8; HEAD_LEN]) -> (u8, u64) {
     let [opcode, length @ ..] = head;
     (opcode, u64::from_le_bytes(length))
 }

@@ -5,6 +5,7 @@ use std::io::Write;
 
 use serde_json::value::RawValue;
 
+use super::bounds::{INDEX_PATH, MAX_CHUNK_BYTES, MAX_INDEX_BYTES};
 use super::chunk::OpenChunk;
 use super::error::{Stop, WriteError};
 use super::message::{FrameMessage, SessionMessage};
@@ -12,7 +13,6 @@ use super::summary::{FileEntry, Written};
 use super::topics::Topic;
 use super::viewer::{self, EntryShape, SessionShape};
 use super::wire::{ATTACHMENT, Body, HEADER, MAGIC, METADATA, head};
-use super::{INDEX_PATH, MAX_CHUNK_BYTES, MAX_INDEX_BYTES};
 
 /// A chunk is closed after that.
 const CHUNK_NS: u64 = 1_000_000_000;

@@ -1,0 +1,14 @@
+//! Writes a recording until it is killed, for the test that does so.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use harness::endless::write;
+use harness::program::exit_code;
+
+fn main() -> ExitCode {
+    let out = env::args_os().nth(1).map(PathBuf::from).context("no file");
+    exit_code(out.and_then(|out| write(&out, std::io::stdout())))
+}

@@ -1,0 +1,193 @@
+//! A recording that is written without end, by a process that is killed, and what must be left of it.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use anyhow::{Context, ensure};
+use app_core::recording::{Limits, Picture, Recording, Topic, Writer};
+use app_core::session::Files;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use serde_json::{Value, json};
+
+use crate::stored::Stored;
+
+/// Time between two frames.
+const FRAME_NS: u64 = 40_000_000;
+/// An attached file, as the toy is.
+const FILE: &str = "toy.glb";
+
+#[derive(Deserialize)]
+struct Index<'a> {
+    #[serde(borrow)]
+    frames: Vec<&'a RawValue>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    image: String,
+}
+
+/// Index of the session but its frames.
+#[must_use]
+pub fn session() -> Value {
+    json!({ "format": "shadow-capture", "version": 1, "name": "endless", "width": 640, "height": 480,
+        "intrinsics": { "fx": 576.0, "fy": 576.0, "cx": 320.0, "cy": 240.0 } })
+}
+
+/// What stands for the picture of a frame: bytes by chance, the same for the same frame. Some frames have large ones.
+#[must_use]
+pub fn picture(frame: u32) -> Vec<u8> {
+    let n_bytes = if frame % 50 == 49 {
+        600_000
+    } else {
+        500 + 37 * (frame as usize % 100)
+    };
+    let mut state = frame.wrapping_mul(2_654_435_761) | 1;
+    let bytes = (0..n_bytes).map(|_| {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        state.to_le_bytes()[1]
+    });
+    b"\xff\xd8\xff".iter().copied().chain(bytes).collect()
+}
+
+/// A frame's entry. Its numbers are those that shortest decimals are hardest for.
+#[must_use]
+pub fn entry(frame: u32) -> Value {
+    let at = f64::from(frame) / 30.0;
+    json!({ "time": at, "image": format!("frame_{frame:06}.jpg"), "animation": { "clip": null, "time": at },
+        "world_from_camera": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, at.sin(), 0.1 + at, 0.3, 1] })
+}
+
+/// When a frame was taken.
+#[must_use]
+pub fn time_ns(frame: u32) -> u64 {
+    u64::from(frame) * FRAME_NS
+}
+
+/// Adds a frame and a note.
+///
+/// # Errors
+/// As the writer.
+pub fn add<W: Write>(writer: &mut Writer<W>, frame: u32) -> anyhow::Result<()> {
+    let time_ns = time_ns(frame);
+    writer.frame(time_ns, Picture::New(&picture(frame)), &entry(frame).to_string())?;
+    Ok(writer.note(time_ns, Topic::Light, r#"{"lux":300}"#)?)
+}
+
+/// Writes as fast as it can until the process is killed, and says on `acknowledge`, a line each, how many frames outlive it.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write(out: &Path, mut acknowledge: impl Write) -> anyhow::Result<()> {
+    let file = File::create(out)?;
+    let mut writer = Writer::new(file, &session().to_string(), BTreeMap::new(), Limits::default())?;
+    writer.file(0, FILE, &picture(u32::MAX))?;
+    let mut told = 0;
+    for frame in 0.. {
+        add(&mut writer, frame)?;
+        let n_frames = writer.flushed().n_frames;
+        if told != n_frames {
+            writeln!(acknowledge, "{n_frames}")?;
+            acknowledge.flush()?;
+            told = n_frames;
+        }
+    }
+    Ok(())
+}
+
+/// What became of one that was killed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Killed {
+    /// Frames that it said outlive it.
+    pub n_acknowledged: u32,
+    /// Frames that were read.
+    pub n_read: u32,
+}
+
+impl Killed {
+    /// Frames that should be there and are not.
+    #[must_use]
+    pub fn n_lost(&self) -> u32 {
+        self.n_acknowledged.saturating_sub(self.n_read)
+    }
+}
+
+/// Starts `program`, which writes to `out`, kills it after its first acknowledgement and `delay`, and reads what is left.
+///
+/// # Errors
+/// When the system refuses, or what is left cannot be read or is not what was written.
+pub fn kill(program: &Path, out: &Path, delay: Duration) -> anyhow::Result<Killed> {
+    let mut child = Command::new(program)
+        .arg(out)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()?;
+    let pipe = child.stdout.take().context("no pipe")?;
+    let mut lines = BufReader::new(pipe);
+    let mut line = String::new();
+    lines.read_line(&mut line)?;
+    sleep(delay);
+    child.kill()?;
+    child.wait()?;
+    let mut n_acknowledged = 0;
+    // A line without an end was not acknowledged.
+    while line.ends_with('\n') {
+        n_acknowledged = line.trim().parse()?;
+        line.clear();
+        lines.read_line(&mut line)?;
+    }
+    Ok(Killed {
+        n_acknowledged,
+        n_read: read(out)?,
+    })
+}
+
+/// Frames of what is left.
+///
+/// # Errors
+/// When it cannot be read, or a frame, its picture or the attached file is not what was written.
+pub fn read(out: &Path) -> anyhow::Result<u32> {
+    let Stored::Recording(recording) = Stored::open(out)? else {
+        anyhow::bail!("not a file");
+    };
+    ensure!(
+        recording.read(FILE, u64::MAX)? == picture(u32::MAX),
+        "the attached file"
+    );
+    let frames = compare(&recording)?;
+    let n_frames = u32::try_from(frames.len())?;
+    ensure!(frames == (0..n_frames).collect::<Vec<_>>(), "frames are missing");
+    Ok(n_frames)
+}
+
+/// Numbers of the frames that are there.
+///
+/// # Errors
+/// When a frame or its picture is not what was written.
+pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
+    let index = recording.read("capture.json", u64::MAX)?;
+    let index: Index = serde_json::from_slice(&index)?;
+    let mut numbers = Vec::new();
+    for found in index.frames {
+        let named: Entry = serde_json::from_str(found.get())?;
+        let path = named.image.as_str();
+        let number = path.trim_matches(|c: char| !c.is_ascii_digit()).parse()?;
+        // As text: a parser may err in the last digit of a number.
+        let written = entry(number).to_string();
+        ensure!(found.get() == written.as_str(), "frame {number}");
+        ensure!(
+            recording.read(path, u64::MAX)? == picture(number),
+            "picture {number}"
+        );
+        numbers.push(number);
+    }
+    Ok(numbers)
+}
