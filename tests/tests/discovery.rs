@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::alignment::{Aligner, Alignment, DiscoveredLight};
 use app_core::frame::{FrameInput, NoLight, Warning};
-use app_core::scene::Scene;
+use app_core::scene::{LightEstimate, N_HARMONICS, Scene};
 use app_core::session::{Capture, Session};
 use glam::DVec3;
 use harness::alignment::SeenLight;
@@ -180,6 +180,63 @@ fn without_a_plate_it_is_found_too() {
     let found = Aligner::new(scene).align(&input).unwrap();
     assert_eq!(found.report.discovered.len(), 1, "{:#?}", found.report);
     assert_near(&(found.report.discovered[0], bundled_light()), 0.5, 0.1, 0.2);
+}
+
+/// What a platform tells of the light, as many degrees off the bundled bulb.
+fn estimated(off_deg: f64) -> LightEstimate {
+    let direction = bundled_light().direction_in_world;
+    let about = glam::DQuat::from_axis_angle(direction.any_orthonormal_vector(), off_deg.to_radians());
+    LightEstimate {
+        direction_to_light_in_world: Some(about * direction),
+        ..LightEstimate::default()
+    }
+}
+
+#[test]
+fn a_wrong_estimate_changes_nothing_however_often_it_comes() {
+    let (mut scene, input) = BUNDLED.clone();
+    scene.lights.clear();
+    let without = Aligner::new(scene.clone()).align(&input).unwrap();
+    let mut told = input.clone();
+    told.light_estimate = Some(estimated(40.0));
+    let mut aligner = Aligner::new(scene);
+    for _ in 0..100 {
+        let with = aligner.align(&told).unwrap();
+        assert_eq!(with.report, without.report);
+        assert_eq!(with.lights, without.lights);
+    }
+}
+
+#[test]
+fn no_lamp_is_found_for_an_estimate_alone() {
+    let (mut shot, _) = discover(Vec::new());
+    shot.input.light_estimate = Some(estimated(0.0));
+    let found = Aligner::new(shot.scene).align(&shot.input).unwrap();
+    assert_eq!(found.report.no_light, Some(NoLight::NoneDominant));
+    assert_eq!(found.lights, None);
+}
+
+#[test]
+fn harmonics_point_to_most_of_the_light() {
+    let direction = DVec3::new(0.48, 0.6, -0.64);
+    let mut harmonics = [0.0; N_HARMONICS];
+    for (index, one) in [(1, direction.y), (2, direction.z), (3, direction.x)] {
+        harmonics[3 * index..3 * index + 3].fill(one);
+    }
+    let mut estimate = LightEstimate {
+        spherical_harmonics: Some(harmonics),
+        ..LightEstimate::default()
+    };
+    let pointed = estimate.direction_in_world().unwrap();
+    assert!(pointed.abs_diff_eq(direction, 1e-12), "{pointed}");
+    // The platform's own direction comes before them; an even light points nowhere.
+    estimate.direction_to_light_in_world = Some(DVec3::Y);
+    assert_eq!(estimate.direction_in_world(), Some(DVec3::Y));
+    estimate = LightEstimate {
+        spherical_harmonics: Some([0.0; N_HARMONICS]),
+        ..LightEstimate::default()
+    };
+    assert_eq!(estimate.direction_in_world(), None);
 }
 
 #[test]

@@ -20,8 +20,7 @@
 //!
 //! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
 //! lights, once a session: more the more triangles and lights there are. A camera takes about as long as a pose, once a view and
-//! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and where there are none that again in each new view.
-//! A focal length takes 2 to 12 s more, once a session.
+//! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and a focal length 2 to 12 s more, once a session.
 
 mod camera;
 mod error;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::lights::{FoundLight, Guess, Relight, Watched};
+use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
 use super::mask::Mask;
 use super::picture::{Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
@@ -258,17 +258,20 @@ impl Photograph {
         let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
         let middle_in_world = input.world_from_object.transform_point3(middle);
-        let guesses: Vec<Guess> = told
-            .iter()
-            .filter_map(|light| Guess::new(light, &self.camera_from_world))
-            .collect();
+        let guesses = told.iter();
+        let guesses = guesses.filter_map(|light| Guess::new(light, &self.camera_from_world));
+        let estimated = input.light_estimate.and_then(|light| light.direction_in_world());
+        let hints = Hints {
+            guesses: guesses.collect(),
+            estimated: estimated.map(|direction| self.camera_from_world.transform_vector3(direction)),
+        };
         let found = lights::discover(
             &shape,
             &self.receivers,
             &self.pyramid,
             world_from_camera,
             pose,
-            &guesses,
+            &hints,
         );
         Ok(found.and_then(|mut found| {
             for found in &mut found {

@@ -6,7 +6,7 @@ use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
 use crate::scene::check;
-use crate::scene::{Camera, InputError, Light, Pose};
+use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
 use crate::session::SessionFrame;
 
 /// A camera frame of the real, static toy, and the pose to show.
@@ -26,6 +26,8 @@ pub struct FrameInput {
     pub world_from_object: DMat4,
     /// The lights, where they differ from those of the scene.
     pub lights: Option<Arc<[Light]>>,
+    /// What the platform estimates of the light, where it does. Alignment alone looks at it, and only where no light is listed.
+    pub light_estimate: Option<LightEstimate>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
@@ -44,7 +46,8 @@ impl FrameInput {
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
             check::light(&format!("lights[{index}]"), light)?;
         }
-        Ok(())
+        let estimate = self.light_estimate.as_ref();
+        estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))
     }
 }
 
@@ -56,6 +59,7 @@ impl From<&SessionFrame> for FrameInput {
             exposure: frame.exposure,
             world_from_object: frame.world_from_object,
             lights: None,
+            light_estimate: frame.light_estimate,
             shown_pose: frame.shown_pose.clone(),
             effect: 1.0,
         }

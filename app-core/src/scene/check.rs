@@ -134,6 +134,12 @@ pub(crate) const EXPOSURE_RATIO: RangeInclusive<f64> = 1e-6..=1.0;
 pub(crate) const OF_RADIUS: RangeInclusive<f64> = 1e-6..=1.0;
 /// Slopes of facets, in degrees: less than a right angle.
 pub(crate) const SLOPE_DEG: RangeInclusive<f64> = 0.0..=89.9;
+/// Intensities of light, in whatever unit.
+pub(crate) const INTENSITY: RangeInclusive<f64> = 0.0..=1e9;
+/// Coefficients of radiance.
+pub(crate) const HARMONIC: RangeInclusive<f64> = -1e9..=1e9;
+/// Colour temperatures, in kelvin.
+pub(crate) const KELVIN: RangeInclusive<f64> = 100.0..=1e6;
 const SCALE: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// How far a rotation's axes may be from unit length and right angles: what rounding to a few
@@ -286,16 +292,20 @@ pub(crate) fn light(field: &str, light: &Light) -> Result<(), InputError> {
             direction_to_light_in_world,
             angular_radius_rad,
         } => {
-            let is_unit = direction_to_light_in_world.is_normalized();
-            let unit = if is_unit {
-                Ok(())
-            } else {
-                Err(FieldError::NotAUnitVector)
-            };
+            let unit = unit(direction_to_light_in_world);
             InputError::at(&format!("{field}.direction_to_light_in_world"), unit)?;
             let degrees = number(angular_radius_rad.to_degrees(), &ANGULAR_RADIUS_DEG);
             InputError::at(&format!("{field}.angular_radius_rad, in degrees"), degrees)?;
         }
     }
     Ok(())
+}
+
+/// A vector of length 1.
+pub(crate) fn unit(direction: DVec3) -> Result<(), FieldError> {
+    if direction.is_normalized() {
+        Ok(())
+    } else {
+        Err(FieldError::NotAUnitVector)
+    }
 }

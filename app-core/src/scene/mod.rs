@@ -4,6 +4,7 @@
 //! Camera space is +X right, +Y up and looks along -Z.
 
 pub(crate) mod check;
+mod light_estimate;
 mod probe;
 
 use std::fmt;
@@ -15,6 +16,7 @@ use crate::toy::Toy;
 
 pub use crate::toy::Pose;
 pub use check::{FieldError, InputError};
+pub use light_estimate::{LightEstimate, N_HARMONICS};
 pub(crate) use probe::MAX_FURTHER_PICTURES;
 pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
 

@@ -2,6 +2,7 @@
 
 mod convert;
 mod field;
+mod light_estimate;
 mod light_probe;
 mod place;
 mod record;
@@ -23,7 +24,7 @@ use super::picture::{PictureSize, decode_mask, decode_photo};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
 use crate::lens::{Distortion, Lens};
-use crate::scene::{Camera, Image, Intrinsics, Pose, Scene};
+use crate::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
 
 #[cfg(feature = "schema")]
 pub use schema::schema;
@@ -74,6 +75,7 @@ struct Frame {
     camera: Camera,
     world_from_object: DMat4,
     exposure: f64,
+    light_estimate: Option<LightEstimate>,
     shown_pose: Pose,
     warnings: Vec<SessionWarning>,
     truth: Option<TruthFiles>,
@@ -145,6 +147,7 @@ impl Session for Capture {
             camera: frame.camera,
             world_from_object: frame.world_from_object,
             exposure: frame.exposure,
+            light_estimate: frame.light_estimate,
             shown_pose: frame.shown_pose.clone(),
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
         })

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use glam::DMat4;
 use thiserror::Error;
 
-use crate::scene::{Camera, Image, Pose, Scene};
+use crate::scene::{Camera, Image, LightEstimate, Pose, Scene};
 use crate::toy::ToyWarning;
 use crate::words::Number;
 
@@ -71,6 +71,8 @@ pub struct SessionFrame {
     pub world_from_object: DMat4,
     /// Exposure of the picture, relative to that of the session's other frames; 1 where it is unknown.
     pub exposure: f64,
+    /// What the platform estimated of the light, where it is recorded.
+    pub light_estimate: Option<LightEstimate>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Warnings about this frame.

@@ -137,6 +137,7 @@ impl Shot {
                 exposure: 1.0,
                 world_from_object: world.world_from_object,
                 lights: None,
+                light_estimate: None,
                 shown_pose,
                 effect: 1.0,
             },

@@ -130,6 +130,7 @@ pub(crate) fn input(stand: &Stand, image: &Arc<Image>) -> FrameInput {
         exposure: 1.0,
         world_from_object: stand.world_from_object,
         lights: None,
+        light_estimate: None,
         shown_pose: stand.shown_pose.clone(),
     }
 }

@@ -61,6 +61,10 @@ fn a_good_capture_is_read_as_written() {
         "a repeated picture is shared"
     );
     assert_eq!(n_reads.load(Ordering::Relaxed), before + 1, "and read once");
+    assert_eq!(first.light_estimate, None);
+    let estimate = second.light_estimate.unwrap();
+    assert_eq!(estimate.direction_to_light_in_world, Some(glam::DVec3::Y));
+    assert_eq!(estimate.color_temperature_k, Some(5600.0));
     assert_eq!(time_in_clip(&first.shown_pose), Some(0.25));
     assert_eq!((second.time_secs, second.shown_pose), (0.1, Pose::Authored));
     assert!(capture.warnings().is_empty() && first.warnings.is_empty());
@@ -186,6 +190,12 @@ fn each_wrong_value_is_named() {
         ("frames[0].world_from_camera", json!([1, 0, 0]), "invalid length 3"),
         ("frames[1].world_from_camera[7]", json!(null), "expected f64"),
         ("frames[1].exposure", json!(0), "0 is not from"),
+        ("frames[1].light_estimate.direction_to_light", json!([0, 0, 0]), "too short"),
+        ("frames[1].light_estimate.intensity[2]", json!(-1), "-1 is not from 0"),
+        ("frames[1].light_estimate.ambient_intensity", json!(-1), "-1 is not from 0"),
+        ("frames[1].light_estimate.color_temperature", json!(0), "0 is not from 100"),
+        ("frames[1].light_estimate.spherical_harmonics", json!([0, 0, 0]), "invalid length 3"),
+        ("frames[1].light_estimate.spherical_harmonics[26]", json!(1e10), "is not from"),
         ("frames[1].intrinsics.fx", json!(-1), "-1 is not from"),
         ("frames[1].world_from_object", with(5, json!(-1)), "mirrors"),
         ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),

@@ -117,6 +117,8 @@ pub(crate) fn good_index() -> Value {
                 "animation": {"clip": "Wave", "time": 0.25}, "truth": "frame.png", "mask": "mask.png"},
             {"time": 0.1, "image": "frame.png", "world_from_camera": IDENTITY,
                 "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}, "exposure": 0.5,
+                "light_estimate": {"direction_to_light": [0, 2, 0], "intensity": [1, 2, 3],
+                    "ambient_intensity": 1000, "color_temperature": 5600, "spherical_harmonics": vec![0.5; 27]},
                 "world_from_object": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0, 1],
                 "animation": {"clip": null, "time": 0}}
         ],

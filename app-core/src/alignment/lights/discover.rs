@@ -4,11 +4,11 @@
 //! become lamps of any distance and size by Gauss-Newton steps (`step`), and stay as long as there is `evidence`. Larger pictures make
 //! them exact, and tell how exact (`uncertainty`).
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::evidence::{doubtful, is_gain, outshines};
-use super::guess::{Guess, guessed};
-use super::hemisphere::{climb, lamps as hemisphere, peaks};
+use super::guess::{Hints, guessed};
+use super::hemisphere::{climb, lamp_from, lamps as hemisphere, peaks};
 use super::lamp::{Lamp, disc};
 use super::leftover::Leftover;
 use super::prior::Prior;
@@ -45,13 +45,13 @@ const CELL_PX: f64 = 0.1;
 const POINT: [DVec2; 1] = [DVec2::ZERO];
 
 /// Finds the lamps that a picture shows the shadows of; `pose` is how well the toy's is known. Where there are guesses, as many lamps
-/// as those are looked for, around them.
+/// as those are looked for, around them; an estimate is a start where no other leads to a lamp, and is as any other judged by evidence.
 pub(super) fn discover(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     pose: &PoseDeviation,
-    guesses: &[Guess],
+    hints: &Hints,
 ) -> Result<Vec<Discovered>, NoLight> {
     let searched = pyramid.smallest_for_shadows();
     let px_m = |level: usize| shape.centre.length() / pyramid.level(level).intrinsics.fx_px;
@@ -62,10 +62,10 @@ pub(super) fn discover(
     if shadows.pixels.len() < LEAST_PIXELS {
         return Err(NoLight::ReceiversUnseen);
     }
-    let mut lamps = if guesses.is_empty() {
-        Search::new(shadows, &mut raster).all_lamps()
+    let mut lamps = if hints.guesses.is_empty() {
+        Search::new(shadows, &mut raster).all_lamps(hints.estimated)
     } else {
-        guessed(&shadows, &mut raster, guesses)
+        guessed(&shadows, &mut raster, &hints.guesses)
     };
     for level in (searched.saturating_sub(N_LARGER_LEVELS)..=searched).rev() {
         let fine = shape.merged(CELL_PX * px_m(level));
@@ -109,10 +109,19 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn all_lamps(mut self) -> Vec<Lamp> {
+    fn all_lamps(mut self, estimated: Option<DVec3>) -> Vec<Lamp> {
         let mut lamps = Vec::new();
         while lamps.len() < MAX_LIGHTS {
-            match self.one_more(&lamps) {
+            let peaks = self.peaks(&lamps);
+            let more = self.one_more(&lamps, &peaks);
+            let more = match estimated.filter(|_| more.is_none() && lamps.is_empty()) {
+                Some(direction) => {
+                    let lamp = lamp_from(&self.shadows.caster, direction);
+                    self.one_more(&lamps, &[lamp])
+                }
+                None => more,
+            };
+            match more {
                 Some(more) => lamps = more,
                 None => break,
             }
@@ -120,12 +129,10 @@ impl<'a> Search<'a> {
         lamps
     }
 
-    /// The best lamps that are one more; none where there is no evidence for it.
-    fn one_more(&mut self, lamps: &[Lamp]) -> Option<Vec<Lamp>> {
-        let shading = self.shading(lamps);
-        self.shadows.light(lamps, &shading);
+    /// The best lamps that are one more, from directions where it may be; none where there is no evidence for it.
+    fn one_more(&mut self, lamps: &[Lamp], from: &[Lamp]) -> Option<Vec<Lamp>> {
         let before = self.shading(lamps);
-        let starts = self.starts(lamps);
+        let starts = self.starts(lamps, from);
         let followed = starts.iter().filter_map(|start| {
             let more = self.follow(lamps, start)?;
             let shading = self.shading(&more);
@@ -165,27 +172,32 @@ impl<'a> Search<'a> {
         self.shadows.shading(self.raster, lamps, ROBUST_FAR)
     }
 
-    /// Lamps that explain most of what is left.
-    fn starts(&mut self, lamps: &[Lamp]) -> Vec<Lamp> {
-        let Self {
-            shadows,
-            raster,
-            candidates,
-        } = self;
+    /// Directions where one more lamp explains most of what is left, best first.
+    fn peaks(&mut self, lamps: &[Lamp]) -> Vec<Lamp> {
+        let shading = self.shading(lamps);
+        self.shadows.light(lamps, &shading);
+        let tried: Vec<Lamp> = self.candidates.iter().map(|(lamp, _)| *lamp).collect();
+        let taken = self.shadows.taken_of_all(self.raster, lamps);
+        let shaded = self.shadows.shaded(&taken);
+        let shading = shaded.fit(self.shadows.caster.receivers.len(), ROBUST_FAR);
+        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
+        let scores = self.candidates.iter().map(|(_, taken)| leftover.explained(taken));
+        let scores: Vec<f64> = scores.collect();
+        peaks(&tried, &scores).into_iter().take(N_STARTS).collect()
+    }
+
+    /// Of directions, those where one more lamp explains most of what is left, with how wide it is.
+    fn starts(&mut self, lamps: &[Lamp], from: &[Lamp]) -> Vec<Lamp> {
+        let Self { shadows, raster, .. } = self;
         let taken = shadows.taken_of_all(raster, lamps);
         let shaded = shadows.shaded(&taken);
         let shading = shaded.fit(shadows.caster.receivers.len(), ROBUST_FAR);
         let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
-        let scores: Vec<f64> = candidates
-            .iter()
-            .map(|(_, taken)| leftover.explained(taken))
-            .collect();
-        let tried: Vec<Lamp> = candidates.iter().map(|(lamp, _)| *lamp).collect();
         let mut explained =
             |lamp: &Lamp, points: &[DVec2]| leftover.explained(&shadows.taken(raster, lamp, points));
         let points = disc(N_SPREAD_POINTS);
-        let climbed = peaks(&tried, &scores).into_iter().take(N_STARTS).map(|peak| {
-            let (score, lamp) = climb(&peak, |lamp| explained(lamp, &POINT));
+        let climbed = from.iter().map(|peak| {
+            let (score, lamp) = climb(peak, |lamp| explained(lamp, &POINT));
             SPREADS.into_iter().fold((score, lamp), |best, spread| {
                 let wide = Lamp { spread, ..lamp };
                 let score = explained(&wide, &points);

@@ -18,6 +18,18 @@ const POINT: [DVec2; 1] = [DVec2::ZERO];
 /// Rounds of one more lamp beside those before it.
 const N_ROUNDS: usize = 5;
 
+/// What else than shadows tells of lights.
+#[derive(Clone, Debug, Default)]
+pub(in crate::alignment) struct Hints {
+    /// What a probe tells: they are looked for around these alone.
+    pub(in crate::alignment) guesses: Vec<Guess>,
+    /// Direction towards a light, in camera space, that is looked along where shadows tell of none; it may be far off.
+    ///
+    /// Measured on five sessions without a plate whose light is not found: an exact direction led to none either. What they lack is
+    /// evidence, not a start.
+    pub(in crate::alignment) estimated: Option<DVec3>,
+}
+
 /// A ray to a light, in camera space.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::alignment) struct Guess {

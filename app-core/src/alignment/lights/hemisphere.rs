@@ -25,6 +25,15 @@ fn spacing_rad() -> f64 {
     (TAU * (1.0 - LOWEST) / f64::from(N_DIRECTIONS)).sqrt()
 }
 
+/// A point light in a direction, in camera space.
+pub(super) fn lamp_from(caster: &Caster<'_>, direction: DVec3) -> Lamp {
+    Lamp {
+        direction,
+        nearness: 1.0 / (USUAL_DISTANCE * caster.shape.radius_m),
+        spread: 0.0,
+    }
+}
+
 /// Point lights in all directions above the receiver that is nearest to the toy, evenly. Source: Vogel 1979, on Lambert's
 /// cylinder.
 pub(super) fn lamps(caster: &Caster<'_>) -> Vec<Lamp> {
@@ -39,11 +48,7 @@ pub(super) fn lamps(caster: &Caster<'_>) -> Vec<Lamp> {
         let (z, x) = (f64::from(index) * golden_angle_rad).sin_cos();
         let level = (1.0 - up * up).sqrt();
         let direction = camera_from_plane.transform_vector3(DVec3::new(level * x, up, level * z));
-        Lamp {
-            direction: direction.normalize(),
-            nearness: 1.0 / (USUAL_DISTANCE * caster.shape.radius_m),
-            spread: 0.0,
-        }
+        lamp_from(caster, direction.normalize())
     };
     (0..N_DIRECTIONS).map(lamp).collect()
 }

@@ -35,7 +35,7 @@ use crate::frame::NoLight;
 use crate::scene::Light;
 use cast::flattened;
 pub(super) use follow::{Around, Followed, View};
-pub(super) use guess::Guess;
+pub(super) use guess::{Guess, Hints};
 use lamp::{Lamp, N_PARTS, disc};
 use prior::Prior;
 pub(super) use relight::Relight;
@@ -220,9 +220,9 @@ pub(super) fn discover(
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
     pose: &PoseDeviation,
-    guesses: &[Guess],
+    hints: &Hints,
 ) -> Result<Vec<DiscoveredLight>, NoLight> {
-    let mut found = discover::discover(shape, receivers, pyramid, pose, guesses)?;
+    let mut found = discover::discover(shape, receivers, pyramid, pose, hints)?;
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     let lights = found.iter().map(|found| {
         let lamp = &found.lamp;

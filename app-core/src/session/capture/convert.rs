@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
+use super::light_estimate::light_estimate;
 use super::light_probe::probe;
 use super::place::{camera, distortion, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
@@ -184,6 +185,11 @@ fn frame_from_record(
             &format!("{field}.exposure"),
             check::number(record.exposure.unwrap_or(1.0), &check::EXPOSURE),
         )?,
+        light_estimate: record
+            .light_estimate
+            .as_ref()
+            .map(|estimate| light_estimate(&format!("{field}.light_estimate"), estimate))
+            .transpose()?,
         shown_pose: pose(
             toy,
             &format!("{field}.animation"),

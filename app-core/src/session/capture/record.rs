@@ -223,6 +223,8 @@ pub(super) struct FrameRecord {
     /// none.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXPOSURE)))]
     pub(super) exposure: Option<f64>,
+    /// What the platform estimated of the light in this frame.
+    pub(super) light_estimate: Option<LightEstimateRecord>,
     /// Pose of the camera: from camera space (+X right, +Y up, looks along -Z, metres) to world. Rigid.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
     pub(super) world_from_camera: [f64; 16],
@@ -236,6 +238,28 @@ pub(super) struct FrameRecord {
     /// moved toy, A the same with the real one. For scoring alone; it needs a `truth`.
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub(super) mask: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct LightEstimateRecord {
+    /// From the scene towards the main light, in world space; of any length but zero.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
+    pub(super) direction_to_light: Option<[f64; 3]>,
+    /// Intensity of the main light: red, green and blue, linear, relative to the exposure.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::INTENSITY)))]
+    pub(super) intensity: Option<[f64; 3]>,
+    /// Intensity of the surroundings in the platform's own unit.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::INTENSITY)))]
+    pub(super) ambient_intensity: Option<f64>,
+    /// Colour temperature of the surroundings, kelvin.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::KELVIN)))]
+    pub(super) color_temperature: Option<f64>,
+    /// Radiance from all around in world space: red, green and blue of each of nine coefficients, linear, relative to the
+    /// exposure. Their (degree, order) are (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2, 2), real and without the
+    /// Condon-Shortley phase: those of degree 1 go with y, z and x.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::HARMONIC)))]
+    pub(super) spherical_harmonics: Option<[f64; 27]>,
 }
 
 /// All kinds of probe in one record.
