@@ -443,3 +443,22 @@ fn pictures_of_another_size_are_refused() {
     assert!(matches!(refused, AlignError::Size { .. }), "{refused}");
     assert!(refused.to_string().contains("camera frame"), "{refused}");
 }
+
+/// Turned further than the outline's coarse rounds reach, but upright, as a ghost is that a hand drops on the table. One
+/// that floats above it is not looked for, and is not taken for found.
+#[test]
+fn a_ghost_dropped_on_the_plane_is_found_upright() {
+    let recorded = &SESSION.1.world_from_object;
+    for (mm, deg) in [
+        (DVec3::new(15.0, 0.0, 0.0), 60.0),
+        (DVec3::new(-10.0, 0.0, -12.0), -70.0),
+    ] {
+        let dropped = align(&disturbed(DVec3::Y, mm, deg));
+        // Measured: .27.
+        let apart = apart_px(&dropped.world_from_object, recorded);
+        assert!(apart < 0.4, "{deg} degrees: {apart} px");
+        let floating = align(&disturbed(DVec3::Y, mm + 30.0 * DVec3::Y, deg));
+        assert!(apart_px(&floating.world_from_object, recorded) > 50.0);
+        assert!(!floating.report.pose.unwrap().is_applied);
+    }
+}

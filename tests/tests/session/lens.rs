@@ -40,7 +40,9 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
     let mut parts = Parts::good();
     let photo = RgbImage::from_fn(SIZE_PX[0], SIZE_PX[1], |x, y| {
         let [u, v] = of_pinhole([f64::from(x) + 0.5, f64::from(y) + 0.5]);
-        Rgb([pattern(u, v).round() as u8; 3])
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+        let code = pattern(u, v).round() as u8;
+        Rgb([code; 3])
     });
     let bytes = encode(&DynamicImage::from(photo), ImageFormat::Png);
     for file in ["frame.png", "plate.jpg"] {
@@ -63,9 +65,9 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
 
 /// The largest difference from the pattern, in codes, where the photograph has all that is needed.
 fn worst(image: &Image) -> f64 {
-    let texels = image.rgba8.chunks_exact(4).enumerate();
-    let errors = texels.filter_map(|(index, texel)| {
-        let (x, y) = (index as u32 % SIZE_PX[0], index as u32 / SIZE_PX[0]);
+    let texels = (0..).zip(image.rgba8.chunks_exact(4));
+    let errors = texels.filter_map(|(index, texel): (u32, _)| {
+        let (x, y) = (index % SIZE_PX[0], index / SIZE_PX[0]);
         let is_within = (12..SIZE_PX[0] - 12).contains(&x) && (10..SIZE_PX[1] - 10).contains(&y);
         let expected = pattern(f64::from(x) + 0.5, f64::from(y) + 0.5);
         is_within.then(|| (f64::from(texel[0]) - expected).abs())
