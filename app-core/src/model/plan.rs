@@ -21,11 +21,9 @@ const N_REFINE_STEPS: u32 = 1;
 const N_INTENSITY_STEPS: u32 = 2;
 /// Workgroups of one sum, enough to fill a phone's cores.
 pub(crate) const MAX_FIT_ROWS: u32 = 64;
-/// Pixels that suffice for the fit's few unknowns; four times as many changed the shadow by at most .002 codes on four
-/// sessions.
-const MAX_FIT_PIXELS: u32 = 1 << 14;
-/// Pixels that suffice for the tints, of which there are far more.
-const MAX_TINT_PIXELS: u32 = 1 << 16;
+/// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
+/// where the real shadow is some thirty pixels large.
+const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 
@@ -64,8 +62,6 @@ pub struct Plan {
     pub n_intensity_steps: u32,
     /// Sampling stride of the fit, in region pixels, along each side.
     pub fit_stride_px: u32,
-    /// Sampling stride of the tints, in region pixels, along each side.
-    pub tint_stride_px: u32,
     /// Workgroups of one sum of the fit.
     pub n_fit_rows: u32,
     /// Work that the scene does not need.
@@ -78,7 +74,7 @@ impl Plan {
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
         let n_lights = facts.n_lights.min(MAX_LIGHTS);
-        let fit_stride_px = stride_px(size_px, MAX_FIT_PIXELS);
+        let fit_stride_px = fit_stride_px(size_px);
         let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
@@ -96,7 +92,6 @@ impl Plan {
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,
             fit_stride_px,
-            tint_stride_px: stride_px(size_px, MAX_TINT_PIXELS),
             n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
             n_lights,
             n_light_points: settings.n_light_points,
@@ -130,11 +125,11 @@ fn self_shadow(n_lights: usize, settings: &ModelSettings) -> ShadowAtlas {
     ShadowAtlas::new(vec![n_points; n_lights], settings.self_shadow_tile_px)
 }
 
-/// The smallest stride that leaves no more than `most` pixels, and at least one along each side.
-fn stride_px(size_px: UVec2, most: u32) -> u32 {
+/// The smallest stride that leaves no more than [`MAX_FIT_PIXELS`], and at least one pixel along each side.
+fn fit_stride_px(size_px: UVec2) -> u32 {
     let largest = size_px.min_element().max(1);
     (1..=largest)
-        .find(|stride| (size_px / *stride).element_product() <= most)
+        .find(|stride| (size_px / *stride).element_product() <= MAX_FIT_PIXELS)
         .unwrap_or(largest)
 }
 

@@ -27,7 +27,7 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
     let occluder = run.stand.occluder(&run.stand.physical);
     let texels = Raster::from_fn(run.region.size_px, |texel| texel);
     let taken = texels.texels().iter().filter(|texel| {
-        let is_taken = **texel % run.plan.tint_stride_px == UVec2::ZERO;
+        let is_taken = **texel % run.plan.fit_stride_px == UVec2::ZERO;
         is_taken && run.validity.at(**texel).y == 1.0
     });
     let of_texel = taken.filter_map(|texel| {

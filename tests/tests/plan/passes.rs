@@ -130,8 +130,8 @@ fn the_fit_takes_enough_pixels_and_not_many() {
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.fit_stride_px));
         let (n_taken, n_pixels) = (width * height, u64::from(size_px[0]) * u64::from(size_px[1]));
         // The next smaller stride would be too many: at most one in four is lost by that, and as much by rounding.
-        assert!(n_taken <= 1 << 14, "{size_px:?}: {n_taken}");
-        assert!(n_taken >= n_pixels.min(1 << 14) / 8, "{size_px:?}: {n_taken}");
+        assert!(n_taken <= 1 << 16, "{size_px:?}: {n_taken}");
+        assert!(n_taken >= n_pixels.min(1 << 16) / 8, "{size_px:?}: {n_taken}");
         assert!((1..=64).contains(&plan.n_fit_rows));
         assert!(
             u64::from(plan.n_fit_rows - 1) * 256 < n_taken,

@@ -78,7 +78,7 @@ impl Pass {
             (&gbuffer.received.view).into(),
             (&gbuffer.base.view).into(),
         ];
-        let stride_px = inputs.plan.tint_stride_px;
+        let stride_px = inputs.plan.fit_stride_px;
         let groups = [
             recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
             recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
