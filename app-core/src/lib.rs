@@ -80,6 +80,7 @@
 #![forbid(unsafe_code)]
 
 pub mod alignment;
+pub mod app;
 pub mod camera_frame;
 pub mod core;
 pub mod frame;

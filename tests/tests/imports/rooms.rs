@@ -7,6 +7,7 @@ use crate::graph::Import;
 /// Within the model, both paths read the state; the frame path may read what was captured, never the other way round.
 const ROOMS: &[&str] = &[
     "",
+    "app",
     "core",
     "stage",
     "model",
