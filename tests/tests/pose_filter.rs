@@ -185,8 +185,7 @@ impl Follow for OneEuro {
             for (speed, moved) in self.speed.iter_mut().zip([moved, turned]) {
                 *speed = speed.lerp(moved / self.since_s, part(1.0));
             }
-            let parts = [20.0, 6.0].map(|slope| slope);
-            let parts = [0, 1].map(|k| part(0.2 + parts[k] * self.speed[k].length()));
+            let parts = [(20.0, 0), (6.0, 1)].map(|(slope_hz, k)| part(0.2 + slope_hz * self.speed[k].length()));
             self.pose = Some(lerped(pose, measured, parts));
         } else {
             self.pose = Some(measured);
@@ -310,14 +309,19 @@ fn figures<F: Follow>(new: impl Fn() -> F, noise: f64) -> Figures {
 #[test]
 fn noise_goes_and_jumps_are_followed() {
     for noise in [1.0, 0.2, 3.0] {
-        let raw = figures(Raw::default, noise);
-        let exponential = figures(Exponential::default, noise);
-        let one_euro = figures(OneEuro::default, noise);
-        let ours = figures(filter, noise);
-        println!(
-            "noise x {noise}: raw {raw:?}\nexponential {exponential:?}\none euro {one_euro:?}\nours {ours:?}\n"
-        );
-        assert!(ours.jitter_mm < 0.4 * raw.jitter_mm && ours.jitter_deg < 0.4 * raw.jitter_deg);
+        let [raw, exponential, one_euro, ours] = [
+            figures(Raw::default, noise),
+            figures(Exponential::default, noise),
+            figures(OneEuro::default, noise),
+            figures(filter, noise),
+        ];
+        println!("noise x {noise}: jitter mm, deg; lag ms; settled ms; error mm");
+        for figures in [raw, exponential, one_euro, ours] {
+            println!("{figures:.2?}");
+        }
+        // Where the noise is small, the drift is followed sooner rather than smoothed.
+        let part = if noise < 1.0 { 0.5 } else { 0.25 };
+        assert!(ours.jitter_mm < part * raw.jitter_mm && ours.jitter_deg < part * raw.jitter_deg);
         if noise <= 1.0 {
             for other in [exponential, one_euro] {
                 assert!(
@@ -327,7 +331,7 @@ fn noise_goes_and_jumps_are_followed() {
                 assert!(ours.error_mm[0] < other.error_mm[0] && ours.error_mm[1] < 0.5 * other.error_mm[1]);
             }
         }
-        // Two of 28 measure without any noise but three axes: the judge itself.
+        // The judge itself: what is measured without any filter is the noise of three axes, and no lag.
         assert!(
             (raw.jitter_mm / (3_f64.sqrt() * noise) - 1.0).abs() < 0.05,
             "{raw:?}"

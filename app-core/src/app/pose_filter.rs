@@ -5,7 +5,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use crate::scene::check;
 
 /// What the pose itself does in a second: standard deviation of its random walk along each axis, in metres.
-const DRIFT_M: f64 = 3e-4;
+const DRIFT_M: f64 = 5e-4;
 /// The same about each axis, in radians.
 const DRIFT_RAD: f64 = 1e-3;
 /// Sum of the squares of six deviations, each over its standard deviation, that chance exceeds once in ten thousand
