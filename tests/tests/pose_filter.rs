@@ -185,7 +185,8 @@ impl Follow for OneEuro {
             for (speed, moved) in self.speed.iter_mut().zip([moved, turned]) {
                 *speed = speed.lerp(moved / self.since_s, part(1.0));
             }
-            let parts = [(20.0, 0), (6.0, 1)].map(|(slope_hz, k)| part(0.2 + slope_hz * self.speed[k].length()));
+            let parts =
+                [(20.0, 0), (6.0, 1)].map(|(slope_hz, k)| part(0.2 + slope_hz * self.speed[k].length()));
             self.pose = Some(lerped(pose, measured, parts));
         } else {
             self.pose = Some(measured);

