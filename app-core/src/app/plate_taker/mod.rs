@@ -95,14 +95,14 @@ pub enum PlateRefusal {
 /// linear light; noise goes down by the root of their number. Where the camera is not held still for so long, what there
 /// is by then is taken: the most pictures of one view, or the sharpest one.
 ///
-/// What is judged is a picture of some 240 squares along its longer side, held against the shot before and against the
+/// What is judged is a picture of some 160 squares along its longer side, held against the shot before and against the
 /// first of the view.
 /// Measured by `tests/tests/plate_taker.rs` in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, what the
 /// sixteenth part of its variance and the rounding to codes add up to; after a hand has crossed it with 0.80, no pixel more
 /// than 3.7 off.
 ///
 /// Not told: a hand that rests in the picture without any movement from the first shot on; something that covers less
-/// than half of a tile of six squares, 48 pixels of 1920; and whether the camera moves over a place without any texture,
+/// than half of a tile of four squares, 48 pixels of 1920; and whether the camera moves over a place without any texture,
 /// where it does no harm.
 #[derive(Clone, Debug, Default)]
 pub struct PlateTaker {

@@ -3,11 +3,11 @@
 use crate::camera_frame::CameraImage;
 
 /// Columns and rows that a reduced picture has at most.
-const MAX_SIDE: usize = 240;
+const MAX_SIDE: usize = 160;
 /// Squares along a side of the tiles that detail is summed over.
 const DETAIL_TILE: usize = 6;
 /// Rows of the picture from one to the next whose detail is looked at.
-const DETAIL_STEP: usize = 2;
+const DETAIL_STEP: usize = 4;
 
 /// Luma in codes, each number the mean of a square of pixels; and how much detail the picture has.
 #[derive(Clone, Debug)]

@@ -8,9 +8,9 @@ use super::reduced::Reduced;
 
 /// Shift along both axes, turn, zoom; gain and offset of the codes.
 const N_UNKNOWN: usize = 6;
-const N_ITERATIONS: usize = 4;
+const N_ITERATIONS: usize = 3;
 /// Side of a tile, in squares of the reduced picture.
-const TILE: usize = 6;
+const TILE: usize = 4;
 /// How much less a gradient explains than it is: edges fall otherwise on the squares after a shift.
 const OF_GRADIENT: f32 = 0.25;
 /// Codes that two pictures of the same place differ by, whatever their noise.
@@ -71,7 +71,7 @@ struct Fit<'a> {
 }
 
 impl<'a> Fit<'a> {
-    #[allow(clippy::cast_precision_loss, reason = "at most 240")]
+    #[allow(clippy::cast_precision_loss, reason = "at most 160")]
     fn new(one: &'a Reduced) -> Self {
         let [columns, rows] = one.size;
         let mut gradients = vec![[0.0; 2]; columns * rows];
@@ -94,7 +94,7 @@ impl<'a> Fit<'a> {
     fn place(&self, at: usize) -> [f32; 2] {
         let columns = self.one.size[0];
         let half = self.middle[0].max(self.middle[1]);
-        #[allow(clippy::cast_precision_loss, reason = "at most 240")]
+        #[allow(clippy::cast_precision_loss, reason = "at most 160")]
         let [x, y] = [at % columns, at / columns].map(|place| place as f32);
         [(x - self.middle[0]) / half, (y - self.middle[1]) / half]
     }
@@ -110,7 +110,7 @@ impl<'a> Fit<'a> {
     /// Where there is little texture, gain and offset cannot be told apart, but both together can.
     fn gain(&self, unknown: &SVector<f32, N_UNKNOWN>) -> f64 {
         let sum: f64 = self.one.luma.iter().map(|luma| f64::from(*luma)).sum();
-        #[allow(clippy::cast_precision_loss, reason = "at most 240 x 240")]
+        #[allow(clippy::cast_precision_loss, reason = "at most 160 x 160")]
         let mean = sum / self.one.luma.len() as f64;
         let change = f64::from(unknown[4]) * mean + f64::from(unknown[5]);
         // A code is the least that pictures differ by.
@@ -122,7 +122,7 @@ impl<'a> Fit<'a> {
         let columns = self.one.size[0];
         let residual = |(at, luma): (usize, &f32)| {
             let moved = self.moved(unknown, self.place(at));
-            #[allow(clippy::cast_precision_loss, reason = "at most 240")]
+            #[allow(clippy::cast_precision_loss, reason = "at most 160")]
             let seen = sample(
                 other,
                 [(at % columns) as f32 + moved[0], (at / columns) as f32 + moved[1]],
@@ -169,8 +169,14 @@ impl<'a> Fit<'a> {
                 1.0,
             ]);
             // The residual is taken where things went, so that a further step is towards less of it.
-            normal += weight * row * row.transpose();
-            right += weight * *residual * row;
+            let weighted = weight * row;
+            // The lower half: that is all that is read of it.
+            for column in 0..N_UNKNOWN {
+                for line in column..N_UNKNOWN {
+                    normal[(line, column)] += row[line] * weighted[column];
+                }
+            }
+            right += *residual * weighted;
         }
         // Without texture nothing is known of movement: then none is the likeliest, give or take two squares; the codes stay
         // within a few percent.
@@ -195,8 +201,9 @@ impl<'a> Fit<'a> {
             for left in (0..columns).step_by(TILE) {
                 let (mut n, mut n_far, mut sum, mut edges) = (0.0, 0.0, 0.0, 0.0);
                 for y in top..(top + TILE).min(rows) {
-                    for at in y * columns + left..y * columns + (left + TILE).min(columns) {
-                        let Some(residual) = residuals[at] else { continue };
+                    let squares = y * columns + left..y * columns + (left + TILE).min(columns);
+                    for (at, residual) in squares.clone().zip(&residuals[squares]) {
+                        let Some(residual) = residual else { continue };
                         let edge = OF_GRADIENT * self.steepest(at);
                         n += 1.0;
                         sum += residual;

@@ -123,7 +123,7 @@ impl CameraSum {
         }
         self.position += other.position;
         let is_near = self.rotation.dot(other.rotation) >= 0.0;
-        self.rotation = self.rotation + if is_near { other.rotation } else { -other.rotation };
+        self.rotation += if is_near { other.rotation } else { -other.rotation };
     }
 
     fn mean(&self, n: f64) -> Camera {
