@@ -85,6 +85,8 @@ pub mod camera_frame;
 pub mod core;
 pub mod frame;
 pub mod gpu;
+pub mod interface;
+pub mod live;
 pub mod preset;
 pub mod probe;
 pub mod recording;

@@ -26,3 +26,4 @@ pub mod report;
 pub mod session_format;
 pub mod stability;
 pub mod stored;
+pub mod view;

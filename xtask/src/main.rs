@@ -65,6 +65,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Run the app on a desktop, with a session as its camera (`view --help` tells more)
+    #[command(disable_help_flag = true)]
+    View {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Rewrite the golden pictures and the schema of sessions (`bless --help` tells more)
     #[command(disable_help_flag = true)]
     Bless {
@@ -121,6 +128,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
+        Command::View { args } => return harness::run(&toolchain, "view", &args),
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,

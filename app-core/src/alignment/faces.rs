@@ -4,25 +4,25 @@ use std::collections::BTreeMap;
 
 /// The triangles of a mesh with every edge that two of them share, or one has alone.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Faces {
+pub(crate) struct Faces {
     /// Corners, counter-clockwise seen from outside.
-    pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) edges: Vec<Edge>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) edges: Vec<Edge>,
 }
 
 /// An edge of one or two triangles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     /// In the order in which the first of the triangles has them.
-    pub(super) corners: [u32; 2],
+    pub(crate) corners: [u32; 2],
     /// Indices of the triangle that has the corners in this order, and of the one that has them the other way round; where there is
     /// none, the number of triangles.
-    pub(super) sides: [u32; 2],
+    pub(crate) sides: [u32; 2],
 }
 
 impl Faces {
     /// Pairs the edges: as many as can be, but none of a triangle with that of its own other side, which is never seen beside it.
-    pub(super) fn new(triangles: Vec<[u32; 3]>) -> Self {
+    pub(crate) fn new(triangles: Vec<[u32; 3]>) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "a toy has far fewer")]
         let none = triangles.len() as u32;
         let mut edges: Vec<Edge> = Vec::with_capacity(2 * triangles.len());

@@ -24,7 +24,7 @@
 
 mod camera;
 mod error;
-mod faces;
+pub(crate) mod faces;
 mod focal_length;
 mod kept_lights;
 mod lights;

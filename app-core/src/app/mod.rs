@@ -1,7 +1,260 @@
-//! The logic of the app that both phones and the desktop share: no platform, no clock, no files.
+//! The logic of an app: what both phones' shells and the desktop have in common, from the first button to the toy that moves.
+//!
+//! A shell tells what happens ([`ShellEvent`]) and does what it is asked for ([`ShellCommand`]); it decides nothing. Here is no
+//! clock, no file, no device and no thread: time comes with the frames, and an alignment, which takes a second, is a job that the
+//! shell runs where it likes. So every order of events can be tested on a desktop.
 
+mod aligning;
+mod event;
+mod frames;
+mod ghost;
+mod ghost_shape;
+mod log;
+mod notice;
 mod plate_taker;
+mod platform;
+mod playback;
 mod pose_filter;
+mod show;
+mod step;
+mod wishes;
 
+use std::sync::Arc;
+
+use crate::camera_frame::{Arrivals, CameraFrame, Fade, FoundPlane};
+use crate::scene::{Camera, Plate};
+use crate::toy::Toy;
+
+use aligning::Place;
+use ghost::Ghost;
+use ghost_shape::GhostShape;
+use platform::{Captures, Commanded, Platform};
+
+pub use aligning::{AlignJob, AlignedJob, Verdict};
+pub use event::{ArSession, Device, Permission, Saved, ShellCommand, ShellEvent, Thermal, Wish};
+pub use log::Log;
+pub use notice::Notice;
 pub use plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
+pub use platform::Obstacle;
+pub use playback::Playback;
 pub use pose_filter::{PoseFilter, PoseNoise, PoseStep};
+pub use show::Show;
+pub use step::{Cause, Step};
+
+use notice::Notices;
+
+/// The app.
+#[derive(Debug)]
+pub struct App {
+    step: Step,
+    platform: Platform,
+    commanded: Commanded,
+    captures: Captures,
+    /// The person began before the camera was allowed.
+    wants_to_begin: bool,
+    /// The tracker is to begin another world.
+    wants_new_world: bool,
+    /// The platform is to hold the toy's place.
+    wants_anchor: bool,
+    shows_profile: bool,
+    arrivals: Arrivals,
+    /// Seconds between frames that were taken, all in all.
+    time_s: f64,
+    fade: Fade,
+    latest: Option<Arc<CameraFrame>>,
+    /// The latest that could be trusted.
+    camera: Option<Camera>,
+    toy: Arc<Toy>,
+    table: Option<FoundPlane>,
+    plate_taker: PlateTaker,
+    plate_step: Option<PlateStep>,
+    plates: Vec<Plate>,
+    /// That of the plates, where the platform tells; frames are told relative to it.
+    plate_exposure: Option<f64>,
+    ghost: Option<Ghost>,
+    ghost_shape: GhostShape,
+    place: Option<Place>,
+    n_places: u64,
+    playback: Playback,
+    notices: Notices,
+    log: Log,
+}
+
+impl App {
+    /// An app with a toy to begin with.
+    #[must_use]
+    pub fn new(toy: Arc<Toy>) -> Self {
+        Self {
+            step: Step::default(),
+            platform: Platform::default(),
+            commanded: Commanded::default(),
+            captures: Captures::default(),
+            wants_to_begin: false,
+            wants_new_world: false,
+            wants_anchor: false,
+            shows_profile: false,
+            arrivals: Arrivals::default(),
+            time_s: 0.0,
+            fade: Fade::default(),
+            latest: None,
+            camera: None,
+            playback: Playback::of(&toy),
+            ghost_shape: GhostShape::of(&toy),
+            toy,
+            table: None,
+            plate_taker: PlateTaker::default(),
+            plate_step: None,
+            plates: Vec::new(),
+            plate_exposure: None,
+            ghost: None,
+            place: None,
+            n_places: 0,
+            notices: Notices::default(),
+            log: Log::default(),
+        }
+    }
+
+    /// Takes what happened, and returns what is to be done about it, in this order.
+    #[must_use]
+    pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
+        let step = self.step;
+        let mut commands = Vec::new();
+        match event {
+            ShellEvent::Permission(permission) => self.permission(permission),
+            ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground),
+            ShellEvent::Surface(size_px) => self.platform.surface_px = size_px,
+            ShellEvent::Device(device) => self.device(device, &mut commands),
+            ShellEvent::ArSession(ar_session) => self.ar_session(ar_session),
+            ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
+            ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
+            ShellEvent::MemoryLow => self.memory_low(),
+            ShellEvent::Aligned(done) => self.aligned(done),
+            ShellEvent::Toy(read) => self.take_toy(read),
+            ShellEvent::Saved(saved) => self.saved(saved),
+            ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
+        }
+        let wanted = Commanded::wanted(self.step, &self.platform, self.captures);
+        self.captures = wanted.captures;
+        let is_new_world = std::mem::take(&mut self.wants_new_world);
+        commands.extend(self.commanded.follow(wanted, is_new_world));
+        if self.step != step {
+            commands.push(ShellCommand::Announce(self.step));
+        }
+        commands
+    }
+
+    /// What a person is about to do.
+    #[must_use]
+    pub fn step(&self) -> Step {
+        self.step
+    }
+
+    /// What is in the way of that.
+    #[must_use]
+    pub fn obstacle(&self) -> Option<Obstacle> {
+        self.platform.obstacle(self.step)
+    }
+
+    /// What a person should hear of, for some seconds.
+    #[must_use]
+    pub fn notice(&self) -> Option<&Notice> {
+        self.notices.at(self.time_s)
+    }
+
+    /// How far the photograph of the empty place is, in its step.
+    #[must_use]
+    pub fn plate_step(&self) -> Option<&PlateStep> {
+        self.plate_step.as_ref()
+    }
+
+    /// What the latest alignment says.
+    #[must_use]
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.place.as_ref()?.verdict.as_ref()
+    }
+
+    /// Whether there is a photograph of the empty place.
+    #[must_use]
+    pub fn has_plate(&self) -> bool {
+        !self.plates.is_empty()
+    }
+
+    /// The moment that is shown.
+    #[must_use]
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    /// The toy.
+    #[must_use]
+    pub fn toy(&self) -> &Arc<Toy> {
+        &self.toy
+    }
+
+    /// Whether a video is being made.
+    #[must_use]
+    pub fn is_making_video(&self) -> bool {
+        self.commanded.captures.video
+    }
+
+    /// Whether the session is being recorded.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        self.commanded.captures.recording
+    }
+
+    /// Whether times are shown over the picture.
+    #[must_use]
+    pub fn shows_profile(&self) -> bool {
+        self.shows_profile
+    }
+
+    /// How hot the device is.
+    #[must_use]
+    pub fn thermal(&self) -> Thermal {
+        self.platform.thermal
+    }
+
+    /// What happened, for an export.
+    #[must_use]
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Goes where a cause leads, and makes ready for it.
+    fn go(&mut self, cause: Cause) {
+        let next = self.step.after(cause);
+        self.log.line(self.time_s, &(cause, next));
+        if next == self.step && cause != Cause::StartOver && cause != Cause::WorldLost {
+            return;
+        }
+        self.step = next;
+        // What was said of the step before helps no longer.
+        self.notices = Notices::default();
+        match next {
+            Step::Welcome | Step::FindTable => self.forget_place(),
+            Step::TakePlate => {
+                self.place = None;
+                self.plate_taker = PlateTaker::default();
+                self.plate_step = None;
+            }
+            Step::PlaceToy => self.place = None,
+            Step::Align => self.place_toy(),
+            Step::Play => {}
+        }
+        if next != Step::Play {
+            self.fade = Fade::default();
+        }
+    }
+
+    /// All that is of one place is dropped.
+    fn forget_place(&mut self) {
+        self.table = None;
+        self.plates.clear();
+        self.plate_exposure = None;
+        self.ghost = None;
+        self.place = None;
+        self.camera = None;
+        self.plate_step = None;
+    }
+}

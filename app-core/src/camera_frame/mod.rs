@@ -4,6 +4,7 @@ mod arrival;
 mod display;
 mod encoding;
 mod fade;
+mod frame;
 mod image;
 mod planes;
 
@@ -11,6 +12,7 @@ pub use arrival::{Arrival, Arrivals, Stamp};
 pub use display::{Display, Fit};
 pub use encoding::{CodeRange, LumaCoefficients, YcbcrEncoding};
 pub use fade::Fade;
+pub use frame::{Anchor, CameraFrame, Exposure, FoundPlane, Tracking};
 pub use image::CameraImage;
 pub(crate) use planes::half_size_px;
 pub use planes::{PlanarImage, Plane, PlaneError, Planes};

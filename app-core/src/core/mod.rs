@@ -3,6 +3,7 @@
 mod error;
 mod fit_warnings;
 pub(crate) mod inspect;
+mod preview;
 mod warm_up;
 mod window;
 
@@ -22,6 +23,7 @@ use crate::scene::{Image, Scene};
 use crate::stage::Stage;
 use crate::stage::method::Method;
 
+use preview::Preview;
 use window::{Finished, Window};
 
 pub use error::CoreError;
@@ -32,6 +34,8 @@ pub struct Core {
     gpu: Arc<Gpu>,
     window: Option<Window>,
     stage: Option<Stage>,
+    /// Where a camera's picture was shown last, not a frame's.
+    preview: Option<Preview>,
     /// Only for those who ask.
     timer: Option<Timer>,
 }
@@ -72,6 +76,7 @@ impl Core {
             gpu: Arc::new(gpu),
             window,
             stage: None,
+            preview: None,
             timer: None,
         }
     }
@@ -97,16 +102,45 @@ impl Core {
         }
     }
 
+    /// Takes a camera's picture as it is for the latest, until the next frame: no scene is needed, and nothing is learned.
+    ///
+    /// # Errors
+    /// When its size is out of range, or the device refuses.
+    pub fn show_camera(&mut self, image: &CameraImage) -> Result<(), CoreError> {
+        self.check_sides(image.size_px())?;
+        let size_px = image.size_px();
+        let kept = self.preview.take().filter(|preview| preview.size_px() == size_px);
+        let preview = self.gpu.guarded(|| {
+            let mut preview = kept.unwrap_or_else(|| Preview::new(&self.gpu, size_px));
+            preview.take(&self.gpu, image);
+            preview
+        })?;
+        self.preview = Some(preview);
+        Ok(())
+    }
+
     /// Shows the latest picture, or black before the first.
     ///
     /// # Errors
     /// When the surface is lost for good; one that is only out of date is set up anew.
     pub fn present(&mut self, display: Display) -> Result<(), CoreError> {
+        self.present_under(display, |_, _| {})
+    }
+
+    /// As [`Core::present`]; `paint` may paint over the picture before it is shown.
+    ///
+    /// # Errors
+    /// As [`Core::present`].
+    pub(crate) fn present_under(
+        &mut self,
+        display: Display,
+        paint: impl FnOnce(&Gpu, &wgpu::Texture),
+    ) -> Result<(), CoreError> {
+        let picture = latest(self.preview.as_ref(), self.stage.as_ref());
         let Some(window) = &mut self.window else {
             return Ok(());
         };
-        let picture = self.stage.as_ref().map(Finished::of);
-        Ok(window.present(&self.gpu, picture, display)?)
+        Ok(window.present(&self.gpu, picture, display, paint)?)
     }
 
     /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the surface. The target's
@@ -115,10 +149,10 @@ impl Core {
     /// # Errors
     /// When there is no scene, or the device refuses.
     pub fn draw_on(&self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
-        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let picture = latest(self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
         self.gpu.guarded(|| {
             let screen = screen::Pass::new(&self.gpu, target.format());
-            window::show(&self.gpu, &screen, (Finished::of(stage), display), target);
+            window::show(&self.gpu, &screen, (picture, display), target);
         })?;
         Ok(())
     }
@@ -129,11 +163,7 @@ impl Core {
     /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
     pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
         scene.check()?;
-        let largest_px = self.gpu.device.raw.limits().max_texture_dimension_2d;
-        let size_px = [scene.width_px, scene.height_px];
-        if size_px.iter().any(|side| !(1..=largest_px).contains(side)) {
-            return Err(CoreError::SizeOutOfRange { size_px, largest_px });
-        }
+        self.check_sides([scene.width_px, scene.height_px])?;
         for plate in &scene.plates {
             check_size("plate", &scene, &Arc::clone(&plate.image).into())?;
         }
@@ -157,6 +187,7 @@ impl Core {
     /// refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
         let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        self.preview = None;
         input.check()?;
         check_size("camera frame", stage.scene(), &input.image)?;
         if let Some(timer) = &mut self.timer {
@@ -226,6 +257,15 @@ impl Core {
         Ok(times.unwrap_or_default())
     }
 
+    fn check_sides(&self, size_px: [u32; 2]) -> Result<(), CoreError> {
+        let largest_px = self.gpu.device.raw.limits().max_texture_dimension_2d;
+        if size_px.iter().all(|side| (1..=largest_px).contains(side)) {
+            Ok(())
+        } else {
+            Err(CoreError::SizeOutOfRange { size_px, largest_px })
+        }
+    }
+
     fn model(&self) -> Option<&Model> {
         self.stage
             .as_ref()
@@ -238,6 +278,11 @@ impl Core {
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
+}
+
+/// The picture that was made or taken last.
+fn latest<'a>(preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
+    preview.map(Preview::finished).or(stage.map(Finished::of))
 }
 
 fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {

@@ -24,6 +24,10 @@ pub(super) struct Finished<'a> {
 }
 
 impl<'a> Finished<'a> {
+    pub(super) fn new(view: &'a wgpu::TextureView, size_px: [u32; 2]) -> Self {
+        Self { view, size_px }
+    }
+
     pub(super) fn of(stage: &'a Stage) -> Self {
         Self {
             view: stage.finished(),
@@ -70,6 +74,7 @@ impl Window {
         gpu: &Gpu,
         picture: Option<Finished<'_>>,
         display: Display,
+        paint: impl FnOnce(&Gpu, &wgpu::Texture),
     ) -> Result<(), GpuError> {
         let texture = match self.surface.get_current_texture() {
             CurrentSurfaceTexture::Success(texture) | CurrentSurfaceTexture::Suboptimal(texture) => texture,
@@ -88,6 +93,7 @@ impl Window {
             Some(picture) => show(gpu, &self.screen, (picture, display), &texture.texture),
             None => blacken(gpu, &texture.texture),
         }
+        paint(gpu, &texture.texture);
         gpu.queue.present(texture);
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
 use crate::passes::camera_planes::{self, Planes};
 
-pub(super) struct CameraTexture {
+pub(crate) struct CameraTexture {
     texture: Texture,
     /// View of its sRGB codes, not decoded.
     codes: wgpu::TextureView,
@@ -20,7 +20,7 @@ pub(super) struct CameraTexture {
 }
 
 impl CameraTexture {
-    pub(super) fn new(gpu: &Gpu, size_px: UVec2) -> Self {
+    pub(crate) fn new(gpu: &Gpu, size_px: UVec2) -> Self {
         let texture = Texture::target(gpu, "frame", size_px, TextureFormat::Rgba8UnormSrgb);
         Self {
             codes: texture.codes(gpu),
@@ -31,17 +31,17 @@ impl CameraTexture {
     }
 
     /// The picture, decoded where it is read.
-    pub(super) fn view(&self) -> &wgpu::TextureView {
+    pub(crate) fn view(&self) -> &wgpu::TextureView {
         &self.texture.view
     }
 
     /// The picture's sRGB codes.
-    pub(super) fn codes(&self) -> &wgpu::TextureView {
+    pub(crate) fn codes(&self) -> &wgpu::TextureView {
         &self.codes
     }
 
     /// Uploads `image` unless it is the one that is there already.
-    pub(super) fn take(&mut self, recorder: &mut Recorder<'_>, image: &CameraImage) {
+    pub(crate) fn take(&mut self, recorder: &mut Recorder<'_>, image: &CameraImage) {
         if self.image.as_ref().is_some_and(|known| known.is(image)) {
             return;
         }
@@ -63,7 +63,7 @@ impl CameraTexture {
     }
 
     /// Takes what is there for unknown.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.image = None;
     }
 }

@@ -1,6 +1,6 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
-mod camera_texture;
+pub(crate) mod camera_texture;
 mod footprint;
 pub(crate) mod method;
 mod placement;

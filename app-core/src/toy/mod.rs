@@ -87,6 +87,11 @@ impl Toy {
         &self.rig.clips
     }
 
+    /// Names of the clips for the calls that take one, in the order of the file.
+    pub fn clip_ids(&self) -> impl Iterator<Item = ClipId> + use<> {
+        (0..self.clips().len()).map(ClipId)
+    }
+
     /// Finds a clip by its name, or by `#N`, its number from 0. A name wins over a number.
     ///
     /// # Errors

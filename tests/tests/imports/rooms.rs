@@ -7,6 +7,8 @@ use crate::graph::Import;
 /// Within the model, both paths read the state; the frame path may read what was captured, never the other way round.
 const ROOMS: &[&str] = &[
     "",
+    "live",
+    "interface",
     "app",
     "core",
     "stage",

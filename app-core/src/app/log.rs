@@ -1,0 +1,38 @@
+//! What happened, for an export: the latest lines alone.
+
+use std::collections::VecDeque;
+use std::fmt::Write;
+
+/// Lines that are kept.
+const N_LINES: usize = 512;
+
+/// A ring of lines.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    lines: VecDeque<String>,
+    n_dropped: u64,
+}
+
+impl Log {
+    /// Keeps a line with its time, in seconds since the first frame.
+    pub(super) fn line(&mut self, time_s: f64, what: &dyn std::fmt::Debug) {
+        if self.lines.len() == N_LINES {
+            self.lines.pop_front();
+            self.n_dropped += 1;
+        }
+        self.lines.push_back(format!("{time_s:10.3} {what:?}"));
+    }
+
+    /// All of it, the oldest line first.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        if self.n_dropped > 0 {
+            let _ = writeln!(text, "{} earlier lines are not kept", self.n_dropped);
+        }
+        for line in &self.lines {
+            let _ = writeln!(text, "{line}");
+        }
+        text
+    }
+}

@@ -1,0 +1,45 @@
+//! What a person should hear of, for some seconds.
+
+use super::event::Saved;
+
+/// How long it stands, in seconds.
+const SHOWN_S: f64 = 6.0;
+
+/// What a person should hear of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Notice {
+    /// There is no table where the person tapped.
+    NoTableThere,
+    /// The toy is not where its ghost is: so many pixels, where that is known.
+    ToyMissed {
+        /// Outline to picture.
+        outline_px: Option<f64>,
+    },
+    /// A file is no toy, and why.
+    ToyRefused(String),
+    /// The tracker has lost the place.
+    WorldLost,
+    /// Graphics had to be set up again.
+    DeviceRestarted,
+    /// A photo, a video or a recording.
+    Saved(Saved),
+    /// Memory is short: the recording was ended.
+    MemoryLow,
+}
+
+/// The latest notice.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Notices {
+    latest: Option<(f64, Notice)>,
+}
+
+impl Notices {
+    pub(super) fn tell(&mut self, time_s: f64, notice: Notice) {
+        self.latest = Some((time_s, notice));
+    }
+
+    pub(super) fn at(&self, time_s: f64) -> Option<&Notice> {
+        let (told_s, notice) = self.latest.as_ref()?;
+        (time_s - told_s < SHOWN_S).then_some(notice)
+    }
+}

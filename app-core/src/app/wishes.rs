@@ -1,0 +1,177 @@
+//! What happens when a person wishes something, or the platform changes.
+
+use std::sync::Arc;
+
+use super::App;
+use super::event::{ArSession, Device, Permission, Saved, ShellCommand, Wish};
+use super::ghost::Ghost;
+use super::ghost_shape::GhostShape;
+use super::notice::Notice;
+use super::playback::Playback;
+use super::step::{Cause, Step};
+use crate::toy::Toy;
+
+impl App {
+    pub(super) fn wish(&mut self, wish: Wish, commands: &mut Vec<ShellCommand>) {
+        match wish {
+            Wish::Begin => self.begin(commands),
+            Wish::OpenSettings => commands.push(ShellCommand::OpenSettings),
+            Wish::Tap(pixel) => self.tap(pixel),
+            Wish::Drag { from_px, to_px } => {
+                if let (Step::PlaceToy, Some(ghost), Some(camera)) =
+                    (self.step, &mut self.ghost, &self.camera)
+                {
+                    ghost.drag(camera, [from_px, to_px]);
+                }
+            }
+            Wish::Twist(angle_rad) => {
+                if let (Step::PlaceToy, Some(ghost)) = (self.step, &mut self.ghost) {
+                    ghost.turn(angle_rad);
+                }
+            }
+            Wish::SkipPlate => self.go(Cause::PlateSkipped),
+            Wish::Placed => self.placed(),
+            Wish::Replace => self.go(Cause::Replace),
+            Wish::RetakePlate => self.go(Cause::RetakePlate),
+            Wish::StartOver => {
+                self.platform.ar_session = match self.platform.ar_session {
+                    ArSession::Failed => ArSession::Able,
+                    other => other,
+                };
+                self.go(Cause::StartOver);
+                self.wants_new_world = self.step == Step::FindTable;
+            }
+            Wish::Choose(clip) => self.playback.choose(&self.toy, clip),
+            Wish::Play(is_playing) => self.playback.play(is_playing),
+            Wish::Scrub(time_s) => self.playback.scrub(time_s),
+            Wish::SavePhoto => {
+                if self.step == Step::Play {
+                    commands.push(ShellCommand::SavePhoto);
+                }
+            }
+            Wish::Video(is_on) => self.captures.video = is_on,
+            Wish::Record(is_on) => self.captures.recording = is_on,
+            Wish::ShowProfile(is_on) => self.shows_profile = is_on,
+            Wish::PickToy => commands.push(ShellCommand::PickToy),
+            Wish::Share => commands.push(ShellCommand::Share),
+        }
+    }
+
+    fn begin(&mut self, commands: &mut Vec<ShellCommand>) {
+        match self.platform.permission {
+            Permission::Granted => self.go(Cause::Begun),
+            Permission::Unknown | Permission::Denied if self.step == Step::Welcome => {
+                self.wants_to_begin = true;
+                commands.push(ShellCommand::AskPermission);
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn permission(&mut self, permission: Permission) {
+        self.platform.permission = permission;
+        match permission {
+            Permission::Granted => {
+                if std::mem::take(&mut self.wants_to_begin) {
+                    self.go(Cause::Begun);
+                }
+            }
+            Permission::Denied | Permission::Barred => {
+                self.wants_to_begin = false;
+                self.go(Cause::CameraDenied);
+            }
+            Permission::Unknown => {}
+        }
+    }
+
+    fn tap(&mut self, pixel: glam::DVec2) {
+        match (self.step, &self.camera, &self.latest) {
+            (Step::FindTable, Some(camera), Some(latest)) => {
+                let hits = latest.planes.iter().filter_map(|plane| {
+                    let place = super::ghost::seen_at(&plane.world_from_plane, camera, pixel)?;
+                    let is_on = place.abs().cmple(plane.half_extent_m).all();
+                    let eye = plane
+                        .world_from_plane
+                        .inverse()
+                        .transform_point3(camera.world_from_camera.w_axis.truncate());
+                    is_on.then_some((place.distance(glam::DVec2::new(eye.x, eye.z)), plane))
+                });
+                let nearest = hits.min_by(|(a, _), (b, _)| a.total_cmp(b));
+                let Some((_, plane)) = nearest else {
+                    return self.tell(Notice::NoTableThere);
+                };
+                self.table = Some(plane.clone());
+                self.ghost = Ghost::at(&self.toy, plane, (camera, pixel)).ok().flatten();
+                self.go(Cause::TableChosen);
+            }
+            (Step::PlaceToy, Some(camera), _) => match (&mut self.ghost, &self.table) {
+                (Some(ghost), _) => ghost.move_to(camera, pixel),
+                (ghost, Some(table)) => *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten(),
+                _ => {}
+            },
+            _ => {}
+        }
+    }
+
+    fn placed(&mut self) {
+        if self.ghost.is_some() && self.camera.is_some() {
+            self.go(Cause::ToyPlaced);
+        }
+    }
+
+    pub(super) fn foreground(&mut self, is_foreground: bool) {
+        self.platform.is_foreground = is_foreground;
+        // What comes after a pause is far from what was before it: no pose of then is drawn over it.
+        self.fade = crate::camera_frame::Fade::default();
+    }
+
+    pub(super) fn device(&mut self, device: Device, commands: &mut Vec<ShellCommand>) {
+        let was = std::mem::replace(&mut self.platform.device, device);
+        match (was, device) {
+            (_, Device::Lost) => commands.push(ShellCommand::ReopenDevice),
+            (Device::Lost, Device::Ready) => self.tell(Notice::DeviceRestarted),
+            _ => {}
+        }
+    }
+
+    pub(super) fn ar_session(&mut self, ar_session: ArSession) {
+        self.platform.ar_session = ar_session;
+        if ar_session != ArSession::Able {
+            self.platform.tracking = crate::camera_frame::Tracking::Starting;
+        }
+    }
+
+    pub(super) fn memory_low(&mut self) {
+        if self.captures.recording || self.captures.video {
+            self.captures = super::Captures::default();
+            self.tell(Notice::MemoryLow);
+        }
+    }
+
+    pub(super) fn saved(&mut self, saved: Saved) {
+        if saved != Saved::Done {
+            // A recording that cannot be written goes on in vain.
+            self.captures = super::Captures::default();
+        }
+        self.tell(Notice::Saved(saved));
+    }
+
+    /// A toy of the person's own; what was photographed of the place stays.
+    pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, String>) {
+        match read {
+            Ok(toy) => {
+                self.playback = Playback::of(&toy);
+                self.ghost_shape = GhostShape::of(&toy);
+                self.toy = toy;
+                self.ghost = None;
+                self.go(Cause::Replace);
+            }
+            Err(reason) => self.tell(Notice::ToyRefused(reason)),
+        }
+    }
+
+    pub(super) fn tell(&mut self, notice: Notice) {
+        self.log.line(self.time_s, &notice);
+        self.notices.tell(self.time_s, notice);
+    }
+}

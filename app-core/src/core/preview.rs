@@ -1,0 +1,39 @@
+//! A camera's picture as it is, before there is a scene or while nothing is known of one.
+
+use glam::UVec2;
+
+use super::window::Finished;
+use crate::camera_frame::CameraImage;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::stage::camera_texture::CameraTexture;
+
+/// A camera's picture on the device.
+pub(super) struct Preview {
+    texture: CameraTexture,
+    size_px: [u32; 2],
+}
+
+impl Preview {
+    pub(super) fn new(gpu: &Gpu, size_px: [u32; 2]) -> Self {
+        Self {
+            texture: CameraTexture::new(gpu, UVec2::from(size_px)),
+            size_px,
+        }
+    }
+
+    pub(super) fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// Uploads the picture, unless it is the one that is there.
+    pub(super) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
+        let mut recorder = Recorder::new(gpu, None);
+        self.texture.take(&mut recorder, image);
+        recorder.submit();
+    }
+
+    pub(super) fn finished(&self) -> Finished<'_> {
+        Finished::new(self.texture.view(), self.size_px)
+    }
+}

@@ -1,0 +1,193 @@
+//! The app's interface: screens for touch over the camera's picture, drawn by egui, the same on phones and on a desktop.
+//!
+//! It reads the [`App`] and returns what the person wishes; it keeps nothing but where fingers are and which menu is open.
+//! Sizes are in points of the platform, and nothing to be touched is lower than 44 of them.
+
+mod input;
+mod painter;
+mod picture;
+mod play;
+mod screens;
+mod style;
+mod text;
+
+use std::sync::Arc;
+
+use egui::{CentralPanel, Context, Frame};
+
+use crate::app::{App, Step, Wish};
+
+pub use input::{Insets, Screen, Touch, TouchPhase};
+pub(crate) use painter::Painter;
+
+/// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, cut to Latin letters and signs.
+const FONT: &[u8] = include_bytes!("roboto_medium.ttf");
+
+/// What is to be painted over the picture.
+pub(crate) struct Painting {
+    pub(crate) primitives: Vec<egui::ClippedPrimitive>,
+    pub(crate) pixels_per_point: f32,
+}
+
+/// Textures that the painter does not have yet, and those that it may let go of.
+#[derive(Default)]
+pub(crate) struct Textures {
+    pub(crate) set: Vec<(egui::TextureId, egui::epaint::ImageDelta)>,
+    pub(crate) free: Vec<egui::TextureId>,
+}
+
+impl Textures {
+    fn add(&mut self, mut delta: egui::TexturesDelta) {
+        for (id, deltas) in delta.set.drain() {
+            self.set.extend(deltas.into_iter().map(|delta| (id, delta)));
+        }
+        self.free.extend(delta.free.drain());
+    }
+}
+
+/// Something that a screen reader finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Widget {
+    /// Such as `Button` or `Label`.
+    pub role: String,
+    /// What is read out.
+    pub label: String,
+    /// Left, top, right and bottom, in physical pixels of the screen.
+    pub bounds_px: [f64; 4],
+}
+
+/// The interface.
+pub struct Interface {
+    context: Context,
+    widgets: Vec<Widget>,
+    textures: Textures,
+    touches: input::Touches,
+    is_menu_open: bool,
+    time_s: f64,
+}
+
+impl Default for Interface {
+    fn default() -> Self {
+        let context = Context::default();
+        style::apply(&context, FONT);
+        context.enable_accesskit();
+        Self {
+            context,
+            widgets: Vec::new(),
+            textures: Textures::default(),
+            touches: input::Touches::default(),
+            is_menu_open: false,
+            time_s: 0.0,
+        }
+    }
+}
+
+impl Interface {
+    /// A finger, or a mouse as one finger.
+    pub fn touch(&mut self, touch: Touch) {
+        self.touches.touch(touch);
+    }
+
+    /// The wheel of a mouse over the picture, which turns the ghost; in steps.
+    pub fn wheel(&mut self, steps: f64) {
+        self.touches.wheel(steps);
+    }
+
+    /// One picture of the interface at `time_s`, which goes on from call to call, and what the person wishes.
+    pub(crate) fn run(
+        &mut self,
+        app: &App,
+        screen: &Screen,
+        time_s: f64,
+        profile: &str,
+    ) -> (Vec<Wish>, Painting) {
+        let (wishes, shapes, pixels_per_point) = self.laid_out(app, screen, time_s, profile);
+        let painting = Painting {
+            primitives: self.context.tessellate(shapes, pixels_per_point),
+            pixels_per_point,
+        };
+        (wishes, painting)
+    }
+
+    /// What changed of the textures since this was asked for.
+    pub(crate) fn take_textures(&mut self) -> Textures {
+        std::mem::take(&mut self.textures)
+    }
+
+    /// What the person wishes, without a picture.
+    pub fn wishes(&mut self, app: &App, screen: &Screen) -> Vec<Wish> {
+        self.time_s += 0.1;
+        self.laid_out(app, screen, self.time_s, "").0
+    }
+
+    fn laid_out(
+        &mut self,
+        app: &App,
+        screen: &Screen,
+        time_s: f64,
+        profile: &str,
+    ) -> (Vec<Wish>, Vec<egui::epaint::ClippedShape>, f32) {
+        self.time_s = time_s;
+        let mut wishes = Vec::new();
+        let wheel_steps = self.touches.take_wheel();
+        let input = self.touches.input(screen, time_s);
+        let is_menu_open = &mut self.is_menu_open;
+        if app.step() != Step::Play {
+            *is_menu_open = false;
+        }
+        let output = self.context.run_ui(input, |ui| {
+            CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+                picture::show(ui, app, screen, wheel_steps, &mut wishes);
+                screens::notice(ui, app);
+                if app.shows_profile() {
+                    screens::profile(ui, profile);
+                }
+                screens::sheet(ui, app, is_menu_open, &mut wishes);
+            });
+        });
+        self.widgets = widgets(&output.platform_output, output.pixels_per_point);
+        self.textures.add(output.textures_delta);
+        (wishes, output.shapes, output.pixels_per_point)
+    }
+
+    /// What a screen reader finds in the latest picture.
+    #[must_use]
+    pub fn widgets(&self) -> &[Widget] {
+        &self.widgets
+    }
+}
+
+/// Labels and places of what is in the interface's tree for screen readers.
+fn widgets(output: &egui::PlatformOutput, pixels_per_point: f32) -> Vec<Widget> {
+    let update = output.accesskit_update.as_ref();
+    let nodes = update.map(|update| update.nodes.as_slice()).unwrap_or_default();
+    let told = nodes.iter().filter_map(|(_, node)| {
+        let bounds = node.bounds()?;
+        Some(Widget {
+            role: format!("{:?}", node.role()),
+            label: node.label().or(node.value())?.to_owned(),
+            bounds_px: [bounds.x0, bounds.y0, bounds.x1, bounds.y1]
+                .map(|at| at * f64::from(pixels_per_point)),
+        })
+    });
+    told.collect()
+}
+
+impl std::fmt::Debug for Interface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Interface")
+    }
+}
+
+/// Fonts of the interface, from bytes that are compiled in.
+fn fonts(font: &'static [u8]) -> egui::FontDefinitions {
+    let mut fonts = egui::FontDefinitions::empty();
+    let name = "roboto".to_owned();
+    fonts
+        .font_data
+        .insert(name.clone(), Arc::new(egui::FontData::from_static(font)));
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
+        fonts.families.insert(family, vec![name.clone()]);
+    }
+    fonts
+}

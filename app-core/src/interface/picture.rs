@@ -1,0 +1,56 @@
+//! The camera's picture below the sheets: taps, drags and turns on it, and the ghost over it.
+
+use egui::{Pos2, Sense, Stroke, Ui};
+use glam::{DAffine2, DVec2};
+
+use super::input::{Screen, narrowed};
+use super::style;
+use crate::app::{App, Step, Wish};
+
+/// What one step of a mouse's wheel turns, in radians.
+const WHEEL_RAD: f64 = 0.05;
+
+pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, wishes: &mut Vec<Wish>) {
+    let Some((picture_px, display)) = app.picture() else {
+        return;
+    };
+    let picture_from_screen = display.image_from_screen(picture_px, screen.size_px);
+    let units = f64::from(screen.pixels_per_unit());
+    let pixel = |at: Pos2| picture_from_screen.transform_point2(units * DVec2::new(at.x.into(), at.y.into()));
+    let response = ui.interact(
+        ui.ctx().content_rect(),
+        egui::Id::unique("picture"),
+        Sense::click_and_drag(),
+    );
+    let fingers = ui.ctx().multi_touch();
+    if let Some(fingers) = fingers {
+        // Screens have y downwards: a turn to the right is a negative one, seen from above.
+        wishes.push(Wish::Twist(-f64::from(fingers.rotation_delta)));
+    } else if response.clicked() {
+        wishes.extend(response.interact_pointer_pos().map(|at| Wish::Tap(pixel(at))));
+    } else if response.dragged() {
+        let delta = response.drag_delta();
+        wishes.extend(response.interact_pointer_pos().map(|at| Wish::Drag {
+            from_px: pixel(at - delta),
+            to_px: pixel(at),
+        }));
+    }
+    if wheel_steps != 0.0 {
+        wishes.push(Wish::Twist(wheel_steps * WHEEL_RAD));
+    }
+    if matches!(app.step(), Step::PlaceToy | Step::Align) {
+        ghost(ui, app, &picture_from_screen, units);
+    }
+}
+
+fn ghost(ui: &Ui, app: &App, picture_from_screen: &DAffine2, units: f64) {
+    let screen_from_picture = picture_from_screen.inverse();
+    let at = |pixel: DVec2| {
+        let on_screen = screen_from_picture.transform_point2(pixel) / units;
+        Pos2::new(narrowed(on_screen.x), narrowed(on_screen.y))
+    };
+    let painter = ui.painter();
+    for [from, to] in app.ghost_contour_px() {
+        painter.line_segment([at(from), at(to)], Stroke::new(2.0, style::GHOST));
+    }
+}

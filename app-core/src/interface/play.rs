@@ -1,0 +1,104 @@
+//! The sheet while the toy moves: clip, time, photo, video, and all else behind one button.
+
+use egui::{ComboBox, Slider, Ui};
+
+use super::screens::other;
+use super::{style, text};
+use crate::app::{App, Wish};
+
+pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut Vec<Wish>) {
+    if let Some(verdict) = app.verdict() {
+        let words = egui::RichText::new(text::of_verdict(verdict));
+        ui.label(words.small().color(style::MUTED));
+    }
+    clip(ui, app, wishes);
+    ui.horizontal_wrapped(|ui| {
+        if other(ui, text::PHOTO) {
+            wishes.push(Wish::SavePhoto);
+        }
+        let video = if app.is_making_video() {
+            text::END_VIDEO
+        } else {
+            text::VIDEO
+        };
+        if other(ui, video) {
+            wishes.push(Wish::Video(!app.is_making_video()));
+        }
+        if other(ui, if *is_menu_open { text::LESS } else { text::MORE }) {
+            *is_menu_open = !*is_menu_open;
+        }
+    });
+    if *is_menu_open {
+        menu(ui, app, wishes);
+    }
+}
+
+fn clip(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+    let playback = app.playback();
+    let names = app.toy().clip_names();
+    if !names.is_empty() {
+        let chosen = playback.clip().and_then(|clip| names.get(clip.index()));
+        ComboBox::from_id_salt("clip")
+            .width(ui.available_width())
+            .selected_text(chosen.map_or(text::AUTHORED, String::as_str))
+            .show_ui(ui, |ui| {
+                if ui
+                    .selectable_label(playback.clip().is_none(), text::AUTHORED)
+                    .clicked()
+                {
+                    wishes.push(Wish::Choose(None));
+                }
+                for (id, name) in app.toy().clip_ids().zip(&names) {
+                    if ui.selectable_label(playback.clip() == Some(id), name).clicked() {
+                        wishes.push(Wish::Choose(Some(id)));
+                    }
+                }
+            });
+    }
+    if playback.length_s() <= 0.0 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        let label = if playback.is_playing() {
+            text::PAUSE
+        } else {
+            text::PLAY
+        };
+        if other(ui, label) {
+            wishes.push(Wish::Play(!playback.is_playing()));
+        }
+        let mut time_s = playback.time_s();
+        ui.spacing_mut().slider_width = (ui.available_width() - 12.0).max(60.0);
+        let slider = Slider::new(&mut time_s, 0.0..=playback.length_s()).show_value(false);
+        let response = ui.add(slider);
+        response.widget_info(|| egui::WidgetInfo::slider(true, playback.time_s(), text::TIME));
+        if response.changed() {
+            wishes.extend([Wish::Play(false), Wish::Scrub(time_s)]);
+        }
+    });
+}
+
+fn menu(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+    let is_recording = app.is_recording();
+    let record = if is_recording {
+        text::END_RECORD
+    } else {
+        text::RECORD
+    };
+    let entries = [
+        (record, Wish::Record(!is_recording)),
+        (text::PROFILE, Wish::ShowProfile(!app.shows_profile())),
+        (text::REPLACE, Wish::Replace),
+        (text::RETAKE, Wish::RetakePlate),
+        (text::PICK_TOY, Wish::PickToy),
+        (text::SHARE, Wish::Share),
+        (text::START_OVER, Wish::StartOver),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        for (label, wish) in entries {
+            if other(ui, label) {
+                wishes.push(wish);
+            }
+        }
+    });
+}

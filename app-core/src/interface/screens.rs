@@ -1,0 +1,134 @@
+//! Sheets over the picture: what to do, what is in the way, what happened.
+
+use egui::{Align2, Area, Button, Id, Order, ProgressBar, RichText, ScrollArea, Ui, vec2};
+
+use super::{play, style, text};
+use crate::app::{App, Obstacle, Step, Wish};
+
+/// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
+pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut Vec<Wish>) {
+    let area = ui.ctx().content_rect();
+    let (align, offset, width) = if area.width() > 1.2 * area.height() {
+        let width = (0.4 * area.width()).clamp(style::NARROW_POINTS[0], style::NARROW_POINTS[1]);
+        (Align2::RIGHT_CENTER, vec2(-12.0, 0.0), width)
+    } else {
+        let width = (area.width() - 24.0).min(style::SHEET_POINTS);
+        (Align2::CENTER_BOTTOM, vec2(0.0, -12.0), width)
+    };
+    Area::new(Id::unique("sheet"))
+        .order(Order::Foreground)
+        .anchor(align, offset)
+        .show(ui.ctx(), |ui| {
+            style::card().show(ui, |ui| {
+                ui.set_width(width - 32.0);
+                // 16 points of margin within, 12 without, on either side.
+                let scrolled = ScrollArea::vertical().max_height(area.height() - 56.0);
+                scrolled.show(ui, |ui| match app.obstacle() {
+                    Some(obstacle) => in_the_way(ui, app, obstacle, wishes),
+                    None if app.step() == Step::Play => play::show(ui, app, is_menu_open, wishes),
+                    None => step(ui, app, wishes),
+                });
+            });
+        });
+}
+
+fn words(ui: &mut Ui, title: &str, hint: &str) {
+    ui.label(RichText::new(title).heading());
+    ui.label(RichText::new(hint).color(style::MUTED));
+}
+
+/// The button that leads on, as wide as the sheet.
+fn lead(ui: &mut Ui, label: &str) -> bool {
+    let label = RichText::new(label).color(style::ON_ACCENT);
+    let button = Button::new(label).fill(style::ACCENT);
+    ui.add_sized(vec2(ui.available_width(), style::TOUCH_POINTS), button)
+        .clicked()
+}
+
+/// A button that leads elsewhere.
+pub(super) fn other(ui: &mut Ui, label: &str) -> bool {
+    ui.add(Button::new(label).min_size(vec2(style::TOUCH_POINTS, style::TOUCH_POINTS)))
+        .clicked()
+}
+
+fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+    let (title, hint) = text::of_step(app);
+    words(ui, title, &hint);
+    match app.step() {
+        Step::Welcome => {
+            if lead(ui, text::BEGIN) {
+                wishes.push(Wish::Begin);
+            }
+        }
+        Step::TakePlate => {
+            plate_step(ui, app);
+            if other(ui, text::SKIP_PLATE) {
+                wishes.push(Wish::SkipPlate);
+            }
+        }
+        Step::PlaceToy => {
+            if lead(ui, text::PLACED) {
+                wishes.push(Wish::Placed);
+            }
+            if other(ui, text::START_OVER) {
+                wishes.push(Wish::StartOver);
+            }
+        }
+        Step::Align => {
+            ui.spinner();
+            if other(ui, text::BACK) {
+                wishes.push(Wish::Replace);
+            }
+        }
+        Step::FindTable | Step::Play => {}
+    }
+}
+
+fn plate_step(ui: &mut Ui, app: &App) {
+    let Some(step) = app.plate_step() else { return };
+    let (part, help) = text::of_plate_step(step);
+    ui.add(ProgressBar::new(part.unwrap_or(0.0)).desired_height(12.0));
+    ui.label(help);
+}
+
+fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, wishes: &mut Vec<Wish>) {
+    let (title, hint) = text::of_obstacle(obstacle);
+    words(ui, title, hint);
+    let way_back = match obstacle {
+        Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(Wish::Begin),
+        Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(Wish::OpenSettings),
+        Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(Wish::StartOver),
+        Obstacle::Tracking(_) if app.step() > Step::FindTable => {
+            other(ui, text::START_OVER).then_some(Wish::StartOver)
+        }
+        _ => None,
+    };
+    wishes.extend(way_back);
+}
+
+/// What happened, at the top.
+pub(super) fn notice(ui: &Ui, app: &App) {
+    let Some(notice) = app.notice() else { return };
+    let width = (ui.ctx().content_rect().width() - 24.0).min(style::SHEET_POINTS);
+    Area::new(Id::unique("notice"))
+        .order(Order::Foreground)
+        .interactable(false)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, 12.0))
+        .show(ui.ctx(), |ui| {
+            style::card().show(ui, |ui| {
+                ui.set_max_width(width - 32.0);
+                ui.label(text::of_notice(notice));
+            });
+        });
+}
+
+/// Times, in the top left corner.
+pub(super) fn profile(ui: &Ui, lines: &str) {
+    Area::new(Id::unique("profile"))
+        .order(Order::Middle)
+        .interactable(false)
+        .anchor(Align2::LEFT_TOP, vec2(8.0, 8.0))
+        .show(ui.ctx(), |ui| {
+            style::card().show(ui, |ui| ui.label(RichText::new(lines).small()));
+        });
+}

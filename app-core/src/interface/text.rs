@@ -1,0 +1,149 @@
+//! Every word of the interface, in one place.
+
+use crate::app::{App, Notice, Obstacle, PlateRefusal, PlateStep, Saved, Step, Verdict};
+use crate::camera_frame::Tracking;
+
+/// What a person is about to do, and how.
+pub(super) fn of_step(app: &App) -> (&'static str, String) {
+    let (title, hint) = match app.step() {
+        Step::Welcome => (
+            "Bring your toy to life",
+            "Put a toy on a table and look at it through the camera: it moves, and its own real shadow with it. The picture never leaves this device.",
+        ),
+        Step::FindTable => (
+            "Show the table",
+            "Take the toy off the table. Move the phone slowly, then tap the place where the toy will stand.",
+        ),
+        Step::TakePlate => ("Keep still", "The empty place is being photographed."),
+        Step::PlaceToy => (
+            "Put the toy there",
+            "Put the toy on the table. Drag the yellow outline onto it, and turn it with two fingers.",
+        ),
+        Step::Align => ("One moment", "The outline is being fitted to the toy."),
+        Step::Play => ("", ""),
+    };
+    (title, hint.to_owned())
+}
+
+/// What is in the way, and what helps.
+pub(super) fn of_obstacle(obstacle: Obstacle) -> (&'static str, &'static str) {
+    match obstacle {
+        Obstacle::NoAr => (
+            "This phone has no AR",
+            "Its system cannot follow the camera, which this app needs.",
+        ),
+        Obstacle::NoGraphics => (
+            "Graphics do not suffice",
+            "This app needs Vulkan 1.1 or Metal, which this device does not have.",
+        ),
+        Obstacle::CameraDenied => (
+            "The camera is needed",
+            "Without its picture there is nothing to animate. Nothing is sent anywhere.",
+        ),
+        Obstacle::CameraBarred => (
+            "The camera is not allowed",
+            "Allow it in the system's settings, then come back.",
+        ),
+        Obstacle::TooHot => ("The phone is too hot", "Let it cool down. It goes on by itself."),
+        Obstacle::Interrupted => (
+            "The camera is in use elsewhere",
+            "It goes on here when that has ended.",
+        ),
+        Obstacle::ArFailed => ("Tracking has stopped", "Start over from the table."),
+        Obstacle::Preparing => ("Getting ready", "Graphics are being prepared."),
+        Obstacle::Tracking(tracking) => match tracking {
+            Tracking::Starting | Tracking::Normal => ("Look around", "Move the phone slowly over the table."),
+            Tracking::TooFast => ("Slower", "The phone moves too fast to be followed."),
+            Tracking::TooPlain => (
+                "Too little to hold on to",
+                "Show more of the surroundings, or lay something patterned beside the toy.",
+            ),
+            Tracking::TooDark => ("Too dark", "Switch on a lamp."),
+            Tracking::Relocalising => ("Where were we?", "Point the phone at the place where it was."),
+        },
+    }
+}
+
+pub(super) fn of_notice(notice: &Notice) -> String {
+    match notice {
+        Notice::NoTableThere => "No table was found there yet. Show more of it, then tap again.".to_owned(),
+        Notice::ToyMissed {
+            outline_px: Some(outline_px),
+        } => format!("The outline is still {outline_px:.1} pixels off the toy. Put it nearer."),
+        Notice::ToyMissed { outline_px: None } => {
+            "The toy was not seen there. Put the outline over it.".to_owned()
+        }
+        Notice::ToyRefused(reason) => format!("This file is no toy for this app: {reason}"),
+        Notice::WorldLost => "The phone has lost the place. Show the table again.".to_owned(),
+        Notice::DeviceRestarted => "Graphics were set up again.".to_owned(),
+        Notice::Saved(Saved::Done) => "Saved.".to_owned(),
+        Notice::Saved(Saved::NoRoom) => "Not saved: there is no room left.".to_owned(),
+        Notice::Saved(Saved::NotAllowed) => "Not saved: the system does not allow it.".to_owned(),
+        Notice::Saved(Saved::Failed) => "Not saved: writing failed.".to_owned(),
+        Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
+    }
+}
+
+/// How well the toy was found, and what is not known.
+pub(super) fn of_verdict(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Found {
+            no_light: Some(reason),
+            ..
+        } => format!("The shadow stays as it is: no light was found, since {reason}."),
+        Verdict::Found {
+            outline_px: Some(outline_px),
+            ..
+        } => format!("Fitted to {outline_px:.1} pixels"),
+        Verdict::Found { outline_px: None, .. } => {
+            "Too little of the toy is seen to check where it is.".to_owned()
+        }
+        Verdict::Missed { outline_px } => format!("Looking for the toy ({outline_px:.1} pixels off)"),
+        Verdict::Failed(reason) => format!("It could not be fitted: {reason}"),
+    }
+}
+
+pub(super) const ALLOW_CAMERA: &str = "Allow the camera";
+pub(super) const BEGIN: &str = "Begin";
+pub(super) const OPEN_SETTINGS: &str = "Open settings";
+pub(super) const SKIP_PLATE: &str = "The toy cannot be moved";
+pub(super) const PLACED: &str = "It fits";
+pub(super) const BACK: &str = "Back";
+pub(super) const START_OVER: &str = "Start over";
+pub(super) const PLAY: &str = "Play";
+pub(super) const PAUSE: &str = "Pause";
+pub(super) const TIME: &str = "Time in the clip";
+pub(super) const AUTHORED: &str = "Standing";
+pub(super) const PHOTO: &str = "Photo";
+pub(super) const VIDEO: &str = "Video";
+pub(super) const END_VIDEO: &str = "End video";
+pub(super) const MORE: &str = "More";
+pub(super) const LESS: &str = "Close";
+pub(super) const RECORD: &str = "Record the session";
+pub(super) const END_RECORD: &str = "End the recording";
+pub(super) const PROFILE: &str = "Show times";
+pub(super) const REPLACE: &str = "Move the outline";
+pub(super) const RETAKE: &str = "Photograph the empty place";
+pub(super) const PICK_TOY: &str = "Another toy";
+pub(super) const SHARE: &str = "Share log and recording";
+
+/// How far the photograph of the empty place is, from 0 to 1, and what helps.
+pub(super) fn of_plate_step(step: &PlateStep) -> (Option<f32>, &'static str) {
+    match step {
+        PlateStep::Growing { n, n_needed } => {
+            let part = f64::from(*n) / f64::from((*n_needed).max(1));
+            (Some(super::input::narrowed(part)), "Good. Keep still.")
+        }
+        PlateStep::Taken { .. } => (Some(1.0), "Done."),
+        PlateStep::Refused(refusal) => {
+            let help = match refusal {
+                PlateRefusal::NoPicture | PlateRefusal::NoCamera => "Waiting for the camera.",
+                PlateRefusal::Moving => "Keep the phone still, or lean it on something.",
+                PlateRefusal::Blurred => "The picture is not sharp yet.",
+                PlateRefusal::Obstructed => "Something moves in the picture. Take your hand away.",
+                PlateRefusal::Exposure => "The camera is still adapting to the light.",
+            };
+            (None, help)
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! An app that is seen: its logic, its interface and the core that draws both.
+//!
+//! A shell owns one [`Live`]. It hands over what the platform tells and where fingers are, asks for a picture whenever the screen
+//! wants one, and does what it is then asked for.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+use wgpu::LoadOp;
+
+use crate::app::{App, Device, ShellCommand, ShellEvent, Show};
+use crate::camera_frame::Display;
+use crate::core::{Core, CoreError, WarmUp};
+use crate::frame::Warning;
+use crate::gpu::context::Gpu;
+use crate::gpu::texture::Texture;
+use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
+use crate::preset::Preset;
+use crate::scene::Image;
+use crate::toy::Toy;
+
+/// An app on a device.
+pub struct Live {
+    app: App,
+    interface: Interface,
+    core: Core,
+    preset: Preset,
+    /// What is still to be compiled: a pass a picture.
+    warm_up: Option<WarmUp>,
+    painter: Option<Painter>,
+    /// The scene that the core has.
+    version: Option<u64>,
+    display: Display,
+    warnings: Vec<Warning>,
+}
+
+impl Live {
+    /// An app that draws with `core`, and a toy to begin with.
+    #[must_use]
+    pub fn new(core: Core, toy: Arc<Toy>, preset: Preset) -> Self {
+        Self {
+            app: App::new(toy),
+            interface: Interface::default(),
+            warm_up: Some(core.warm_up(preset)),
+            core,
+            preset,
+            painter: None,
+            version: None,
+            display: Display::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Goes on with another device, where the one before was lost.
+    pub fn reopen(&mut self, core: Core) {
+        self.warm_up = Some(core.warm_up(self.preset));
+        self.core = core;
+        self.painter = None;
+        // Another device knows none of its textures.
+        self.interface = Interface::default();
+        self.version = None;
+    }
+
+    /// Takes what happened, and returns what is to be done.
+    #[must_use]
+    pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
+        self.app.event(event)
+    }
+
+    /// A finger, or a mouse as one.
+    pub fn touch(&mut self, touch: Touch) {
+        self.interface.touch(touch);
+    }
+
+    /// A mouse's wheel, in steps.
+    pub fn wheel(&mut self, steps: f64) {
+        self.interface.wheel(steps);
+    }
+
+    /// Draws on the core's surface at `time_s`, which goes on from call to call, and returns what is to be done.
+    ///
+    /// # Errors
+    /// When the surface or the device is lost: a shell tells [`Device::Lost`] and brings another core.
+    pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
+        let (commands, painting) = self.prepare(screen, time_s)?;
+        let (painter, interface) = (&mut self.painter, &mut self.interface);
+        self.core.present_under(self.display, |gpu, target| {
+            paint(painter, interface, (gpu, target), &painting, LoadOp::Load);
+        })?;
+        Ok(commands)
+    }
+
+    /// The same on a target of the caller's, whose format takes sRGB codes as they are.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn draw_on(
+        &mut self,
+        target: &wgpu::Texture,
+        screen: &Screen,
+        time_s: f64,
+    ) -> Result<Vec<ShellCommand>, CoreError> {
+        let (commands, painting) = self.prepare(screen, time_s)?;
+        let below = match self.core.draw_on(target, self.display) {
+            Ok(()) => LoadOp::Load,
+            Err(CoreError::NoScene) => LoadOp::Clear(wgpu::Color::BLACK),
+            Err(error) => return Err(error),
+        };
+        let onto = (self.core.gpu(), target);
+        paint(&mut self.painter, &mut self.interface, onto, &painting, below);
+        Ok(commands)
+    }
+
+    /// The same on a screen that nobody sees, and what it then shows.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn screenshot(
+        &mut self,
+        screen: &Screen,
+        time_s: f64,
+    ) -> Result<(Image, Vec<ShellCommand>), CoreError> {
+        let size_px = UVec2::from(screen.size_px.map(|side| side.max(1)));
+        let format = wgpu::TextureFormat::Rgba8Unorm;
+        let target = Texture::target(self.core.gpu(), "screen", size_px, format);
+        let commands = self.draw_on(&target.raw, screen, time_s)?;
+        let image = Image {
+            width_px: size_px.x,
+            height_px: size_px.y,
+            rgba8: self.core.gpu().read_texture(&target.raw)?,
+        };
+        Ok((image, commands))
+    }
+
+    /// The finished picture without the interface.
+    ///
+    /// # Errors
+    /// As [`Core::read_picture`].
+    pub fn read_picture(&self) -> Result<Image, CoreError> {
+        self.core.read_picture()
+    }
+
+    /// What a screen reader finds in the latest picture.
+    #[must_use]
+    pub fn widgets(&self) -> &[Widget] {
+        self.interface.widgets()
+    }
+
+    /// The logic.
+    #[must_use]
+    pub fn app(&self) -> &App {
+        &self.app
+    }
+
+    /// The core, to give it a surface or take it away.
+    pub fn core_mut(&mut self) -> &mut Core {
+        &mut self.core
+    }
+
+    /// What the core warned of with the latest frame.
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// What the interface wants, and the picture below it.
+    fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
+        let mut commands = self.compile_next()?;
+        let profile = self.profile();
+        let (wishes, painting) = self.interface.run(&self.app, screen, time_s, &profile);
+        for wish in wishes {
+            commands.extend(self.app.event(ShellEvent::Wish(wish)));
+        }
+        self.make_picture()?;
+        Ok((commands, painting))
+    }
+
+    fn compile_next(&mut self) -> Result<Vec<ShellCommand>, CoreError> {
+        let Some(left) = &mut self.warm_up else {
+            return Ok(Vec::new());
+        };
+        if let Some(compiled) = left.next() {
+            compiled?;
+            return Ok(Vec::new());
+        }
+        self.warm_up = None;
+        Ok(self.app.event(ShellEvent::Device(Device::Ready)))
+    }
+
+    fn make_picture(&mut self) -> Result<(), CoreError> {
+        match self.app.show() {
+            Show::Nothing => {}
+            Show::Camera(frame) => {
+                self.display = frame.display;
+                self.core.show_camera(&frame.image)?;
+            }
+            Show::Toy {
+                scene,
+                version,
+                input,
+                display,
+            } => {
+                self.display = display;
+                if self.version != Some(version) {
+                    self.core.set_scene(scene.clone(), self.preset)?;
+                    self.version = Some(version);
+                }
+                self.warnings = self.core.frame(&input)?.warnings;
+            }
+        }
+        Ok(())
+    }
+
+    fn profile(&self) -> String {
+        let mut lines = format!("{} {:?}", self.preset, self.app.thermal());
+        for warning in &self.warnings {
+            lines.push('\n');
+            lines.push_str(&warning.to_string());
+        }
+        lines
+    }
+}
+
+impl std::fmt::Debug for Live {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Live")
+            .field("app", &self.app)
+            .finish_non_exhaustive()
+    }
+}
+
+fn paint(
+    painter: &mut Option<Painter>,
+    interface: &mut Interface,
+    (gpu, target): (&Gpu, &wgpu::Texture),
+    painting: &Painting,
+    below: LoadOp<wgpu::Color>,
+) {
+    let painter = painter.get_or_insert_with(|| Painter::new(gpu, target.format()));
+    painter.paint(gpu, target, (painting, &interface.take_textures()), below);
+}

@@ -1,0 +1,127 @@
+//! The app on a desktop, fed by a session: in a window, or on a tour through all of its screens.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use anyhow::{Context, Result, bail};
+use app_core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::interface::{Insets, Screen};
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::session::Capture;
+use app_core::wgpu;
+use clap::{Parser, ValueEnum};
+use harness::files::BUNDLED_SESSION;
+use harness::program::{exit_code, open_session};
+use harness::view::desk::{Desk, Jobs};
+use harness::view::fault::Fault;
+use harness::view::feed::Feed;
+use harness::view::tour::Tour;
+use harness::view::window::{self, Options};
+
+/// Where photos and the tour's pictures go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/view";
+
+/// Run the app on a desktop: a session is its camera, the mouse a finger, the wheel turns the toy's outline.
+#[derive(Parser)]
+#[command(name = "view", bin_name = "cargo xtask view")]
+struct Args {
+    /// Folder of a session, or a recording [default: the bundled one]
+    session: Option<PathBuf>,
+    /// Preset
+    #[arg(long, value_name = "NAME", default_value = "balanced")]
+    preset: Preset,
+    /// What goes wrong, and after how many seconds, such as too-fast@20; lasts 5 seconds
+    #[arg(long, value_name = "FAULT@SECONDS", value_parser = fault_at)]
+    fault: Vec<(Fault, f64)>,
+    /// Without a window: a simulated person goes through every screen, each written as a picture
+    #[arg(long)]
+    tour: bool,
+    /// Width and height of the window or of the tour's screen, in points
+    #[arg(long, value_name = "WxH", default_value = "844x390", value_parser = size)]
+    size: [u32; 2],
+    /// Physical pixels a point of the tour's screen
+    #[arg(long, value_name = "N", default_value_t = 1.5, requires = "tour")]
+    scale: f64,
+    /// How large letters are
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    text_scale: f64,
+    /// Folder for photos and the tour's pictures [default: target/view]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Close the window after so many seconds
+    #[arg(long, value_name = "N", conflicts_with = "tour")]
+    seconds: Option<f64>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(Args::parse()))
+}
+
+fn run(args: Args) -> Result<()> {
+    let path = args.session.unwrap_or_else(|| PathBuf::from(BUNDLED_SESSION));
+    let session = Capture::open(open_session(&path)?).with_context(|| path.display().to_string())?;
+    let feed = Feed::of(&session)?;
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let results = || package.parent().unwrap_or(package).join(RESULTS);
+    let out = args.out.unwrap_or_else(results);
+    if !args.tour {
+        return window::open(
+            feed,
+            Options {
+                preset: args.preset,
+                size_points: args.size,
+                faults: args.fault,
+                text_scale: args.text_scale,
+                out,
+                seconds: args.seconds,
+            },
+        );
+    }
+    let core = pollster::block_on(Core::headless(
+        &wgpu::Instance::default(),
+        &AdapterChoice::Fastest,
+    ))?;
+    let live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
+    let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "pixels of a screen"
+    )]
+    let size_px = args
+        .size
+        .map(|points| (f64::from(points) * args.scale).round() as u32);
+    let screen = Screen {
+        size_px,
+        pixels_per_point: args.scale,
+        insets: Insets::default(),
+        text_scale: args.text_scale,
+    };
+    let pictures = Tour::new(&mut desk, screen, &out)?.go()?;
+    println!("{} screens: {}", pictures.len(), out.display());
+    Ok(())
+}
+
+fn fault_at(text: &str) -> Result<(Fault, f64)> {
+    let (name, seconds) = text
+        .split_once('@')
+        .context("FAULT@SECONDS, such as too-fast@20")?;
+    let fault = Fault::from_str(name, true).map_err(anyhow::Error::msg)?;
+    let seconds: f64 = seconds.parse()?;
+    if !(seconds.is_finite() && seconds > 0.0) {
+        bail!("the time is after the start");
+    }
+    Ok((fault, seconds))
+}
+
+fn size(text: &str) -> Result<[u32; 2]> {
+    let (width, height) = text.split_once('x').context("WxH, such as 844x390")?;
+    let size = [width.parse()?, height.parse()?];
+    if size.iter().any(|side| !(64..=8192).contains(side)) {
+        bail!("each side has 64 to 8192 points");
+    }
+    Ok(size)
+}

@@ -1,0 +1,7 @@
+//! The app on a desktop: the same logic, interface and core as on a phone, fed by a session in place of a camera.
+
+pub mod desk;
+pub mod fault;
+pub mod feed;
+pub mod tour;
+pub mod window;

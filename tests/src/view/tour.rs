@@ -1,0 +1,305 @@
+//! A tour through every screen of the app, by a person who is simulated: what they see is written as pictures.
+
+use std::path::{Path, PathBuf};
+
+use app_core::app::{Permission, ShellEvent, Step};
+use app_core::core::CoreError;
+use app_core::interface::{Screen, Touch, TouchPhase};
+use glam::{DMat4, DVec2, DVec3};
+use thiserror::Error;
+
+use super::desk::Desk;
+use super::fault::Fault;
+use crate::output::{WriteError, make_folder, write_png};
+
+/// Time between two frames, in seconds.
+const FRAME_S: f64 = 1.0 / 30.0;
+/// Frames that a screen takes to settle: menus open, messages come.
+const N_SETTLE: usize = 4;
+/// Frames after which a step that did not come is not waited for.
+const N_PATIENCE: usize = 60;
+/// How far off the simulated person leaves the ghost: in metres, and in radians.
+const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
+const GHOST_OFF_RAD: f64 = 0.1;
+/// What a step of the wheel turns, in radians, as the interface has it.
+const WHEEL_RAD: f64 = 0.05;
+
+/// A tour that did not come to its end.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TourError {
+    /// The core refused.
+    #[error(transparent)]
+    Core(#[from] CoreError),
+    /// A picture cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// There is no such button.
+    #[error("at {at}: no button «{label}»; there are {found:?}")]
+    NoButton {
+        /// The step.
+        at: String,
+        /// The label.
+        label: String,
+        /// Those that there are.
+        found: Vec<String>,
+    },
+    /// The app did not go where it should.
+    #[error("after {after}: the step is {is:?}, not {expected:?}")]
+    Astray {
+        /// What was done.
+        after: String,
+        /// Where it is.
+        is: Step,
+        /// Where it should be.
+        expected: Step,
+    },
+}
+
+/// A person on a tour, with a screen.
+pub struct Tour<'a> {
+    desk: &'a mut Desk,
+    screen: Screen,
+    out: PathBuf,
+    time_s: f64,
+    written: Vec<PathBuf>,
+}
+
+impl<'a> Tour<'a> {
+    /// A person who has just opened the app.
+    ///
+    /// # Errors
+    /// When `out` cannot be made.
+    pub fn new(desk: &'a mut Desk, screen: Screen, out: &Path) -> Result<Self, TourError> {
+        make_folder(out)?;
+        desk.tell(ShellEvent::Foreground(true));
+        desk.tell(ShellEvent::Surface(Some(screen.size_px)));
+        Ok(Self {
+            desk,
+            screen,
+            out: out.to_owned(),
+            time_s: 0.0,
+            written: Vec::new(),
+        })
+    }
+
+    /// Goes all the way, and returns the pictures in their order.
+    ///
+    /// # Errors
+    /// When the app does not go where it should.
+    pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
+        self.welcome()?;
+        self.find_table()?;
+        self.take_plate()?;
+        self.place_toy()?;
+        self.play()?;
+        self.faults()?;
+        Ok(self.written)
+    }
+
+    fn welcome(&mut self) -> Result<(), TourError> {
+        self.shoot("welcome")?;
+        self.desk.answer = Permission::Denied;
+        self.press("Begin")?;
+        self.shoot("camera_denied")?;
+        self.desk.tell(ShellEvent::Permission(Permission::Barred));
+        self.shoot("camera_barred")?;
+        self.desk.tell(ShellEvent::Permission(Permission::Denied));
+        self.desk.answer = Permission::Granted;
+        self.shoot_nothing()?;
+        self.press("Allow the camera")?;
+        self.wait_for(Step::FindTable, "the camera was allowed")
+    }
+
+    fn find_table(&mut self) -> Result<(), TourError> {
+        // A device compiles while the person looks around.
+        for _ in 0..N_PATIENCE {
+            self.frame()?;
+        }
+        for fault in [Fault::TooFast, Fault::TooPlain, Fault::TooDark] {
+            self.during(fault)?;
+        }
+        self.shoot("find_table")?;
+        let at = self.toy_px(DVec3::ZERO);
+        self.desk.feed.hides_planes = true;
+        self.frame()?;
+        self.tap(at)?;
+        self.shoot("no_table_there")?;
+        self.desk.feed.hides_planes = false;
+        self.frame()?;
+        self.tap(at)?;
+        self.frame()?;
+        self.expect(Step::TakePlate, "the table was tapped")
+    }
+
+    fn take_plate(&mut self) -> Result<(), TourError> {
+        self.shoot("take_plate")?;
+        self.wait_for(Step::PlaceToy, "the place was photographed")
+    }
+
+    fn place_toy(&mut self) -> Result<(), TourError> {
+        self.desk.feed.is_toy_there = true;
+        self.shoot("place_toy")?;
+        self.turn_ghost()?;
+        let at = self.toy_px(GHOST_OFF_M);
+        self.tap(at)?;
+        self.shoot("toy_placed")?;
+        self.press("It fits")?;
+        self.frame()?;
+        self.expect(Step::Align, "the ghost was placed")?;
+        self.shoot("align")?;
+        self.desk.work();
+        self.wait_for(Step::Play, "the toy was found")
+    }
+
+    fn play(&mut self) -> Result<(), TourError> {
+        self.shoot("fade_in")?;
+        for _ in 0..12 {
+            self.frame()?;
+        }
+        self.shoot("play")?;
+        self.press("Photo")?;
+        self.shoot("photo_saved")?;
+        self.press("Pause")?;
+        self.shoot("paused")?;
+        self.press("More")?;
+        self.shoot("menu")?;
+        self.press("Show times")?;
+        self.press("Close")?;
+        self.shoot("times")?;
+        Ok(())
+    }
+
+    fn faults(&mut self) -> Result<(), TourError> {
+        for fault in [
+            Fault::Relocalising,
+            Fault::Interrupted,
+            Fault::Hot,
+            Fault::DeviceLost,
+            Fault::ArFailed,
+        ] {
+            self.during(fault)?;
+        }
+        let _ = Fault::NewWorld.strikes(&mut self.desk.feed);
+        self.wait_for(Step::FindTable, "the world was lost")?;
+        self.shoot("new_world")?;
+        self.during(Fault::NoAr)
+    }
+
+    /// The screen while something goes wrong, and on until it has passed.
+    fn during(&mut self, fault: Fault) -> Result<(), TourError> {
+        if let Some(event) = fault.strikes(&mut self.desk.feed) {
+            self.desk.tell(event);
+        }
+        self.shoot(&format!("fault_{fault:?}").to_lowercase())?;
+        if let Some(event) = fault.passes(&mut self.desk.feed) {
+            self.desk.tell(event);
+        }
+        for _ in 0..2 * N_SETTLE {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Pixels of the picture where the toy's origin is seen, moved in the world.
+    fn toy_px(&self, moved_m: DVec3) -> DVec2 {
+        let (world_from_object, camera) = self.desk.feed.toy();
+        let at = world_from_object.w_axis.truncate() + moved_m;
+        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+        camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
+    }
+
+    /// Turns the ghost with the wheel until it faces as the toy does, but for a little.
+    fn turn_ghost(&mut self) -> Result<(), TourError> {
+        let (world_from_object, camera) = self.desk.feed.toy();
+        let yaw = |pose: &DMat4| pose.z_axis.x.atan2(pose.z_axis.z);
+        let to_camera = camera.world_from_camera.w_axis - world_from_object.w_axis;
+        let angle_rad = yaw(world_from_object) - to_camera.x.atan2(to_camera.z) + GHOST_OFF_RAD;
+        self.desk.live.wheel(angle_rad / WHEEL_RAD);
+        self.frame()
+    }
+
+    /// Touches a pixel of the camera's picture.
+    fn tap(&mut self, pixel: DVec2) -> Result<(), TourError> {
+        let (picture_px, display) = self
+            .desk
+            .live
+            .app()
+            .picture()
+            .unwrap_or(([1, 1], self.desk.feed.display));
+        let picture_from_screen = display.image_from_screen(picture_px, self.screen.size_px);
+        self.touch(picture_from_screen.inverse().transform_point2(pixel).to_array())
+    }
+
+    fn touch(&mut self, at_px: [f64; 2]) -> Result<(), TourError> {
+        for phase in [TouchPhase::Began, TouchPhase::Ended] {
+            self.desk.live.touch(Touch { id: 1, phase, at_px });
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Touches a button by what a screen reader calls it.
+    fn press(&mut self, label: &str) -> Result<(), TourError> {
+        let widgets = self.desk.live.widgets();
+        let button = widgets
+            .iter()
+            .find(|widget| widget.label == label && widget.role == "Button");
+        let Some(button) = button else {
+            let buttons = widgets.iter().filter(|widget| widget.role == "Button");
+            return Err(TourError::NoButton {
+                at: format!("{:?}", self.desk.live.app().step()),
+                label: label.to_owned(),
+                found: buttons.map(|widget| widget.label.clone()).collect(),
+            });
+        };
+        let [left, top, right, bottom] = button.bounds_px;
+        self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
+    }
+
+    fn wait_for(&mut self, step: Step, after: &str) -> Result<(), TourError> {
+        for _ in 0..N_PATIENCE {
+            if self.desk.live.app().step() == step {
+                return Ok(());
+            }
+            self.frame()?;
+            self.desk.work();
+        }
+        self.expect(step, after)
+    }
+
+    fn expect(&self, expected: Step, after: &str) -> Result<(), TourError> {
+        let is = self.desk.live.app().step();
+        let after = after.to_owned();
+        if is == expected {
+            Ok(())
+        } else {
+            Err(TourError::Astray { after, is, expected })
+        }
+    }
+
+    fn frame(&mut self) -> Result<(), TourError> {
+        self.time_s += FRAME_S;
+        self.desk.tick(FRAME_S);
+        self.desk.screenshot(&self.screen, self.time_s)?;
+        Ok(())
+    }
+
+    fn shoot_nothing(&mut self) -> Result<(), TourError> {
+        for _ in 0..N_SETTLE {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Writes what the screen shows.
+    fn shoot(&mut self, name: &str) -> Result<(), TourError> {
+        self.shoot_nothing()?;
+        self.time_s += FRAME_S;
+        let image = self.desk.screenshot(&self.screen, self.time_s)?;
+        let path = self.out.join(format!("{:02}_{name}.png", self.written.len()));
+        write_png(&path, &image)?;
+        self.written.push(path);
+        Ok(())
+    }
+}

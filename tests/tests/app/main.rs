@@ -1,0 +1,9 @@
+//! The app's logic: its table of steps, every order of events, and a person's way to a toy that moves.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod orders;
+mod screens;
+mod table;
+mod way;
+mod world;
