@@ -12,6 +12,7 @@ pub mod fuzz;
 pub mod glb;
 pub mod golden;
 pub mod heap;
+pub mod import;
 pub mod metrics;
 pub mod output;
 pub mod page;

@@ -1,7 +1,5 @@
 //! Taking the plate by hand: what goes into it, and what is refused, on pictures whose every pixel is known.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use std::sync::{Arc, OnceLock};
 
 use app_core::app::{PlateRefusal, PlateShot, PlateStep, PlateTaker};

@@ -51,6 +51,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Make a session of a recording of nerfstudio, Record3D or Stray Scanner (`import --help` tells more)
+    #[command(disable_help_flag = true)]
+    Import {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Measure presets over sessions: time against error (`bench --help` tells more)
     #[command(disable_help_flag = true)]
     Bench {
@@ -126,6 +133,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Check { args } => return harness::run_on_processor(&toolchain, "check", &args),
         Command::Align { args } => return harness::run_on_processor(&toolchain, "align", &args),
         Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
+        Command::Import { args } => return harness::run_on_processor(&toolchain, "import", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::View { args } => return harness::run(&toolchain, "view", &args),

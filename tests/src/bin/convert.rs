@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use harness::convert::write;
+use harness::import::write_transforms;
 use harness::program::{exit_code, open_session};
 
 /// Write a session anew, as a recording where the new path ends in .mcap, else as a folder. Pictures stay the bytes that
@@ -16,6 +17,9 @@ struct Args {
     session: PathBuf,
     /// What to write, which must not be there yet
     out: PathBuf,
+    /// Write the frames as nerfstudio has them, a folder with transforms.json
+    #[arg(long)]
+    nerfstudio: bool,
 }
 
 fn main() -> ExitCode {
@@ -23,7 +27,12 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    write(&open_session(&args.session)?, None, &args.out)?;
+    let session = open_session(&args.session)?;
+    if args.nerfstudio {
+        write_transforms(&session, &args.out)?;
+    } else {
+        write(&session, None, &args.out)?;
+    }
     println!("{}", args.out.display());
     Ok(())
 }

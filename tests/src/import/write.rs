@@ -1,0 +1,237 @@
+//! A session made of what a format tells and of what somebody says beside it.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail, ensure};
+use app_core::session::{Capture, Files};
+use glam::{DMat4, DQuat, DVec3};
+use image::ImageReader;
+use serde_json::{Value, json};
+
+use super::error::{ImportError, ImportReason};
+use super::{Imported, ImportedFrame};
+use crate::files::{Folder, SESSION_FILE};
+use crate::output::{make_folder, write_whole};
+
+/// No picture and no toy of a session is larger.
+const MAX_FILE_BYTES: u64 = 512 << 20;
+
+/// Frames that show the place without the toy, counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PlateFrames {
+    /// From the first to the last, both included.
+    Frames(usize, usize),
+    /// There are none.
+    None,
+}
+
+/// What no format tells; world is the session's, +Y up and in metres.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct Lacking {
+    /// The toy's model, a .glb
+    #[arg(long, value_name = "FILE")]
+    pub toy: Option<PathBuf>,
+    /// Where the toy stands: 16 numbers, column by column, object space to world, with blanks or commas between them
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    pub world_from_object: Option<String>,
+    /// A plane that catches the shadow, as an entry of `receivers`; may be given several times
+    #[arg(long, value_name = "JSON")]
+    pub receiver: Vec<String>,
+    /// A light, as an entry of `lights`, or `none` to have them looked for; may be given several times
+    #[arg(long, value_name = "JSON|none")]
+    pub light: Vec<String>,
+    /// Frames that show the place without the toy, as in 0-11, or `none`; they become plates
+    #[arg(long, value_name = "A-B|none")]
+    pub plates: Option<String>,
+    /// Up in the recording's world, three numbers: where the format loses gravity
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub up: Option<String>,
+    /// Metres in the recording's unit: where the format has none
+    #[arg(long, value_name = "NUMBER")]
+    pub metres: Option<f64>,
+    /// Frames in a second: where the format has no times
+    #[arg(long, value_name = "NUMBER")]
+    pub fps: Option<f64>,
+}
+
+impl Lacking {
+    /// What is needed beside the format and was not said, as arguments.
+    fn missing(&self, imported: &Imported) -> Vec<&'static str> {
+        let has_times = imported.frames.iter().all(|frame| frame.time_s.is_some());
+        let needed = [
+            ("--toy FILE", self.toy.is_none()),
+            ("--world-from-object NUMBERS", self.world_from_object.is_none()),
+            ("--receiver JSON", self.receiver.is_empty()),
+            ("--light JSON|none", self.light.is_empty()),
+            ("--plates A-B|none", self.plates.is_none()),
+            ("--up X,Y,Z", self.up.is_none() && imported.up.is_none()),
+            ("--metres NUMBER", self.metres.is_none() && !imported.is_metric),
+            ("--fps NUMBER", self.fps.is_none() && !has_times),
+        ];
+        needed
+            .into_iter()
+            .filter_map(|(name, is_missing)| is_missing.then_some(name))
+            .collect()
+    }
+
+    /// Frames that become plates.
+    fn plate_frames(&self) -> anyhow::Result<PlateFrames> {
+        let text = self.plates.as_deref().unwrap_or("none").trim();
+        if text == "none" {
+            return Ok(PlateFrames::None);
+        }
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        let [first, last] = [first, last].map(|end| end.trim().parse::<usize>());
+        match (first, last) {
+            (Ok(first), Ok(last)) if first <= last => Ok(PlateFrames::Frames(first, last)),
+            _ => bail!("--plates: {text:?} is neither A-B nor none"),
+        }
+    }
+
+    /// The session's world from the recording's: up becomes +Y by the shortest turn, lengths metres.
+    fn world_from_recorded(&self, imported: &Imported) -> anyhow::Result<(DQuat, f64)> {
+        let up = match (&self.up, imported.up) {
+            (Some(text), _) => DVec3::from_array(numbers("--up", text)?),
+            (None, Some(up)) => up,
+            (None, None) => DVec3::Y,
+        };
+        let up = up.try_normalize().context("--up: has no direction")?;
+        let metres = self.metres.unwrap_or(1.0);
+        ensure!(
+            metres.is_normal() && metres > 0.0,
+            "--metres: {metres} is not above 0"
+        );
+        Ok((DQuat::from_rotation_arc(up, DVec3::Y), metres))
+    }
+}
+
+fn numbers<const N: usize>(argument: &str, text: &str) -> anyhow::Result<[f64; N]> {
+    let texts = text.split([',', ' ', '[', ']']).filter(|text| !text.is_empty());
+    let numbers = texts.map(|text| {
+        text.parse()
+            .with_context(|| format!("{argument}: {text:?} is no number"))
+    });
+    let numbers = numbers.collect::<anyhow::Result<Vec<f64>>>()?;
+    let n = numbers.len();
+    numbers
+        .try_into()
+        .ok()
+        .with_context(|| format!("{argument}: {n} numbers, {N} are needed"))
+}
+
+fn values(argument: &str, texts: &[String]) -> anyhow::Result<Vec<Value>> {
+    let texts = texts.iter().filter(|text| *text != "none");
+    texts
+        .map(|text| serde_json::from_str(text).with_context(|| argument.to_owned()))
+        .collect()
+}
+
+/// Writes a session's folder of a recording, and opens it.
+///
+/// # Errors
+/// When something is missing, which is named, `out` is there already, or what is written is no session.
+pub fn write(
+    name: &str,
+    files: &Folder,
+    imported: &Imported,
+    lacking: &Lacking,
+    out: &Path,
+) -> anyhow::Result<Capture> {
+    let missing = lacking.missing(imported);
+    ensure!(
+        missing.is_empty(),
+        "the format does not tell all that a session needs: give {}",
+        missing.join(", ")
+    );
+    ensure!(!out.exists(), "{}: is there already", out.display());
+    let index = index(name, files, imported, lacking)?;
+    let toy = lacking.toy.as_deref().context("--toy")?;
+    let toy = fs::read(toy).with_context(|| toy.display().to_string())?;
+    make_folder(out)?;
+    if files.holds(out)? {
+        fs::remove_dir(out)?;
+        bail!("{}: lies in the recording itself", out.display());
+    }
+    write_whole(&out.join("toy.glb"), &toy)?;
+    for frame in &imported.frames {
+        let file = out.join(&frame.image);
+        make_folder(file.parent().unwrap_or(out))?;
+        let picture = files
+            .read(&frame.image, MAX_FILE_BYTES)
+            .with_context(|| frame.image.clone())?;
+        write_whole(&file, &picture)?;
+    }
+    write_whole(&out.join(SESSION_FILE), &serde_json::to_vec_pretty(&index)?)?;
+    Ok(Capture::open(Folder::open(out)?)?)
+}
+
+/// `capture.json`.
+fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> anyhow::Result<Value> {
+    let first = imported.frames.first().context("no frame")?;
+    let [width, height] = size_px(files, &first.image)?;
+    let (rotation, metres) = lacking.world_from_recorded(imported)?;
+    let begin_s = first.time_s.unwrap_or(0.0);
+    let entry = |(place, frame): (usize, &ImportedFrame)| {
+        #[expect(clippy::cast_precision_loss, reason = "frames")]
+        let counted_s = lacking.fps.map_or(0.0, |fps| place as f64 / fps);
+        let time_s = frame.time_s.map_or(counted_s, |time_s| time_s - begin_s);
+        let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();
+        let world_from_camera =
+            DMat4::from_rotation_translation(rotation * of_camera, rotation * (metres * position));
+        json!({
+            "time": time_s, "image": frame.image, "intrinsics": projection(frame.intrinsics),
+            "world_from_camera": world_from_camera.to_cols_array(),
+            "animation": { "clip": null, "time": 0 },
+        })
+    };
+    let mut frames: Vec<Value> = imported.frames.iter().enumerate().map(entry).collect();
+    let plates: Vec<Value> = match lacking.plate_frames()? {
+        PlateFrames::None => Vec::new(),
+        PlateFrames::Frames(first, last) => {
+            let n = frames.len();
+            ensure!(last < n, "--plates: the recording has {n} frames, counted from 0");
+            frames.drain(first..=last).collect()
+        }
+    };
+    ensure!(!frames.is_empty(), "--plates: no frame is left");
+    let plate = |mut plate: Value| {
+        if let Some(plate) = plate.as_object_mut() {
+            plate.remove("time");
+            plate.remove("animation");
+        }
+        plate
+    };
+    let place: [f64; 16] = numbers(
+        "--world-from-object",
+        lacking.world_from_object.as_deref().unwrap_or_default(),
+    )?;
+    Ok(json!({
+        "format": "shadow-capture", "version": 1, "name": name,
+        "width": width, "height": height, "encoding": "srgb",
+        "intrinsics": projection(first.intrinsics),
+        "lens": imported.lens.map(|[k1, k2]| json!({ "k1": k1, "k2": k2 })),
+        "toy": { "file": "toy.glb", "world_from_object": place, "physical_pose": { "clip": null, "time": 0 } },
+        "receivers": values("--receiver", &lacking.receiver)?,
+        "lights": values("--light", &lacking.light)?,
+        "backgrounds": plates.into_iter().map(plate).collect::<Vec<_>>(),
+        "frames": frames,
+    }))
+}
+
+fn projection([fx, fy, cx, cy]: [f64; 4]) -> Value {
+    json!({ "fx": fx, "fy": fy, "cx": cx, "cy": cy })
+}
+
+/// By the picture's header.
+fn size_px(files: &Folder, path: &str) -> anyhow::Result<[u32; 2]> {
+    let bytes = files
+        .read(path, MAX_FILE_BYTES)
+        .with_context(|| path.to_owned())?;
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    let (width, height) = reader
+        .into_dimensions()
+        .map_err(|_| ImportError::new(path, "the file", ImportReason::NotAPicture))?;
+    Ok([width, height])
+}
