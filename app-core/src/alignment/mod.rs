@@ -47,7 +47,7 @@ use glam::DMat4;
 use crate::camera_frame::CameraImage;
 use crate::frame::{FrameInput, NoLight, Warning};
 use crate::probe::ProbeReport;
-use crate::scene::{Camera, Light, MAX_LIGHTS, Plate, Scene, check};
+use crate::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
 use focal_length::FocalLength;
 use kept_lights::KeptLights;
@@ -273,7 +273,7 @@ impl Aligner {
             plates, receivers, ..
         } = &self.scene;
         let given = (input.image.rgba(), &input.camera, withheld.as_ref());
-        let found = self.cameras.find(given, plates, receivers);
+        let found = self.cameras.find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = corrected(&input.camera, found);
         let mut input_seen = FrameInput {
             camera,
@@ -322,7 +322,8 @@ impl Aligner {
             return self.discover_lights(given, seen);
         }
         let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
-            seen.photograph.lights(&self.scene, &seen.input, &given)?
+            seen.photograph
+                .lights(&self.scene, &seen.input, (&given, &self.scene.uncertainty.lights))?
         } else {
             None
         };
@@ -356,7 +357,9 @@ impl Aligner {
             return Ok(kept);
         };
         if kept.discovered.is_none() {
-            let found = seen.photograph.lights(&self.scene, &seen.input, kept.in_use())?;
+            // One that was moved may be anywhere.
+            let lights = (kept.in_use(), &LightUncertainty::default());
+            let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
             let moved = KeptLights::listed(Arc::clone(&kept.given), found);
             if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
                 return Ok(moved.in_place_of(&kept, now));
@@ -415,7 +418,11 @@ impl Aligner {
             let Plate { image, camera } = &mut rest[0];
             let found = self
                 .cameras
-                .find((image, camera, None), aligned, &self.scene.receivers);
+                .find(
+                    (image, camera, None),
+                    (aligned, &self.scene.receivers),
+                    &self.scene.uncertainty.camera,
+                );
             (*camera, _) = corrected(camera, found);
         }
     }

@@ -10,6 +10,7 @@ mod record;
 mod rules;
 #[cfg(feature = "schema")]
 mod schema;
+mod uncertainty;
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -190,8 +190,8 @@ fn photograph(
     if !pose.abs_diff_eq(camera.world_from_camera, SAME_CAMERA) {
         let found = cameras.find(
             (input.image.rgba(), &camera, None),
-            &scene.plates,
-            &scene.receivers,
+            (&scene.plates, &scene.receivers),
+            &scene.uncertainty.camera,
         );
         if let Some(found) = found.filter(|found| found.is_better()) {
             camera.world_from_camera = found.world_from_camera;
