@@ -13,7 +13,7 @@ use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
-use crate::alignment::{Alignments, Asked, FocalLength, Lights};
+use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
 use crate::metrics::flicker::Follower;
@@ -43,8 +43,8 @@ pub struct Options {
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
-    /// Where the focal length comes from then.
-    pub focal_length: FocalLength,
+    /// The number that is looked for then.
+    pub ratio: Ratio,
 }
 
 impl Default for Options {
@@ -55,7 +55,7 @@ impl Default for Options {
             out: None,
             is_aligned: true,
             lights: Lights::default(),
-            focal_length: FocalLength::default(),
+            ratio: Ratio::default(),
         }
     }
 }
@@ -127,7 +127,7 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
     if options.is_aligned {
         let asked = Asked {
             lights: options.lights,
-            focal_length: options.focal_length,
+            ratio: options.ratio,
         };
         Alignments::find(session, frames_of(session, options)?, asked)
     } else {

@@ -19,6 +19,8 @@ static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
 
 /// What rounding may add to a bound.
 const ROUNDING: f64 = 1e-5;
+/// What a direction may differ by as seen from the middle of the box along the camera's axes, and from that along the toy's own.
+const MIDDLE_DEG: f64 = 0.1;
 
 fn align(uncertainty: Uncertainty, input: &FrameInput) -> Alignment {
     let scene = Scene {
@@ -150,7 +152,7 @@ fn what_is_known_is_held() {
     assert_eq!(found.camera, given.camera);
     if let Some(lights) = &found.lights {
         // Distance and size are not stated to be known.
-        assert!(light_deg(&lights[0], &light) < ROUNDING);
+        assert!(light_deg(&lights[0], &light) < MIDDLE_DEG);
     }
 }
 
@@ -180,7 +182,7 @@ fn a_light_is_turned_no_farther_than_its_direction_is_uncertain() {
     given.lights = Some([off].into());
     let bounded = align(of_lights(4.0), &given).lights.unwrap();
     let deg = light_deg(&bounded[0], &off);
-    assert!(deg > 3.0 && deg <= 4.0 + ROUNDING, "{deg} degrees");
+    assert!(deg > 3.0 && deg <= 4.0 + MIDDLE_DEG, "{deg} degrees");
     for uncertainty in [Uncertainty::default(), of_lights(12.0)] {
         let found = align(uncertainty, &given).lights.unwrap();
         assert!(light_deg(&found[0], &SESSION.0.lights[0]) < 0.1);

@@ -90,6 +90,10 @@ pub enum Warning {
         /// The part of the shadows that no light explains, from 0 to 1.
         unexplained: f64,
     },
+    /// The focal length was asked for, and toy and shadows do not tell it.
+    FocalLengthNotTold,
+    /// The scale of the world was asked for, and toy and shadows do not tell it.
+    WorldScaleNotTold,
 }
 
 impl fmt::Display for Warning {
@@ -162,6 +166,12 @@ impl fmt::Display for Warning {
                 f,
                 "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
                 100.0 * unexplained
+            ),
+            Self::FocalLengthNotTold => f.write_str(
+                "the focal length was asked for, but toy and shadow do not tell it: that given is taken",
+            ),
+            Self::WorldScaleNotTold => f.write_str(
+                "the scale of the world was asked for, but toy and shadow do not tell it: that of world_from_object is taken",
             ),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")

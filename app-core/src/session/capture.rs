@@ -168,6 +168,16 @@ impl Session for Capture {
             _ => made,
         })
     }
+
+    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError> {
+        let frame = self.frame_at(index)?;
+        let lens = self.store.lens(&frame.camera.intrinsics)?;
+        let size_px = [self.store.size.width_px, self.store.size.height_px];
+        Ok(match lens {
+            Some(lens) if map.is_of_size(size_px) => lens.of_map(&map),
+            _ => map,
+        })
+    }
 }
 
 impl GroundTruth for Capture {

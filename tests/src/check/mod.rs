@@ -16,7 +16,7 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Alignments, Asked, FocalLength};
+use crate::alignment::{Alignments, Asked, Ratio};
 use crate::output::{remove_file, write_png};
 use crate::stored::Stored;
 
@@ -40,7 +40,7 @@ pub struct Findings {
 ///
 /// # Errors
 /// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
-pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::Result<Findings> {
+pub fn check(session: &Path, out: &Path, ratio: Ratio) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
@@ -77,7 +77,7 @@ pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::R
     if let Ok(first) = capture.frame(0) {
         let given = FrameInput::from(&first);
         let asked = Asked {
-            focal_length,
+            ratio,
             ..Asked::default()
         };
         match Alignments::find(&capture, 0..1, asked) {
@@ -123,6 +123,16 @@ impl Findings {
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("intrinsics: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        if let Some(found) = &report.world_scale {
+            let told = match found.errors {
+                Some(_) => format!(
+                    "toy.world_from_object: toy and shadow tell a world {:.4} times as large as the toy's model says, +- {:.4}: {}",
+                    found.ratio, found.deviation, found.outcome
+                ),
+                None => format!("toy.world_from_object: its scale: {}", found.outcome),
             };
             self.tell(told, found.is_applied());
         }

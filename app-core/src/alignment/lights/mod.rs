@@ -34,6 +34,7 @@ use super::shape::Shape;
 use crate::frame::NoLight;
 use crate::scene::{Light, LightUncertainty};
 use cast::flattened;
+pub(super) use discover::scores;
 pub(super) use follow::{Around, Followed, View};
 pub(super) use guess::{Guess, Hints};
 use lamp::{Lamp, N_PARTS, disc};
