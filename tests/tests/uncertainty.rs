@@ -165,7 +165,10 @@ fn a_toy_that_may_be_anywhere_on_its_table_is_looked_for_there() {
         let given = disturbed(by_m, DVec3::Y, deg);
         let by_itself = align(Uncertainty::default(), &given);
         let (off_m, _) = apart(&SESSION.1.world_from_object, &by_itself.world_from_object);
-        assert!(off_m > 0.005, "it is near enough to be found by itself: {off_m} m");
+        assert!(
+            off_m > 0.005,
+            "it is near enough to be found by itself: {off_m} m"
+        );
         let found = align(of_toy(0.07, 180.0), &given);
         let (off_m, off_deg) = apart(&SESSION.1.world_from_object, &found.world_from_object);
         assert!(

@@ -118,13 +118,16 @@ fn a_scale_that_is_off_is_found() {
     }
 }
 
-/// What the test above is worth: where nobody asks, the toy keeps its size and slides along the view.
+/// What the test above is worth: where nobody asks, the toy keeps its size, and is said not to fit.
 #[test]
 fn a_scale_that_nobody_asks_for_stays() {
     let (scene, input) = off(1.03);
     let found = Aligner::new(scene).align(&input).unwrap();
     assert_eq!(found.report.world_scale, None);
-    assert!(off_mm(&found, 1.03) > 5.0, "{} mm off", off_mm(&found, 1.03));
+    assert!(off_mm(&found, 1.03) > 1.5, "{} mm off", off_mm(&found, 1.03));
+    let warned = found.warnings.iter();
+    let misaligned = warned.filter(|warning| matches!(warning, Warning::Misaligned { .. }));
+    assert_eq!(misaligned.count(), 1, "{:?}", found.warnings);
 }
 
 #[test]

@@ -61,8 +61,8 @@ pub use directions::LightSearch;
 pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation,
-    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome,
+    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, PoseAlignment,
+    PoseDeviation, RatioAlignment, RatioOutcome,
 };
 
 /// Each plate takes as long as a frame; more than so many stay as they are given.
@@ -229,11 +229,7 @@ impl Aligner {
     }
 
     /// The input with the focal length or the scale that was found; in a view that is not known it is looked for, until it was seen.
-    fn with_ratio(
-        &mut self,
-        input: &FrameInput,
-        given: &Arc<[Light]>,
-    ) -> Result<FrameInput, AlignError> {
+    fn with_ratio(&mut self, input: &FrameInput, given: &Arc<[Light]>) -> Result<FrameInput, AlignError> {
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         let is_withheld = self.are_shadows_withheld && self.lights.is_some();
         if self.ratio.is_open() && !is_view_known && !is_withheld {
@@ -266,7 +262,9 @@ impl Aligner {
             plates, receivers, ..
         } = &self.scene;
         let given = (input.image.rgba(), &input.camera, withheld.as_ref());
-        let found = self.cameras.find(given, (plates, receivers), &self.scene.uncertainty.camera);
+        let found = self
+            .cameras
+            .find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = corrected(&input.camera, found);
         let mut input_seen = FrameInput {
             camera,
@@ -409,13 +407,11 @@ impl Aligner {
         for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
             let (aligned, rest) = self.scene.plates.split_at_mut(index);
             let Plate { image, camera } = &mut rest[0];
-            let found = self
-                .cameras
-                .find(
-                    (image, camera, None),
-                    (aligned, &self.scene.receivers),
-                    &self.scene.uncertainty.camera,
-                );
+            let found = self.cameras.find(
+                (image, camera, None),
+                (aligned, &self.scene.receivers),
+                &self.scene.uncertainty.camera,
+            );
             (*camera, _) = corrected(camera, found);
         }
     }

@@ -200,7 +200,12 @@ impl Photograph {
     ) -> Result<Option<FoundLights>, ToyError> {
         let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let world_from_camera = &input.camera.world_from_camera;
-        let found = lights::find((given, uncertainty), (&shape, &self.receivers), &self.pyramid, world_from_camera);
+        let found = lights::find(
+            (given, uncertainty),
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        );
         Ok(found.map(|found| {
             let [before, after] = found.losses;
             let lights: Arc<[Light]> = found.lights.iter().map(|found| found.light).collect();
@@ -322,9 +327,11 @@ impl FoundPose {
 
     /// Whether it is no farther from where it was given than that is uncertain.
     fn is_within(&self, uncertainty: &PoseUncertainty) -> bool {
-        let is_within = |away: f64, most: Option<f64>| most.is_none_or(|most| away <= (1.0 + ROUNDING) * most);
+        let is_within =
+            |away: f64, most: Option<f64>| most.is_none_or(|most| away <= (1.0 + ROUNDING) * most);
         self.report.is_none_or(|pose| {
-            is_within(pose.moved_m, uncertainty.position_m) && is_within(pose.turned_rad, uncertainty.rotation_rad)
+            is_within(pose.moved_m, uncertainty.position_m)
+                && is_within(pose.turned_rad, uncertainty.rotation_rad)
         })
     }
 }

@@ -50,7 +50,11 @@ impl Uncertainty {
             ("toy.rotation_rad", toy.rotation_rad, check::UNCERTAINTY_RAD),
             ("camera.position_m", camera.position_m, check::UNCERTAINTY_M),
             ("camera.rotation_rad", camera.rotation_rad, check::UNCERTAINTY_RAD),
-            ("lights.direction_rad", lights.direction_rad, check::UNCERTAINTY_RAD),
+            (
+                "lights.direction_rad",
+                lights.direction_rad,
+                check::UNCERTAINTY_RAD,
+            ),
             (
                 "lights.distance_ratio",
                 lights.distance_ratio,

@@ -51,7 +51,7 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     }
     if let Some(drawing) = &findings.drawing {
         println!(
-            "red as given, green as aligned, blue receivers: {}",
+            "red as given, green as aligned, blue receivers, yellow lights as aligned: {}",
             drawing.display()
         );
     }

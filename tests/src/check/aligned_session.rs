@@ -60,8 +60,9 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             index["lights"] = entries.into();
         }
         let is_lengthened = focal_ratio != 1.0;
-        n_corrected +=
-            usize::from(is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_lengthened);
+        n_corrected += usize::from(
+            is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_lengthened,
+        );
     }
     n_corrected
 }

@@ -17,6 +17,7 @@ use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
 use crate::alignment::{Alignments, Asked, Ratio};
+use crate::gizmo::{self, Gizmo};
 use crate::output::{remove_file, write_png};
 use crate::stored::Stored;
 
@@ -84,7 +85,7 @@ pub fn check(session: &Path, out: &Path, ratio: Ratio) -> anyhow::Result<Finding
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
                     findings.aligned(&aligned.alignment);
-                    let picture = drawn(&capture, &given, &aligned.alignment.applied_to(&given))?;
+                    let picture = drawn(&capture, &given, &aligned.alignment)?;
                     let path = out.join(DRAWING);
                     write_png(&path, &picture)?;
                     findings.drawing = Some(path);
@@ -240,11 +241,20 @@ fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
     camera.intrinsics.pixel_of(at)
 }
 
-fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {
+fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow::Result<Image> {
     let scene = capture.scene();
+    let aligned = &alignment.applied_to(given);
     let mut picture = Image::clone(given.image.rgba());
     overlay::receivers(&mut picture, scene, given);
     overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
     overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);
-    Ok(picture)
+    gizmo::rays(
+        &mut picture,
+        (scene, given),
+        &Gizmo::listed(scene, given),
+        gizmo::GIVEN,
+    );
+    let found = Gizmo::aligned(scene, aligned, &alignment.report);
+    gizmo::rays(&mut picture, (scene, aligned), &found, gizmo::FOUND);
+    Ok(capture.through_lens(0, picture)?)
 }

@@ -125,7 +125,10 @@ function showAlignment() {
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe tells: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
-  at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),
+  const hemisphere = entry(data.presets[0]).maps.find(map => map.name === "hemisphere");
+  const searched = hemisphere ? [el("figure", {}, el("img", { src: data.presets[0].folder + hemisphere.file, alt: "Directions that a light was looked for in" }),
+    el("figcaption", { class: "soft" }, "The hemisphere above the table, seen from above with the camera below: the brighter, the more of the shadow a light there explains. Yellow ring: found; red: listed."))] : [];
+  at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"), ...searched,
     rows.length > 0 ? table(`took ${ms(cpu_ms)}`, ["", "", "found elsewhere by", ""], rows)
       : el("p", { class: "soft" }, "Too little of the toy's outline is seen to align anything."));
 }

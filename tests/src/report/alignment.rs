@@ -1,8 +1,6 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{
-    CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment, RatioAlignment,
-};
+use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment, RatioAlignment};
 use app_core::probe::{ProbeReport, TrackedLight};
 use app_core::scene::Light;
 use serde::Serialize;

@@ -73,7 +73,10 @@ impl Rigid {
             within.translation = within.translation.clamp_length_max(most_m);
         }
         let turn = within.rotation.to_scaled_axis();
-        if let Some(most_rad) = uncertainty.rotation_rad.filter(|most_rad| turn.length() > *most_rad) {
+        if let Some(most_rad) = uncertainty
+            .rotation_rad
+            .filter(|most_rad| turn.length() > *most_rad)
+        {
             within.rotation = DQuat::from_scaled_axis(turn.clamp_length_max(most_rad));
         }
         within
@@ -151,7 +154,10 @@ impl<'a> Search<'a> {
 
     /// Of turns to try in each direction.
     fn n_turns(&self) -> i32 {
-        let most_rad = self.uncertainty.rotation_rad.unwrap_or(f64::from(N_TURNS) * TURN_RAD);
+        let most_rad = self
+            .uncertainty
+            .rotation_rad
+            .unwrap_or(f64::from(N_TURNS) * TURN_RAD);
         #[allow(clippy::cast_possible_truncation, reason = "bounded")]
         let n_turns = (most_rad / TURN_RAD).min(f64::from(MOST_TURNS)).ceil() as i32;
         n_turns
@@ -260,10 +266,16 @@ impl<'a> Search<'a> {
     fn step(&self, motion: &Rigid) -> Option<Vector6> {
         let met = self.met(motion, 1);
         let gains = self.gains(&met);
-        let turn_rad = self.uncertainty.rotation_rad.map_or(TRACKED_RAD, |most| most.max(TRACKED_RAD));
-        let move_m = self.uncertainty.position_m.map_or(TRACKED_M, |most| most.max(TRACKED_M));
+        let turn_rad = self
+            .uncertainty
+            .rotation_rad
+            .map_or(TRACKED_RAD, |most| most.max(TRACKED_RAD));
+        let move_m = self
+            .uncertainty
+            .position_m
+            .map_or(TRACKED_M, |most| most.max(TRACKED_M));
         let prior = Vector6::new(turn_rad, turn_rad, turn_rad, move_m, move_m, move_m)
-        .map(|deviation| (self.robust / deviation).powi(2));
+            .map(|deviation| (self.robust / deviation).powi(2));
         let mut information = Matrix6::from_diagonal(&prior);
         let mut gradient = -prior.component_mul(&motion.numbers());
         for met in &met {

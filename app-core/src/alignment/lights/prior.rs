@@ -34,7 +34,9 @@ impl Prior {
             Some(ratio) => (ratio - 1.0) * lamp.spread + GIVEN_POINT,
             None => GIVEN_SPREAD * lamp.spread + GIVEN_POINT,
         };
-        let nearness = uncertainty.distance_ratio.map_or(GIVEN_NEARNESS, |ratio| ratio - 1.0);
+        let nearness = uncertainty
+            .distance_ratio
+            .map_or(GIVEN_NEARNESS, |ratio| ratio - 1.0);
         Self {
             lamp: *lamp,
             deviations: [GIVEN_RAD, GIVEN_RAD, nearness * lamp.nearness, spread],

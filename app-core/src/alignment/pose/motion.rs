@@ -72,7 +72,10 @@ impl Motion {
             within.translation = within.translation.clamp_length_max(most_m);
         }
         let turn = within.rotation.to_scaled_axis();
-        if let Some(most_rad) = uncertainty.rotation_rad.filter(|most_rad| turn.length() > *most_rad) {
+        if let Some(most_rad) = uncertainty
+            .rotation_rad
+            .filter(|most_rad| turn.length() > *most_rad)
+        {
             within.rotation = DQuat::from_scaled_axis(turn.clamp_length_max(most_rad));
         }
         within

@@ -121,7 +121,11 @@ impl<'a> Trials<'a> {
         let (world_from_object, outline_px) = if tried[near].at == at {
             (tried[near].world_from_object, tried[near].outline_px)
         } else {
-            posed(scene, &photograph, (&tried[near].slid(*unknown, at, &camera), Start::Near))?
+            posed(
+                scene,
+                &photograph,
+                (&tried[near].slid(*unknown, at, &camera), Start::Near),
+            )?
         };
         let shape = photograph.shape(scene, &world_from_object).map_err(|_| Unseen)?;
         let mut followed = tried[near].followed.clone();
