@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use app_core::alignment::{Aligner, Alignment};
+use app_core::alignment::{Aligner, Alignment, AlignmentReport, RatioAlignment};
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Scene};
@@ -25,14 +25,49 @@ pub enum Lights {
     Probe,
 }
 
-/// Where the focal length comes from.
+/// Where a number comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum FocalLength {
-    /// From the session.
+pub enum Source {
+    /// The session.
     #[default]
     Given,
-    /// From the pictures, within 3 % of what the session says.
+    /// The pictures, within 3 % of what the session says.
     Found,
+}
+
+/// The number that is looked for in the pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ratio {
+    /// None: all are the session's.
+    #[default]
+    Given,
+    /// The focal length.
+    FocalLength,
+    /// The scale of the world.
+    WorldScale,
+}
+
+/// Options that ask for a number.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct RatioArgs {
+    /// Look for the focal length, too, which takes several times as long as all else
+    #[arg(long, value_enum, default_value_t)]
+    focal_length: Source,
+    /// Look for the scale of the world in place of it, as by a tracker whose metre is none: the toy's model has the right size
+    #[arg(long, value_enum, default_value_t, conflicts_with = "focal_length")]
+    world_scale: Source,
+}
+
+impl RatioArgs {
+    /// The number that they ask for.
+    #[must_use]
+    pub fn asked(&self) -> Ratio {
+        match (self.focal_length, self.world_scale) {
+            (Source::Given, Source::Given) => Ratio::Given,
+            (Source::Found, _) => Ratio::FocalLength,
+            (Source::Given, Source::Found) => Ratio::WorldScale,
+        }
+    }
 }
 
 /// What is looked for in the pictures though a session says it.
@@ -40,8 +75,8 @@ pub enum FocalLength {
 pub struct Asked {
     /// The lights.
     pub lights: Lights,
-    /// The focal length.
-    pub focal_length: FocalLength,
+    /// The focal length, or the scale of the world.
+    pub ratio: Ratio,
 }
 
 /// Corrections of frames, found once for all presets.
@@ -125,9 +160,10 @@ impl Alignments {
         if asked.lights == Lights::Found {
             known.probe = None;
         }
-        let aligner = match asked.focal_length {
-            FocalLength::Given => Aligner::new(known),
-            FocalLength::Found => Aligner::new(known).with_unknown_focal_length(),
+        let aligner = match asked.ratio {
+            Ratio::Given => Aligner::new(known),
+            Ratio::FocalLength => Aligner::new(known).with_unknown_focal_length(),
+            Ratio::WorldScale => Aligner::new(known).with_unknown_world_scale(),
         };
         Self::find_by(aligner, session, frames, asked.lights)
     }
@@ -220,8 +256,18 @@ impl Alignments {
     /// The focal length of all frames and plates, over that recorded.
     #[must_use]
     pub fn focal_ratio(&self) -> f64 {
+        self.ratio(|report| report.focal_length)
+    }
+
+    /// The scale of all poses of the toy, over that recorded.
+    #[must_use]
+    pub fn world_scale(&self) -> f64 {
+        self.ratio(|report| report.world_scale)
+    }
+
+    fn ratio(&self, of: impl Fn(&AlignmentReport) -> Option<RatioAlignment>) -> f64 {
         let last = self.found.last();
-        let found = last.and_then(|last| last.alignment.report.focal_length);
+        let found = last.and_then(|last| of(&last.alignment.report));
         found.map_or(1.0, |found| if found.is_applied() { found.ratio } else { 1.0 })
     }
 

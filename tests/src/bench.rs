@@ -15,7 +15,7 @@ use app_core::internals::Map;
 use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
 
-use crate::alignment::{Alignments, FocalLength, Lights};
+use crate::alignment::{Alignments, Lights, Ratio};
 use crate::metrics::Scores;
 use crate::metrics::flicker::Flicker;
 use crate::progress::Quiet;
@@ -46,8 +46,8 @@ pub struct Options {
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
-    /// Where the focal length comes from then.
-    pub focal_length: FocalLength,
+    /// The number that is looked for then.
+    pub ratio: Ratio,
 }
 
 /// One preset on one session.
@@ -144,7 +144,7 @@ fn replay_options(options: &Options) -> replay::Options {
         out: None,
         is_aligned: options.is_aligned,
         lights: options.lights,
-        focal_length: options.focal_length,
+        ratio: options.ratio,
     }
 }
 

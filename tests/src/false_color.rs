@@ -73,6 +73,15 @@ pub const ERROR: Shown = shown(
     Some(("0", "16 codes of 255 and more", ERROR_RAMP)),
 );
 
+/// How the lights are shown.
+pub const LIGHTS: Shown = shown(
+    "lights",
+    "Lights",
+    "From the toy a ray towards each light, with a ring as wide as the light; yellow as found or corrected, its dashed ring two deviations of \
+     the direction; red as listed.",
+    None,
+);
+
 const fn shown(
     name: &'static str,
     title: &'static str,
@@ -177,7 +186,7 @@ pub fn describe(map: Map) -> Option<Shown> {
 
 /// The colour at `t` of a ramp; below 0 its first, above 1 its last.
 #[expect(clippy::cast_possible_truncation, reason = "within the ramp")]
-fn color_at(ramp: Ramp, t: f32) -> [u8; 3] {
+pub(crate) fn color_at(ramp: Ramp, t: f32) -> [u8; 3] {
     let last = ramp.len().saturating_sub(1);
     let position = t.clamp(0.0, 1.0) * last as f32;
     let below = (position as usize).min(last);

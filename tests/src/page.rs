@@ -9,7 +9,7 @@ use app_core::internals::Map;
 use app_core::session::{GroundTruth, Session};
 use serde::Serialize;
 
-use crate::false_color::{ERROR, Shown, describe};
+use crate::false_color::{ERROR, LIGHTS, Shown, describe};
 use crate::output::{WriteError, write_whole};
 use crate::page::pictures::Pictures;
 use crate::replay::ReplayError;
@@ -76,7 +76,8 @@ pub(crate) fn write(
         session: &scene.name,
         size_px: [scene.width_px, scene.height_px],
         frames: frames?,
-        shown: std::iter::once(ERROR)
+        shown: [ERROR, LIGHTS]
+            .into_iter()
             .chain(Map::ALL.iter().filter_map(|map| describe(*map)))
             .collect(),
         presets: reports

@@ -13,9 +13,10 @@ use app_core::scene::Image;
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
-use crate::alignment::{Alignments, Asked, FocalLength, Lights};
+use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
+use crate::lights_drawn::write_lights;
 use crate::metrics::flicker::Follower;
 use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
@@ -43,8 +44,8 @@ pub struct Options {
     pub is_aligned: bool,
     /// Where the lights come from then.
     pub lights: Lights,
-    /// Where the focal length comes from then.
-    pub focal_length: FocalLength,
+    /// The number that is looked for then.
+    pub ratio: Ratio,
 }
 
 impl Default for Options {
@@ -55,7 +56,7 @@ impl Default for Options {
             out: None,
             is_aligned: true,
             lights: Lights::default(),
-            focal_length: FocalLength::default(),
+            ratio: Ratio::default(),
         }
     }
 }
@@ -127,7 +128,7 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
     if options.is_aligned {
         let asked = Asked {
             lights: options.lights,
-            focal_length: options.focal_length,
+            ratio: options.ratio,
         };
         Alignments::find(session, frames_of(session, options)?, asked)
     } else {
@@ -282,9 +283,11 @@ impl Run<'_> {
             entry.error = error
                 .map(|error| out.maps.write(ERROR.name, index, error.into()))
                 .transpose()?;
-            let size_px = [picture.width_px, picture.height_px];
+            let drawn = (self.session, self.alignments, index);
+            entry.maps = write_lights(&mut out.maps, drawn, preset)?;
             if let Some(region) = region {
-                entry.maps = write_maps(&mut out.maps, self.core, (index, region), size_px)?;
+                let maps = write_maps(&mut out.maps, (self.session, self.core), (index, region))?;
+                entry.maps.extend(maps);
             }
         }
         Ok(entry)
@@ -293,17 +296,18 @@ impl Run<'_> {
 
 fn write_maps(
     pictures: &mut Pictures,
-    core: &Core,
+    (session, core): (&dyn Session, &Core),
     (index, region): (usize, PixelRect),
-    size_px: [u32; 2],
 ) -> Result<Vec<MapEntry>, ReplayError> {
     let mut entries = Vec::new();
+    let size_px = [session.scene().width_px, session.scene().height_px];
     for map in Map::ALL {
         let values = core
             .read_map(*map)
             .map_err(|reason| ReplayError::Frame { index, reason })?;
         if let (Some(shown), Some(values)) = (describe(*map), values) {
             let picture = false_color::picture(*map, &values, region, size_px);
+            let picture = session.map_through_lens(index, picture)?;
             let file = pictures.write(shown.name, index, picture.into())?;
             entries.push(MapEntry {
                 name: shown.name,

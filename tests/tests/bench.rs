@@ -5,7 +5,7 @@ use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
-use harness::alignment::{FocalLength, Lights};
+use harness::alignment::{Lights, Ratio};
 use harness::bench::{Options, basin, basin_csv, basin_drawing, basin_table, bench, csv};
 use harness::files::{BUNDLED_SESSION, Folder};
 
@@ -20,7 +20,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         frames: Some(0..2),
         with_exact: false,
         is_aligned: true,
-        focal_length: FocalLength::Given,
+        ratio: Ratio::Given,
         lights: Lights::Given,
     };
     let text = csv(&bench(&session, &mut core, &options).unwrap());

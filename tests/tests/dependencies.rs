@@ -20,10 +20,13 @@ const TARGETS: [&str; 3] = [
 const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
 const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
 /// Packages of which more than one version is compiled, and whose doing that is.
-const TWICE: [(&str, &str); 6] = [
+const TWICE: [(&str, &str); 9] = [
     ("hashbrown", "gpu-allocator is one behind wgpu"),
     ("jni-sys", "jni-sys 0.3 is a shim over 0.4"),
+    ("linux-raw-sys", "follows rustix"),
     ("miniz_oxide", "png is one behind flate2"),
+    ("rustc-hash", "naga is one behind egui-wgpu"),
+    ("rustix", "winit is one behind x11rb"),
     ("syn", "derive macros move to 3 one by one"),
     ("thiserror", "ndk is at 1"),
     ("thiserror-impl", "follows thiserror"),

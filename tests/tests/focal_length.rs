@@ -4,7 +4,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use app_core::alignment::{Aligner, Alignment, FocalLengthOutcome};
+use app_core::alignment::{Aligner, Alignment, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Scene};
 use app_core::session::{Capture, Session};
@@ -80,7 +80,7 @@ fn a_focal_length_that_is_off_is_found() {
             let mut aligner = Aligner::new(scene.clone()).with_unknown_focal_length();
             let found = aligner.align(&input).unwrap();
             let report = found.report.focal_length.unwrap();
-            assert_eq!(report.outcome, FocalLengthOutcome::Corrected, "{report:?}");
+            assert_eq!(report.outcome, RatioOutcome::Corrected, "{report:?}");
             assert!((ratio * report.ratio - 1.0).abs() < RATIO, "{ratio}: {report:?}");
             assert!(off_mm(&found) < 0.5, "{} mm off", off_mm(&found));
             // It comes out with the frame and with the plates.
@@ -116,7 +116,7 @@ fn a_focal_length_that_is_right_changes_nothing() {
         .unwrap();
     let without = Aligner::new(scene).align(&input).unwrap();
     let report = found.report.focal_length.unwrap();
-    assert_eq!(report.outcome, FocalLengthOutcome::AsGiven, "{report:?}");
+    assert_eq!(report.outcome, RatioOutcome::AsGiven, "{report:?}");
     assert!(report.deviation < 2e-3, "{report:?}");
     assert_eq!(
         (found.camera, found.world_from_object, &found.lights),
@@ -135,7 +135,7 @@ fn it_is_found_once_and_kept() {
     };
     let unseen = aligner.align(&empty).unwrap();
     let outcome = unseen.report.focal_length.unwrap().outcome;
-    assert_eq!(outcome, FocalLengthOutcome::Unseen);
+    assert_eq!(outcome, RatioOutcome::Unseen);
     assert_eq!(unseen.camera, input.camera);
     let first = aligner.align(&input).unwrap();
     let ratio = first.report.focal_length.unwrap().ratio;
@@ -169,7 +169,7 @@ fn a_lower_table_and_a_larger_toy_are_no_focal_length() {
         let mut aligner = Aligner::new(scene).with_unknown_focal_length();
         let found = aligner.align(&input).unwrap();
         let report = found.report.focal_length.unwrap();
-        assert_eq!(report.outcome, FocalLengthOutcome::OutlineDisagrees, "{report:?}");
+        assert_eq!(report.outcome, RatioOutcome::OutlineDisagrees, "{report:?}");
         assert_eq!(found.camera.intrinsics, input.camera.intrinsics);
     }
 }
@@ -183,6 +183,6 @@ fn what_cannot_tell_it_leaves_it() {
         .align(&input)
         .unwrap();
     let report = found.report.focal_length.unwrap();
-    assert_eq!(report.outcome, FocalLengthOutcome::Unseen);
+    assert_eq!(report.outcome, RatioOutcome::Unseen);
     assert_eq!(found.camera.intrinsics, input.camera.intrinsics);
 }

@@ -11,7 +11,7 @@
 //! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
 //! ```
 //!
-//! Where it is asked for, the **focal length** is found first, by toy and shadow together (`focal_length`).
+//! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`).
 //!
 //! What is held fixed, since pictures do not tell it from the rest: the first plate's camera, to which all others are relative, the
 //! principal point, and the receivers.
@@ -23,9 +23,9 @@
 //! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and a focal length 2 to 12 s more, once a session.
 
 mod camera;
+mod directions;
 mod error;
 pub(crate) mod faces;
-mod focal_length;
 mod kept_lights;
 mod lights;
 mod mask;
@@ -34,32 +34,35 @@ mod photograph;
 mod picture;
 mod pose;
 mod raster;
+mod ratio;
 mod receivers;
 mod rectangle;
 pub(crate) mod report;
 mod shape;
+mod view;
 mod withheld;
 
 use std::sync::Arc;
 
 use glam::DMat4;
 
-use crate::camera_frame::CameraImage;
 use crate::frame::{FrameInput, NoLight, Warning};
 use crate::probe::ProbeReport;
-use crate::scene::{Camera, Light, MAX_LIGHTS, Plate, Scene, check};
+use crate::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene, check};
 use crate::toy::ToyError;
-use focal_length::FocalLength;
 use kept_lights::KeptLights;
 use lights::Watched;
 use mask::Mask;
 use photograph::{MOST_OUTLINE_PX, Photograph};
+use ratio::{Ratio, Unknown};
+use view::{AlignedView, Seen};
 
+pub use directions::LightSearch;
 pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, FocalLengthAlignment, FocalLengthOutcome,
-    LightAlignment, LightDeviation, PoseAlignment, PoseDeviation,
+    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, PoseAlignment,
+    PoseDeviation, RatioAlignment, RatioOutcome,
 };
 
 /// Each plate takes as long as a frame; more than so many stay as they are given.
@@ -116,7 +119,8 @@ impl Alignment {
 #[derive(Debug)]
 pub struct Aligner {
     scene: Scene,
-    focal_length: FocalLength,
+    /// Looked for where it was asked for.
+    ratio: Ratio,
     are_plates_aligned: bool,
     cameras: camera::Finder,
     view: Option<AlignedView>,
@@ -130,31 +134,11 @@ pub struct Aligner {
     probe: Option<ProbeReport>,
 }
 
-/// A view with its photograph.
-struct Seen {
-    view: AlignedView,
-    photograph: Photograph,
-    /// The frame's, with the camera and the pose that were found.
-    input: FrameInput,
-}
-
 /// Lights that were moved or switched on after the plates were taken.
 struct Relit {
     lights: KeptLights,
     /// In their light.
     plates: Arc<[Plate]>,
-}
-
-/// Camera and pose in the latest view.
-#[derive(Clone, Debug)]
-struct AlignedView {
-    image: CameraImage,
-    given_camera: Camera,
-    given: DMat4,
-    camera: Camera,
-    camera_report: Option<CameraAlignment>,
-    world_from_object: DMat4,
-    report: Option<PoseAlignment>,
 }
 
 impl Aligner {
@@ -163,7 +147,7 @@ impl Aligner {
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,
-            focal_length: FocalLength::default(),
+            ratio: Ratio::default(),
             are_plates_aligned: false,
             cameras: camera::Finder::default(),
             view: None,
@@ -185,7 +169,15 @@ impl Aligner {
     /// That takes several times as long as all else, and a toy or a receiver of another size or height can be taken for it.
     #[must_use]
     pub fn with_unknown_focal_length(mut self) -> Self {
-        self.focal_length = FocalLength::unknown();
+        self.ratio = Ratio::of(Unknown::FocalLength);
+        self
+    }
+
+    /// Looks for the scale of the world in place of the focal length, in the same way: lengths that are up to 3 % larger or smaller than the
+    /// toy's model says, such as those of a tracker whose metre is none. Poses of the toy are scaled, and all else stays as it is given.
+    #[must_use]
+    pub fn with_unknown_world_scale(mut self) -> Self {
+        self.ratio = Ratio::of(Unknown::WorldScale);
         self
     }
 
@@ -208,7 +200,7 @@ impl Aligner {
             Some(lights) => Arc::clone(lights),
             None => self.scene.lights.as_slice().into(),
         };
-        let input = &self.with_focal_length(input, &given)?;
+        let input = &self.with_ratio(input, &given)?;
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         // Lights that were found stay as long as no others are listed.
         let kept = self.lights.take().filter(|lights| lights.given == given);
@@ -236,23 +228,20 @@ impl Aligner {
         Ok(self.aligned(input))
     }
 
-    /// The input with the focal length that was found; in a view that is not known it is looked for, until it was seen.
-    fn with_focal_length(
-        &mut self,
-        input: &FrameInput,
-        given: &Arc<[Light]>,
-    ) -> Result<FrameInput, AlignError> {
+    /// The input with the focal length or the scale that was found; in a view that is not known it is looked for, until it was seen.
+    fn with_ratio(&mut self, input: &FrameInput, given: &Arc<[Light]>) -> Result<FrameInput, AlignError> {
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         let is_withheld = self.are_shadows_withheld && self.lights.is_some();
-        if self.focal_length.is_open() && !is_view_known && !is_withheld {
+        if self.ratio.is_open() && !is_view_known && !is_withheld {
             let lights = self.about(given, input)?;
-            if self.focal_length.find(&mut self.scene, input, &lights) {
+            if self.ratio.find(&mut self.scene, input, &lights) {
                 self.are_plates_aligned = false;
                 (self.view, self.held, self.lights) = (None, None, None);
             }
         }
         Ok(FrameInput {
-            camera: self.focal_length.corrected(&input.camera),
+            camera: self.ratio.camera(&input.camera),
+            world_from_object: self.ratio.pose(&input.world_from_object),
             ..input.clone()
         })
     }
@@ -273,7 +262,9 @@ impl Aligner {
             plates, receivers, ..
         } = &self.scene;
         let given = (input.image.rgba(), &input.camera, withheld.as_ref());
-        let found = self.cameras.find(given, plates, receivers);
+        let found = self
+            .cameras
+            .find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = corrected(&input.camera, found);
         let mut input_seen = FrameInput {
             camera,
@@ -322,7 +313,8 @@ impl Aligner {
             return self.discover_lights(given, seen);
         }
         let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
-            seen.photograph.lights(&self.scene, &seen.input, &given)?
+            seen.photograph
+                .lights(&self.scene, &seen.input, (&given, &self.scene.uncertainty.lights))?
         } else {
             None
         };
@@ -356,7 +348,9 @@ impl Aligner {
             return Ok(kept);
         };
         if kept.discovered.is_none() {
-            let found = seen.photograph.lights(&self.scene, &seen.input, kept.in_use())?;
+            // One that was moved may be anywhere.
+            let lights = (kept.in_use(), &LightUncertainty::default());
+            let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
             let moved = KeptLights::listed(Arc::clone(&kept.given), found);
             if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
                 return Ok(moved.in_place_of(&kept, now));
@@ -413,9 +407,11 @@ impl Aligner {
         for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
             let (aligned, rest) = self.scene.plates.split_at_mut(index);
             let Plate { image, camera } = &mut rest[0];
-            let found = self
-                .cameras
-                .find((image, camera, None), aligned, &self.scene.receivers);
+            let found = self.cameras.find(
+                (image, camera, None),
+                (aligned, &self.scene.receivers),
+                &self.scene.uncertainty.camera,
+            );
             (*camera, _) = corrected(camera, found);
         }
     }
@@ -424,7 +420,8 @@ impl Aligner {
         let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
         let discovered = lights.and_then(|lights| lights.discovered.as_ref());
         let report = AlignmentReport {
-            focal_length: self.focal_length.report(),
+            focal_length: self.ratio.report(Unknown::FocalLength),
+            world_scale: self.ratio.report(Unknown::WorldScale),
             camera: view.and_then(|view| view.camera_report),
             pose: view.and_then(|view| view.report),
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
@@ -451,37 +448,15 @@ impl Aligner {
             lights: applied,
             relit_plates: self.relit_plates.clone(),
             report,
-            warnings: warnings.into_iter().chain(none).chain(changed).collect(),
+            warnings: self
+                .ratio
+                .warning()
+                .into_iter()
+                .chain(warnings)
+                .chain(none)
+                .chain(changed)
+                .collect(),
         }
-    }
-}
-
-impl Seen {
-    /// A view that is known.
-    fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
-        let input = FrameInput {
-            camera: view.camera,
-            world_from_object: view.world_from_object,
-            ..input.clone()
-        };
-        Self {
-            photograph: Photograph::new(scene, &input, None),
-            view,
-            input,
-        }
-    }
-}
-
-impl AlignedView {
-    fn is_of(&self, input: &FrameInput) -> bool {
-        self.image.is(&input.image)
-            && self.given_camera == input.camera
-            && self.given == input.world_from_object
-    }
-
-    /// Whether the outline is where the picture has it, within some pixels.
-    fn is_trusted(&self, most_px: f64) -> bool {
-        self.report.is_some_and(|pose| pose.shown_px() <= most_px)
     }
 }
 

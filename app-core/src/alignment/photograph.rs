@@ -13,7 +13,7 @@ use super::shape::Shape;
 use super::{lights, pose};
 use crate::frame::{FrameInput, NoLight};
 use crate::probe::TrackedLight;
-use crate::scene::{Light, Plate, Scene, check};
+use crate::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
 use crate::toy::ToyError;
 
 /// A found pose is applied where the outline's loss falls to less than this part of the given pose's.
@@ -35,6 +35,9 @@ const LEAST_GROWTH: f64 = 0.15;
 const LEAST_DISTANCE: f64 = 0.1;
 /// A direction is told where it turned by as many deviations.
 const TOLD: f64 = 3.0;
+
+/// Of a bound, by which what lies on it may be beyond it for rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// A photograph with its plate, and where the receivers are in it.
 pub(super) struct Photograph {
@@ -72,13 +75,14 @@ impl Photograph {
         held: Option<DMat4>,
     ) -> Result<FoundPose, ToyError> {
         let given = input.world_from_object;
+        let uncertainty = &scene.uncertainty.toy;
         if let Some(held) = held.filter(|held| *held != given) {
-            let found = self.pose_from(scene, input, &held)?;
-            if found.is_seen() {
+            let found = self.pose_from(scene, input, (&held, &PoseUncertainty::default()))?;
+            if found.is_seen() && found.is_within(uncertainty) {
                 return Ok(found);
             }
         }
-        let found = self.pose_from(scene, input, &given)?;
+        let found = self.pose_from(scene, input, (&given, uncertainty))?;
         if held.is_some() || found.is_seen() {
             return Ok(found);
         }
@@ -95,7 +99,7 @@ impl Photograph {
         let normal =
             receivers.find_map(|receiver| receiver.normal_under(&shape.points, RESTING * shape.radius_m));
         Ok(normal.map(|normal| {
-            let found = pose::find_resting(&shape, &self.pyramid, normal);
+            let found = pose::find_resting(&shape, &self.pyramid, normal, &scene.uncertainty.toy);
             self.judged(input, (&start, &shape), found)
         }))
     }
@@ -140,10 +144,15 @@ impl Photograph {
         }
     }
 
-    fn pose_from(&self, scene: &Scene, input: &FrameInput, start: &DMat4) -> Result<FoundPose, ToyError> {
-        let camera_from_object = self.camera_from_object(start);
-        let shape = Shape::new(scene, &camera_from_object)?;
-        Ok(self.judged(input, (start, &shape), pose::find(&shape, &self.pyramid)))
+    fn pose_from(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        (start, uncertainty): (&DMat4, &PoseUncertainty),
+    ) -> Result<FoundPose, ToyError> {
+        let shape = self.shape(scene, start)?;
+        let found = pose::find(&shape, &self.pyramid, uncertainty);
+        Ok(self.judged(input, (start, &shape), found))
     }
 
     /// A pose that was found from a start, or the start where it is no better.
@@ -187,11 +196,16 @@ impl Photograph {
         &self,
         scene: &Scene,
         input: &FrameInput,
-        given: &[Light],
+        (given, uncertainty): (&[Light], &LightUncertainty),
     ) -> Result<Option<FoundLights>, ToyError> {
         let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let world_from_camera = &input.camera.world_from_camera;
-        let found = lights::find(given, &shape, &self.receivers, &self.pyramid, world_from_camera);
+        let found = lights::find(
+            (given, uncertainty),
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        );
         Ok(found.map(|found| {
             let [before, after] = found.losses;
             let lights: Arc<[Light]> = found.lights.iter().map(|found| found.light).collect();
@@ -309,6 +323,16 @@ impl FoundPose {
     /// Whether the outline is where the picture has it.
     pub(super) fn is_seen(&self) -> bool {
         self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
+    }
+
+    /// Whether it is no farther from where it was given than that is uncertain.
+    fn is_within(&self, uncertainty: &PoseUncertainty) -> bool {
+        let is_within =
+            |away: f64, most: Option<f64>| most.is_none_or(|most| away <= (1.0 + ROUNDING) * most);
+        self.report.is_none_or(|pose| {
+            is_within(pose.moved_m, uncertainty.position_m)
+                && is_within(pose.turned_rad, uncertainty.rotation_rad)
+        })
     }
 }
 

@@ -12,7 +12,9 @@ use crate::scene::Light;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlignmentReport {
     /// The focal length; none where nobody asked for it.
-    pub focal_length: Option<FocalLengthAlignment>,
+    pub focal_length: Option<RatioAlignment>,
+    /// The scale of the world; none where nobody asked for it.
+    pub world_scale: Option<RatioAlignment>,
     /// The camera; none where there is no plate or what it shows has too little texture.
     pub camera: Option<CameraAlignment>,
     /// The toy's pose; none where too little of its outline is seen.
@@ -140,43 +142,44 @@ pub struct LightDeviation {
     pub angular_radius_rad: f64,
 }
 
-/// The focal length, by toy and shadow together.
+/// A focal length, or the scale of a world, by toy and shadow together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FocalLengthAlignment {
+pub struct RatioAlignment {
     /// What was done with it.
-    pub outcome: FocalLengthOutcome,
-    /// The focal length that was found, over that given; 1 where none was.
+    pub outcome: RatioOutcome,
+    /// The focal length that was found, over that given; or the lengths of the world, which are those of its camera and its receivers, over
+    /// what they are by the size of the toy's model. 1 where none was found.
     pub ratio: f64,
     /// How far the ratio may be off before the error of the shadows has risen by what errors of the model are taken for; infinite where
     /// none was found.
     pub deviation: f64,
-    /// Error of the shadows with the focal length given, and with that found, each with the pose and the lights that fit it best: mean
+    /// Error of the shadows with what was given, and with what was found, each with the pose and the lights that fit it best: mean
     /// squares as those of the lights. None where none was found.
     pub errors: Option<[f64; 2]>,
 }
 
-impl FocalLengthAlignment {
-    /// Whether frames and plates have the focal length that was found.
+impl RatioAlignment {
+    /// Whether frames and plates have the focal length that was found, or poses the scale.
     #[must_use]
     pub fn is_applied(&self) -> bool {
-        self.outcome == FocalLengthOutcome::Corrected
+        self.outcome == RatioOutcome::Corrected
     }
 
     /// Whether toy and shadows were seen well enough to look for it.
     #[must_use]
     pub fn is_seen(&self) -> bool {
-        self.outcome != FocalLengthOutcome::Unseen
+        self.outcome != RatioOutcome::Unseen
     }
 }
 
-/// What was done with a focal length.
+/// What was done with a focal length, or with the scale of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FocalLengthOutcome {
+pub enum RatioOutcome {
     /// It is corrected, in this frame and in all others.
     Corrected,
     /// That given explains the picture as well, but for noise.
     AsGiven,
-    /// Other focal lengths explain the shadows as well, or none near that given does.
+    /// Others explain the shadows as well, or none near that given does.
     NotTold,
     /// The shadows ask for another one, with which the outline of the toy fits worse: something else is off, such as the size of the toy
     /// or the height of a receiver.
@@ -185,7 +188,7 @@ pub enum FocalLengthOutcome {
     Unseen,
 }
 
-impl fmt::Display for FocalLengthOutcome {
+impl fmt::Display for RatioOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Corrected => "corrected",

@@ -10,7 +10,7 @@ use super::plate_taker::{PlateShot, PlateStep};
 use super::step::{Cause, Step};
 use crate::camera_frame::{Arrival, CameraFrame};
 use crate::frame::FrameInput;
-use crate::scene::{Pose, Receiver, Scene, Surface};
+use crate::scene::{Pose, Receiver, Scene, Surface, Uncertainty};
 
 impl App {
     pub(super) fn frame(&mut self, frame: CameraFrame, commands: &mut Vec<ShellCommand>) {
@@ -118,6 +118,7 @@ impl App {
             lights: Vec::new(),
             plates: self.plates.clone(),
             probe: None,
+            uncertainty: Uncertainty::default(),
         };
         self.n_places += 1;
         self.wants_anchor = true;

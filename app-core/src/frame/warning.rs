@@ -90,6 +90,10 @@ pub enum Warning {
         /// The part of the shadows that no light explains, from 0 to 1.
         unexplained: f64,
     },
+    /// The focal length was asked for, and toy and shadows do not tell it.
+    FocalLengthNotTold,
+    /// The scale of the world was asked for, and toy and shadows do not tell it.
+    WorldScaleNotTold,
 }
 
 impl fmt::Display for Warning {
@@ -163,6 +167,8 @@ impl fmt::Display for Warning {
                 "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
                 100.0 * unexplained
             ),
+            Self::FocalLengthNotTold => not_told(f, "focal length"),
+            Self::WorldScaleNotTold => not_told(f, "scale of the world"),
             Self::CameraBelowReceiver => {
                 f.write_str("the camera is not above the receiver: the camera frame passes through")
             }
@@ -172,6 +178,13 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+fn not_told(f: &mut fmt::Formatter<'_>, what: &str) -> fmt::Result {
+    write!(
+        f,
+        "the {what} was asked for, but toy and shadow do not tell it: that given is taken"
+    )
 }
 
 fn listed<'a, T>(items: &'a [T], between: &'static str) -> Listed<'a, T> {

@@ -128,6 +128,12 @@ impl Lens {
         })
     }
 
+    /// A map of what a pinhole sees, as the lens shows it: each pixel is one of the map's, and none, all zero, where the pinhole does not
+    /// reach. All four channels are taken as they are.
+    pub(crate) fn of_map(self, map: &Image) -> Image {
+        resample::nearest(map, |at_px| self.distortion.undistorted(&self.intrinsics, at_px))
+    }
+
     /// The photograph with what was changed in its [`Self::to_pinhole`]: all three of one size. Where nothing changed it is as it was,
     /// code by code; so it is where the pinhole does not reach.
     pub(crate) fn with_changes(self, photograph: &Image, [before, after]: [&Image; 2]) -> Image {

@@ -28,6 +28,22 @@ pub(super) fn resampled(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     Image { rgba8, ..*image }
 }
 
+/// The picture with each pixel the one at `from`, in pixels of the same picture; all zero where that is beside it.
+pub(super) fn nearest(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
+    let size = DVec2::new(f64::from(image.width_px), f64::from(image.height_px));
+    let pixels = places(image).map(|place| {
+        let at = from(place).floor();
+        if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {
+            return [0; 4];
+        }
+        let at = at.as_uvec2();
+        let first = 4 * (at.y as usize * image.width_px as usize + at.x as usize);
+        image.rgba8[first..first + 4].try_into().unwrap_or_default()
+    });
+    let rgba8 = pixels.flatten().collect();
+    Image { rgba8, ..*image }
+}
+
 /// The photograph with what differs between two pictures, each pixel's at `from`, in pixels of theirs.
 pub(super) fn with_changes(
     photograph: &Image,

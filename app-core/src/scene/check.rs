@@ -140,6 +140,11 @@ pub(crate) const INTENSITY: RangeInclusive<f64> = 0.0..=1e9;
 pub(crate) const HARMONIC: RangeInclusive<f64> = -1e9..=1e9;
 /// Colour temperatures, in kelvin.
 pub(crate) const KELVIN: RangeInclusive<f64> = 100.0..=1e6;
+/// How far a place may be off, in metres; an angle, in radians and degrees; a length, as a ratio.
+pub(crate) const UNCERTAINTY_M: RangeInclusive<f64> = 0.0..=1e6;
+pub(crate) const UNCERTAINTY_RAD: RangeInclusive<f64> = 0.0..=std::f64::consts::PI;
+pub(crate) const UNCERTAINTY_DEG: RangeInclusive<f64> = 0.0..=180.0;
+pub(crate) const UNCERTAINTY_RATIO: RangeInclusive<f64> = 1.0..=1e3;
 const SCALE: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// How far a rotation's axes may be from unit length and right angles: what rounding to a few

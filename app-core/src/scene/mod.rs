@@ -6,6 +6,7 @@
 pub(crate) mod check;
 mod light_estimate;
 mod probe;
+mod uncertainty;
 
 use std::fmt;
 use std::sync::Arc;
@@ -19,6 +20,7 @@ pub use check::{FieldError, InputError};
 pub use light_estimate::{LightEstimate, N_HARMONICS};
 pub(crate) use probe::MAX_FURTHER_PICTURES;
 pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
+pub use uncertainty::{LightUncertainty, PoseUncertainty, Uncertainty};
 
 /// Lights whose shadows are moved; those of further ones stay as photographed, with a warning.
 pub const MAX_LIGHTS: usize = 4;
@@ -53,6 +55,8 @@ pub struct Scene {
     pub plates: Vec<Plate>,
     /// A light probe that lay in the scene, where there is one: it tells lights where none are listed.
     pub probe: Option<Probe>,
+    /// How far camera, toy and lights may be off.
+    pub uncertainty: Uncertainty,
 }
 
 impl Scene {
@@ -75,6 +79,7 @@ impl Scene {
         for (index, plate) in self.plates.iter().enumerate() {
             check::camera(&format!("plates[{index}].camera"), &plate.camera)?;
         }
+        self.uncertainty.check("uncertainty")?;
         self.probe.as_ref().map_or(Ok(()), |probe| probe.check("probe"))
     }
 }

@@ -10,6 +10,7 @@ mod record;
 mod rules;
 #[cfg(feature = "schema")]
 mod schema;
+mod uncertainty;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -165,6 +166,16 @@ impl Session for Capture {
                 lens.with_changes(&photo.as_taken, [&photo.image, &made])
             }
             _ => made,
+        })
+    }
+
+    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError> {
+        let frame = self.frame_at(index)?;
+        let lens = self.store.lens(&frame.camera.intrinsics)?;
+        let size_px = [self.store.size.width_px, self.store.size.height_px];
+        Ok(match lens {
+            Some(lens) if map.is_of_size(size_px) => lens.of_map(&map),
+            _ => map,
         })
     }
 }

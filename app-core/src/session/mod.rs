@@ -56,6 +56,13 @@ pub trait Session {
     /// # Errors
     /// As [`Session::frame`].
     fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError>;
+
+    /// A map over [`SessionFrame::image`] of the frame `index`, of the same size, as it lies over [`Session::photograph`]: `map` itself
+    /// where the session has no lens. What lies beside it is all zero.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError>;
 }
 
 /// One camera frame and the pose to show in it.

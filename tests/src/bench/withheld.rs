@@ -31,7 +31,7 @@ pub struct Rebuilt {
     pub all: Errors,
     /// Error over those that are well clear of the toy, where none of its colour bleeds into the photograph.
     pub clear: Errors,
-    /// What was made.
+    /// What was made, through the session's lens. Errors are those without: of the photograph as by a pinhole.
     pub picture: Image,
 }
 
@@ -106,7 +106,7 @@ fn rebuild_with(
             frame,
             all,
             clear,
-            picture,
+            picture: session.through_lens(frame, picture)?,
         });
         latest = Some(Arc::clone(input.image.rgba()));
     }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use app_core::session::{Capture, Session};
 use clap::Parser;
-use harness::alignment::{Alignments, Asked, FocalLength};
+use harness::alignment::{Alignments, Asked, RatioArgs};
 use harness::check::aligned_session;
 use harness::program::{exit_code, open_session};
 use harness::stored::Stored;
@@ -20,9 +20,8 @@ struct Args {
     /// Folder for the corrected session, or a recording where it ends in .mcap, which must not be there yet
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Look for the focal length, too, which takes several times as long as all else
-    #[arg(long, value_enum, default_value_t)]
-    focal_length: FocalLength,
+    #[command(flatten)]
+    ratio: RatioArgs,
 }
 
 fn main() -> ExitCode {
@@ -34,13 +33,13 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let capture =
         Capture::open(Stored::open(&args.session)?).with_context(|| args.session.display().to_string())?;
     let asked = Asked {
-        focal_length: args.focal_length,
+        ratio: args.ratio.asked(),
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?;
     let n_corrected = aligned_session::write(&session, &args.out, &alignments)?;
     println!(
-        "{n_corrected} of {} frames have a corrected camera, focal length, pose or lights: {}",
+        "{n_corrected} of {} frames have a corrected camera, focal length, pose, scale or lights: {}",
         capture.n_frames(),
         args.out.display()
     );

@@ -12,7 +12,7 @@ use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
 use app_core::wgpu;
 use clap::Parser;
-use harness::alignment::{FocalLength, Lights};
+use harness::alignment::{Lights, RatioArgs};
 use harness::bench::{
     Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, rebuild, rebuilt_table, table,
 };
@@ -47,10 +47,10 @@ struct Args {
     #[arg(long)]
     exact: bool,
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length"])]
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale"])]
     withheld: bool,
     /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "withheld", "as_given", "presets", "adapter"])]
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "withheld", "as_given", "presets", "adapter"])]
     basin: bool,
     /// Where the directions of these disturbances are drawn from
     #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
@@ -59,14 +59,13 @@ struct Args {
     #[arg(long, value_name = "N", default_value_t = 24, requires = "basin", value_parser = clap::value_parser!(u16).range(1..))]
     draws: u16,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale"])]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
     lights: Lights,
-    /// Look for the focal length, too, which takes several times as long as all else
-    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
-    focal_length: FocalLength,
+    #[command(flatten)]
+    ratio: RatioArgs,
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -178,7 +177,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
         with_exact: args.exact,
         is_aligned: !args.as_given,
         lights: args.lights,
-        focal_length: args.focal_length,
+        ratio: args.ratio.asked(),
     };
     Ok(bench(&capture, core, &options)?)
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::Parser;
-use harness::alignment::FocalLength;
+use harness::alignment::RatioArgs;
 use harness::check::check;
 use harness::output::make_folder;
 use harness::program::exit_code;
@@ -23,9 +23,8 @@ struct Args {
     /// Folder for the drawing [default: target/check]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Look for the focal length, too, which takes several times as long as all else
-    #[arg(long, value_enum, default_value_t)]
-    focal_length: FocalLength,
+    #[command(flatten)]
+    ratio: RatioArgs,
 }
 
 fn main() -> ExitCode {
@@ -43,7 +42,7 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     let out = args.out.clone().unwrap_or_else(results);
     make_folder(&out)?;
     let findings =
-        check(&args.session, &out, args.focal_length).with_context(|| args.session.display().to_string())?;
+        check(&args.session, &out, args.ratio.asked()).with_context(|| args.session.display().to_string())?;
     for line in &findings.facts {
         println!("{line}");
     }
@@ -52,7 +51,7 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     }
     if let Some(drawing) = &findings.drawing {
         println!(
-            "red as given, green as aligned, blue receivers: {}",
+            "red as given, green as aligned, blue receivers, yellow lights as aligned: {}",
             drawing.display()
         );
     }

@@ -12,7 +12,7 @@ use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
-use harness::alignment::{FocalLength, Lights};
+use harness::alignment::{Lights, RatioArgs};
 use harness::files::BUNDLED_SESSION;
 use harness::page::PAGE_FILE;
 use harness::program::{exit_code, open_session};
@@ -43,14 +43,13 @@ struct Args {
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale"])]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
     lights: Lights,
-    /// Look for the focal length, too, which takes several times as long as all else
-    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
-    focal_length: FocalLength,
+    #[command(flatten)]
+    ratio: RatioArgs,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -78,7 +77,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         out: Some(out.clone()),
         is_aligned: !args.as_given,
         lights: args.lights,
-        focal_length: args.focal_length,
+        ratio: args.ratio.asked(),
     };
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
     let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;

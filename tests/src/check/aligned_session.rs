@@ -43,7 +43,8 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
         };
         let alignment = &aligned.alignment;
         let is_moved = alignment.report.pose.is_some_and(|pose| pose.is_applied);
-        if is_moved {
+        let is_scaled = alignments.world_scale() != 1.0;
+        if is_moved || is_scaled {
             index["frames"][frame]["world_from_object"] = matrix(&alignment.world_from_object);
         }
         let is_camera_moved = alignment.report.camera.is_some_and(|camera| camera.is_applied);
@@ -59,8 +60,9 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             index["lights"] = entries.into();
         }
         let is_lengthened = focal_ratio != 1.0;
-        n_corrected +=
-            usize::from(is_moved || is_camera_moved || alignment.lights.is_some() || is_lengthened);
+        n_corrected += usize::from(
+            is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_lengthened,
+        );
     }
     n_corrected
 }

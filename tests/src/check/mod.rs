@@ -16,7 +16,8 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Alignments, Asked, FocalLength};
+use crate::alignment::{Alignments, Asked, Ratio};
+use crate::gizmo::{self, Gizmo};
 use crate::output::{remove_file, write_png};
 use crate::stored::Stored;
 
@@ -40,7 +41,7 @@ pub struct Findings {
 ///
 /// # Errors
 /// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
-pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::Result<Findings> {
+pub fn check(session: &Path, out: &Path, ratio: Ratio) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
@@ -77,14 +78,14 @@ pub fn check(session: &Path, out: &Path, focal_length: FocalLength) -> anyhow::R
     if let Ok(first) = capture.frame(0) {
         let given = FrameInput::from(&first);
         let asked = Asked {
-            focal_length,
+            ratio,
             ..Asked::default()
         };
         match Alignments::find(&capture, 0..1, asked) {
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
                     findings.aligned(&aligned.alignment);
-                    let picture = drawn(&capture, &given, &aligned.alignment.applied_to(&given))?;
+                    let picture = drawn(&capture, &given, &aligned.alignment)?;
                     let path = out.join(DRAWING);
                     write_png(&path, &picture)?;
                     findings.drawing = Some(path);
@@ -123,6 +124,16 @@ impl Findings {
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("intrinsics: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        if let Some(found) = &report.world_scale {
+            let told = match found.errors {
+                Some(_) => format!(
+                    "toy.world_from_object: toy and shadow tell a world {:.4} times as large as the toy's model says, +- {:.4}: {}",
+                    found.ratio, found.deviation, found.outcome
+                ),
+                None => format!("toy.world_from_object: its scale: {}", found.outcome),
             };
             self.tell(told, found.is_applied());
         }
@@ -230,11 +241,20 @@ fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
     camera.intrinsics.pixel_of(at)
 }
 
-fn drawn(capture: &Capture, given: &FrameInput, aligned: &FrameInput) -> anyhow::Result<Image> {
+fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow::Result<Image> {
     let scene = capture.scene();
+    let aligned = &alignment.applied_to(given);
     let mut picture = Image::clone(given.image.rgba());
     overlay::receivers(&mut picture, scene, given);
     overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
     overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);
-    Ok(picture)
+    gizmo::rays(
+        &mut picture,
+        (scene, given),
+        &Gizmo::listed(scene, given),
+        gizmo::GIVEN,
+    );
+    let found = Gizmo::aligned(scene, aligned, &alignment.report);
+    gizmo::rays(&mut picture, (scene, aligned), &found, gizmo::FOUND);
+    Ok(capture.through_lens(0, picture)?)
 }

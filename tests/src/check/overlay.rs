@@ -6,6 +6,7 @@ use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
 
 use super::pixel;
+use crate::gizmo::dot;
 
 /// Of what was given: red.
 pub(super) const GIVEN: [u8; 3] = [255, 40, 40];
@@ -33,30 +34,20 @@ pub(super) fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) 
         let foot = receiver.world_from_plane.inverse().transform_point3(toy);
         let foot = (DVec2::new(foot.x, foot.z) / LINE_M).round() * LINE_M;
         for line in -N_LINES..=N_LINES {
-            for dot in -N_DOTS..=N_DOTS {
+            for step in -N_DOTS..=N_DOTS {
                 let across = f64::from(line) * LINE_M;
-                let along = f64::from(dot) / f64::from(N_DOTS) * f64::from(N_LINES) * LINE_M;
-                for step in [DVec2::new(across, along), DVec2::new(along, across)] {
-                    let at = foot + step;
+                let along = f64::from(step) / f64::from(N_DOTS) * f64::from(N_LINES) * LINE_M;
+                for from_foot in [DVec2::new(across, along), DVec2::new(along, across)] {
+                    let at = foot + from_foot;
                     let is_on = at.abs().cmple(receiver.half_extent_m).all();
                     let world = receiver
                         .world_from_plane
                         .transform_point3(DVec3::new(at.x, 0.0, at.y));
                     if let Some(at_px) = pixel(&input.camera, world).filter(|_| is_on) {
-                        self::dot(picture, at_px, RECEIVERS);
+                        dot(picture, at_px, RECEIVERS);
                     }
                 }
             }
         }
-    }
-}
-
-fn dot(picture: &mut Image, at_px: DVec2, color: [u8; 3]) {
-    let at = at_px.floor();
-    let size = DVec2::new(f64::from(picture.width_px), f64::from(picture.height_px));
-    if at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all() {
-        let at = at.as_uvec2();
-        let first = 4 * (at.y * picture.width_px + at.x) as usize;
-        picture.rgba8[first..first + 3].copy_from_slice(&color);
     }
 }

@@ -98,11 +98,13 @@ function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { focal_length, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
+  const { focal_length, world_scale, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
   const rows = [];
   if (focal_length) rows.push(row("the focal length", [verdict(focal_length), `\u00d7 ${focal_length.ratio.toFixed(4)} \u00b1 ${focal_length.deviation?.toFixed(4) ?? "?"}`,
     focal_length.outcome]));
+  if (world_scale) rows.push(row("the world's scale", [verdict(world_scale), `\u00d7 ${world_scale.ratio.toFixed(4)} \u00b1 ${world_scale.deviation?.toFixed(4) ?? "?"}`,
+    world_scale.outcome]));
   if (camera) rows.push(row("the camera", [verdict(camera), `${camera.moved_mm.toFixed(2)} mm, ${camera.turned_deg.toFixed(2)}\u00b0`,
     `the table by ${camera.moved_px.toFixed(2)} px in the picture`]));
   if (pose) rows.push(row("the toy's pose", [verdict(pose), `${pose.moved_mm.toFixed(2)} mm, ${pose.turned_deg.toFixed(2)}\u00b0`,
@@ -123,7 +125,10 @@ function showAlignment() {
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe tells: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
-  at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"),
+  const hemisphere = entry(data.presets[0]).maps.find(map => map.name === "hemisphere");
+  const searched = hemisphere ? [el("figure", {}, el("img", { src: data.presets[0].folder + hemisphere.file, alt: "Directions that a light was looked for in" }),
+    el("figcaption", { class: "soft" }, "The hemisphere above the table, seen from above with the camera below: the brighter, the more of the shadow a light there explains. Yellow ring: found; red: listed."))] : [];
+  at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"), ...searched,
     rows.length > 0 ? table(`took ${ms(cpu_ms)}`, ["", "", "found elsewhere by", ""], rows)
       : el("p", { class: "soft" }, "Too little of the toy's outline is seen to align anything."));
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use app_core::frame::FrameInput;
-use app_core::scene::{Image, Plate, Pose, Receiver, Scene};
+use app_core::scene::{Image, Plate, Pose, Receiver, Scene, Uncertainty};
 use app_core::session::Truth;
 use app_core::toy::{Toy, ToyError};
 use glam::DVec3;
@@ -130,6 +130,7 @@ impl Shot {
                     image: Arc::clone(&photos.plate),
                 }],
                 probe: None,
+                uncertainty: Uncertainty::default(),
             },
             input: FrameInput {
                 image: Arc::clone(&photos.frame).into(),

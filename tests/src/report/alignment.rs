@@ -1,8 +1,6 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{
-    CameraAlignment, DiscoveredLight, FocalLengthAlignment, LightAlignment, PoseAlignment,
-};
+use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment, RatioAlignment};
 use app_core::probe::{ProbeReport, TrackedLight};
 use app_core::scene::Light;
 use serde::Serialize;
@@ -15,7 +13,9 @@ pub struct AlignmentEntry {
     /// Time that it took on the processor.
     pub cpu_ms: f64,
     /// The focal length; none where nobody asked for it.
-    pub focal_length: Option<FocalLengthEntry>,
+    pub focal_length: Option<RatioEntry>,
+    /// Lengths of the world over what they are by the toy's model; none where nobody asked for it.
+    pub world_scale: Option<RatioEntry>,
     /// The camera; none where there is no plate or too little texture.
     pub camera: Option<CameraEntry>,
     /// The toy's pose; none where too little of its outline is seen.
@@ -113,9 +113,9 @@ pub struct ErrorEntry {
     pub size_ratio: Option<f64>,
 }
 
-/// The focal length.
+/// The focal length, or the scale of the world.
 #[derive(Clone, Debug, Serialize)]
-pub struct FocalLengthEntry {
+pub struct RatioEntry {
     /// Whether it was corrected.
     pub is_applied: bool,
     /// What was done with it, and why.
@@ -186,7 +186,8 @@ impl From<&Aligned> for AlignmentEntry {
         let report = &aligned.alignment.report;
         Self {
             cpu_ms: aligned.cpu_ms,
-            focal_length: report.focal_length.as_ref().map(FocalLengthEntry::from),
+            focal_length: report.focal_length.as_ref().map(RatioEntry::from),
+            world_scale: report.world_scale.as_ref().map(RatioEntry::from),
             camera: report.camera.as_ref().map(CameraEntry::from),
             pose: report.pose.as_ref().map(PoseEntry::from),
             lights: report.lights.iter().map(LightEntry::from).collect(),
@@ -280,8 +281,8 @@ impl DiscoveredEntry {
     }
 }
 
-impl From<&FocalLengthAlignment> for FocalLengthEntry {
-    fn from(found: &FocalLengthAlignment) -> Self {
+impl From<&RatioAlignment> for RatioEntry {
+    fn from(found: &RatioAlignment) -> Self {
         Self {
             is_applied: found.is_applied(),
             outcome: found.outcome.to_string(),

@@ -104,6 +104,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
             light_errors: None,
             probe: None,
             discovered: Vec::new(),
+            world_scale: None,
             no_light: Some(NoLight::PoseUnknown),
             unexplained: None,
         },

@@ -11,7 +11,7 @@ use std::{fs, process};
 use app_core::scene::Camera;
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::{Alignments, Asked, FocalLength};
+use harness::alignment::{Alignments, Asked, Ratio};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
@@ -55,7 +55,7 @@ fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
 
 fn wrong(session: &Path) -> Vec<String> {
     let out = Temporary::new("drawing");
-    check(session, &out.0, FocalLength::Given).unwrap().wrong
+    check(session, &out.0, Ratio::Given).unwrap().wrong
 }
 
 fn matrix(value: &Value) -> DMat4 {
@@ -77,7 +77,7 @@ fn off(index: &mut Value) {
 #[test]
 fn a_good_session_has_nothing_wrong_and_is_drawn() {
     let out = Temporary::new("good");
-    let findings = check(Path::new(BUNDLED_SESSION), &out.0, FocalLength::Given).unwrap();
+    let findings = check(Path::new(BUNDLED_SESSION), &out.0, Ratio::Given).unwrap();
     assert_eq!(findings.wrong, Vec::<String>::new());
     let drawing = image::open(findings.drawing.unwrap()).unwrap().into_rgba8();
     let greens = drawing
@@ -200,7 +200,7 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
     let out = parent.0.join("session");
     let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
     let asked = Asked {
-        focal_length: FocalLength::Found,
+        ratio: Ratio::FocalLength,
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..1, asked).unwrap();

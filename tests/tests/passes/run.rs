@@ -9,7 +9,7 @@ use app_core::internals::Plan;
 use app_core::internals::{Fit, Inspect, ReceiverFit};
 use app_core::internals::{FloatMap, Map, TintMap};
 use app_core::preset::Preset;
-use app_core::scene::{Image, Plate, Scene};
+use app_core::scene::{Image, Plate, Scene, Uncertainty};
 use glam::{DVec3, DVec4, UVec2, Vec4};
 use harness::reference::grid::PlaneGrid;
 use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
@@ -147,6 +147,7 @@ pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
         lights: stand.setup.lights.to_vec(),
         plates: vec![plate_of(stand, plate)],
         probe: None,
+        uncertainty: Uncertainty::default(),
     }
 }
 

@@ -127,6 +127,39 @@ fn only_what_was_changed_is_put_back() {
     assert!(n_white > 20 && n_kept > 5000, "{n_white}, {n_kept}");
 }
 
+/// A map's pixels lie where the lens shows what they are of, each as it is.
+#[test]
+fn a_map_lies_over_the_photograph() {
+    let capture = open(json!({"k1": K1, "k2": K2})).unwrap();
+    let mut map = Image::clone(&capture.frame(0).unwrap().image);
+    for y in 0..SIZE_PX[1] {
+        for x in 0..SIZE_PX[0] {
+            let at = 4 * (y * SIZE_PX[0] + x) as usize;
+            #[allow(clippy::cast_possible_truncation, reason = "a small picture")]
+            map.rgba8[at..at + 4].copy_from_slice(&[x as u8, y as u8, 7, 9]);
+        }
+    }
+    let unbent = open(json!(null)).unwrap();
+    assert!(unbent.map_through_lens(0, map.clone()).unwrap() == map);
+    let bent = capture.map_through_lens(0, map.clone()).unwrap();
+    let (mut n, mut n_moved) = (0, 0);
+    for y in 0..SIZE_PX[1] {
+        for x in 0..SIZE_PX[0] {
+            let at = 4 * (y * SIZE_PX[0] + x) as usize;
+            let [u, v] = of_pinhole([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+            if bent.rgba8[at..at + 4] == [0; 4] {
+                continue;
+            }
+            assert_eq!(bent.rgba8[at + 2..at + 4], [7, 9]);
+            let [is_u, is_v] = [0, 1].map(|part| f64::from(bent.rgba8[at + part]) + 0.5);
+            assert!((is_u - u).abs() < 0.51 && (is_v - v).abs() < 0.51, "({x}, {y})");
+            n += 1;
+            n_moved += usize::from(bent.rgba8[at..at + 2] != map.rgba8[at..at + 2]);
+        }
+    }
+    assert!(n > 5000 && n_moved > 500, "{n}, {n_moved}");
+}
+
 #[test]
 fn a_lens_that_folds_the_picture_is_refused() {
     let refused = [

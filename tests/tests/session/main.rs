@@ -206,6 +206,9 @@ fn each_wrong_value_is_named() {
         ("probe.facets[0].at", json!(1.5), "1.5 is not from"),
         ("probe.pictures[0].exposure_ratio", json!(2), "2 is not from"),
         ("probe.exposure_ratio", json!(0), "0 is not from"),
+        ("uncertainty.toy.position", json!(-1), "-1 is not from 0"),
+        ("uncertainty.camera.rotation_deg", json!(181), "181 is not from 0 to 180"),
+        ("uncertainty.lights.size_ratio", json!(0.5), "0.5 is not from 1 to 1000"),
     ];
     for (field, value, reason) in cases {
         let mut parts = Parts::good();

@@ -126,7 +126,9 @@ pub(crate) fn good_index() -> Value {
             "image": "frame.png", "exposure_ratio": 0.125, "focal_length": 0.03,
             "facets": [{"at": 0.5, "slope_deg": 30}],
             "pictures": [{"image": "frame.png", "exposure_ratio": 0.25, "world_from_camera": IDENTITY,
-                "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}]}
+                "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}]},
+        "uncertainty": {"toy": {"position": 0.002, "rotation_deg": 1}, "camera": {"position": 0, "rotation_deg": 0.5},
+            "lights": {"direction_deg": 20, "distance_ratio": 1.5, "size_ratio": 2}}
     })
 }
 

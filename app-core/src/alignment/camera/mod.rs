@@ -19,7 +19,7 @@ use glam::DMat4;
 use super::mask::Mask;
 use super::receivers::nearest;
 use super::report::CameraAlignment;
-use crate::scene::{Camera, Image, Plate, Receiver};
+use crate::scene::{Camera, Image, Plate, PoseUncertainty, Receiver};
 use brightness::Brightness;
 use points::{Point, points_of};
 use step::{Rigid, Search};
@@ -88,12 +88,12 @@ pub(super) struct Finder {
 
 impl Finder {
     /// Finds the camera of `image`, starting from the one given; none where there is no plate or too little texture. Of what is
-    /// withheld nothing is read.
+    /// withheld nothing is read. It is moved no farther than the one given is uncertain.
     pub(super) fn find(
         &mut self,
         (image, camera, withheld): (&Arc<Image>, &Camera, Option<&Mask>),
-        plates: &[Plate],
-        receivers: &[Receiver],
+        (plates, receivers): (&[Plate], &[Receiver]),
+        uncertainty: &PoseUncertainty,
     ) -> Option<Found> {
         if plates.is_empty() {
             return None;
@@ -122,7 +122,7 @@ impl Finder {
                 .collect();
             #[allow(clippy::cast_precision_loss, reason = "a handful of levels")]
             let robust = ROBUST + ROBUST_STEP * level as f64;
-            let search = Search::new((camera, picture), &templates, robust);
+            let search = Search::new((camera, uncertainty), picture, &templates, robust);
             if level == 0 && search.n_points() < LEAST_POINTS {
                 return None;
             }

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::brightness::Plane;
 use super::points::Point;
-use crate::scene::{Camera, Intrinsics};
+use crate::scene::{Camera, Intrinsics, PoseUncertainty};
 
 type Vector6 = SVector<f64, 6>;
 type Matrix6 = SMatrix<f64, 6, 6>;
@@ -16,6 +16,8 @@ const TRACKED_M: f64 = 0.1;
 /// Turns that are tried first, up and down and to either side: how far apart, and how many in each direction.
 const TURN_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 const N_TURNS: i32 = 8;
+/// The same at most, where a camera is said to be turned by more.
+const MOST_TURNS: i32 = 24;
 /// The best of them from which steps are taken, beside no turn.
 const N_STARTS: usize = 8;
 /// Every how many points are looked at then.
@@ -64,6 +66,22 @@ impl Rigid {
         }
     }
 
+    /// The nearest motion that goes no farther than a pose is uncertain.
+    fn within(self, uncertainty: &PoseUncertainty) -> Self {
+        let mut within = self;
+        if let Some(most_m) = uncertainty.position_m {
+            within.translation = within.translation.clamp_length_max(most_m);
+        }
+        let turn = within.rotation.to_scaled_axis();
+        if let Some(most_rad) = uncertainty
+            .rotation_rad
+            .filter(|most_rad| turn.length() > *most_rad)
+        {
+            within.rotation = DQuat::from_scaled_axis(turn.clamp_length_max(most_rad));
+        }
+        within
+    }
+
     /// As numbers: rotation vector, then translation.
     fn numbers(&self) -> Vector6 {
         let (turn, shift) = (self.rotation.to_scaled_axis(), self.translation);
@@ -77,6 +95,7 @@ pub(super) struct Search<'a> {
     intrinsics: Intrinsics,
     templates: &'a [Vec<Point>],
     robust: f64,
+    uncertainty: PoseUncertainty,
 }
 
 /// A point that meets a pixel.
@@ -90,7 +109,8 @@ struct Met {
 
 impl<'a> Search<'a> {
     pub(super) fn new(
-        (camera, photograph): (&Camera, &'a Plane),
+        (camera, uncertainty): (&Camera, &PoseUncertainty),
+        photograph: &'a Plane,
         templates: &'a [Vec<Point>],
         robust: f64,
     ) -> Self {
@@ -99,6 +119,7 @@ impl<'a> Search<'a> {
             intrinsics: photograph.intrinsics(&camera.intrinsics),
             templates,
             robust,
+            uncertainty: *uncertainty,
         }
     }
 
@@ -110,7 +131,8 @@ impl<'a> Search<'a> {
     /// No motion, and turns that bring the picture nearer: a tracker that jumps, or a hand that shakes, turns the camera more than it
     /// shows otherwise.
     pub(super) fn starts(&self) -> Vec<Rigid> {
-        let turns = -N_TURNS..=N_TURNS;
+        let n_turns = self.n_turns();
+        let turns = -n_turns..=n_turns;
         let all = turns
             .clone()
             .flat_map(|up| turns.clone().map(move |side| (up, side)));
@@ -121,12 +143,24 @@ impl<'a> Search<'a> {
                     rotation: DQuat::from_scaled_axis(turn),
                     ..Rigid::default()
                 };
+                let motion = motion.within(&self.uncertainty);
                 (self.loss_of(&motion, START_STRIDE), motion)
             })
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let best = tried.into_iter().take(N_STARTS).map(|(_, motion)| motion);
         std::iter::once(Rigid::default()).chain(best).collect()
+    }
+
+    /// Of turns to try in each direction.
+    fn n_turns(&self) -> i32 {
+        let most_rad = self
+            .uncertainty
+            .rotation_rad
+            .unwrap_or(f64::from(N_TURNS) * TURN_RAD);
+        #[allow(clippy::cast_possible_truncation, reason = "bounded")]
+        let n_turns = (most_rad / TURN_RAD).min(f64::from(MOST_TURNS)).ceil() as i32;
+        n_turns
     }
 
     /// The best of what is found from several starts.
@@ -143,7 +177,7 @@ impl<'a> Search<'a> {
             let Some(step) = self.step(&motion) else {
                 return motion;
             };
-            motion = motion.then(&step);
+            motion = motion.then(&step).within(&self.uncertainty);
             if self.between_px(&before, &motion) < LAST_STEP_PX {
                 break;
             }
@@ -232,15 +266,16 @@ impl<'a> Search<'a> {
     fn step(&self, motion: &Rigid) -> Option<Vector6> {
         let met = self.met(motion, 1);
         let gains = self.gains(&met);
-        let prior = Vector6::new(
-            TRACKED_RAD,
-            TRACKED_RAD,
-            TRACKED_RAD,
-            TRACKED_M,
-            TRACKED_M,
-            TRACKED_M,
-        )
-        .map(|deviation| (self.robust / deviation).powi(2));
+        let turn_rad = self
+            .uncertainty
+            .rotation_rad
+            .map_or(TRACKED_RAD, |most| most.max(TRACKED_RAD));
+        let move_m = self
+            .uncertainty
+            .position_m
+            .map_or(TRACKED_M, |most| most.max(TRACKED_M));
+        let prior = Vector6::new(turn_rad, turn_rad, turn_rad, move_m, move_m, move_m)
+            .map(|deviation| (self.robust / deviation).powi(2));
         let mut information = Matrix6::from_diagonal(&prior);
         let mut gradient = -prior.component_mul(&motion.numbers());
         for met in &met {

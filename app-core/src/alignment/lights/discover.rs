@@ -87,6 +87,27 @@ pub(super) fn discover(
     Err(NoLight::NoneDominant)
 }
 
+/// Directions all over the hemisphere, in camera space, and the part that a point light in each would explain of what surroundings alone
+/// leave; none where too little of the receivers is seen.
+pub(in crate::alignment) fn scores(
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    pyramid: &Pyramid,
+) -> Option<Vec<(DVec3, f64)>> {
+    let searched = pyramid.smallest_for_shadows();
+    let px_m = shape.centre.length() / pyramid.level(searched).intrinsics.fx_px;
+    let coarse = shape.merged(SEARCH_CELL_PX * px_m);
+    let mut raster = Rasterizer::default();
+    let shadows = Shadows::new(&mut raster, (&coarse, receivers), pyramid.level(searched), None);
+    if shadows.pixels.len() < LEAST_PIXELS {
+        return None;
+    }
+    let mut search = Search::new(shadows, &mut raster);
+    let scores = search.scores(&[]);
+    let directions = search.candidates.iter().map(|(lamp, _)| lamp.direction);
+    Some(directions.zip(scores).collect())
+}
+
 /// Counts the lamps, in a small picture.
 struct Search<'a> {
     shadows: Shadows<'a>,
@@ -174,16 +195,21 @@ impl<'a> Search<'a> {
 
     /// Directions where one more lamp explains most of what is left, best first.
     fn peaks(&mut self, lamps: &[Lamp]) -> Vec<Lamp> {
+        let tried: Vec<Lamp> = self.candidates.iter().map(|(lamp, _)| *lamp).collect();
+        let scores = self.scores(lamps);
+        peaks(&tried, &scores).into_iter().take(N_STARTS).collect()
+    }
+
+    /// What one more lamp in each direction explains of what is left.
+    fn scores(&mut self, lamps: &[Lamp]) -> Vec<f64> {
         let shading = self.shading(lamps);
         self.shadows.light(lamps, &shading);
-        let tried: Vec<Lamp> = self.candidates.iter().map(|(lamp, _)| *lamp).collect();
         let taken = self.shadows.taken_of_all(self.raster, lamps);
         let shaded = self.shadows.shaded(&taken);
         let shading = shaded.fit(self.shadows.caster.receivers.len(), ROBUST_FAR);
         let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
         let scores = self.candidates.iter().map(|(_, taken)| leftover.explained(taken));
-        let scores: Vec<f64> = scores.collect();
-        peaks(&tried, &scores).into_iter().take(N_STARTS).collect()
+        scores.collect()
     }
 
     /// Of directions, those where one more lamp explains most of what is left, with how wide it is.

@@ -9,7 +9,7 @@ use crate::alignment::picture::Pyramid;
 use crate::alignment::raster::Rasterizer;
 use crate::alignment::receivers::SeenReceiver;
 use crate::alignment::shape::Shape;
-use crate::scene::{Light, MAX_LIGHTS};
+use crate::scene::{Light, LightUncertainty, MAX_LIGHTS};
 
 /// Gauss-Newton rounds of lamps that were just turned to the best direction.
 const N_FIRST: usize = 4;
@@ -47,14 +47,15 @@ impl Followed {
             .iter()
             .map(|light| Lamp::new(light, camera_from_world, view.shape.centre));
         let mut lamps: Vec<Lamp> = lamps.collect::<Option<_>>()?;
-        let priors = lamps.iter().map(Prior::given).collect();
+        let known = LightUncertainty::default();
+        let priors = lamps.iter().map(|lamp| Prior::given(lamp, &known)).collect();
         let mut raster = Rasterizer::default();
         let level = view.pyramid.level(Pyramid::SMALLEST);
         let smallest = Shadows::new(&mut raster, (view.shape, view.receivers), level, None);
         if smallest.pixels.len() < LEAST_PIXELS {
             return None;
         }
-        smallest.search(&mut raster, &mut lamps);
+        smallest.search(&mut raster, &mut lamps, &known);
         let mut followed = Self {
             lamps,
             priors,

@@ -32,8 +32,9 @@ use super::receivers::SeenReceiver;
 use super::report::{DiscoveredLight, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::frame::NoLight;
-use crate::scene::Light;
+use crate::scene::{Light, LightUncertainty};
 use cast::flattened;
+pub(super) use discover::scores;
 pub(super) use follow::{Around, Followed, View};
 pub(super) use guess::{Guess, Hints};
 use lamp::{Lamp, N_PARTS, disc};
@@ -46,6 +47,9 @@ use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 /// Directions that are tried around the given one, in steps of `SEARCH_STEP_RAD`.
 const SEARCH_STEP_RAD: f64 = 3.5 * std::f64::consts::PI / 180.0;
 const SEARCH_STEPS: i32 = 4;
+/// Where they are said to be off by more, in wider steps, up to an angle.
+const FAR_STEP_RAD: f64 = 2.0 * SEARCH_STEP_RAD;
+const MOST_SEARCH_RAD: f64 = std::f64::consts::PI / 3.0;
 /// Points over a lamp then.
 const N_SEARCH_POINTS: usize = 7;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
@@ -75,12 +79,11 @@ pub(super) struct FoundLight {
     pub(super) deviation_rad: f64,
 }
 
-/// Finds the lights around those given; none where too little of a receiver shows their shadows, where one of them stands in the
+/// Finds the lights around those given, no farther from them than they are uncertain; none where too little of a receiver shows their shadows, where one of them stands in the
 /// middle of the toy, or where one would have to darken what it shines on.
 pub(super) fn find(
-    lights: &[Light],
-    shape: &Shape,
-    receivers: &[SeenReceiver],
+    (lights, uncertainty): (&[Light], &LightUncertainty),
+    (shape, receivers): (&Shape, &[SeenReceiver]),
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
 ) -> Option<Found> {
@@ -91,7 +94,7 @@ pub(super) fn find(
         .collect();
     let given = given?;
     let mut raster = Rasterizer::default();
-    let priors: Vec<Prior> = given.iter().map(Prior::given).collect();
+    let priors: Vec<Prior> = given.iter().map(|lamp| Prior::given(lamp, uncertainty)).collect();
     let mut lamps = given.clone();
     let smallest = Shadows::new(
         &mut raster,
@@ -99,7 +102,7 @@ pub(super) fn find(
         pyramid.level(Pyramid::SMALLEST),
         None,
     );
-    smallest.search(&mut raster, &mut lamps);
+    smallest.search(&mut raster, &mut lamps, uncertainty);
     let mut losses = None;
     let mut deviations_rad = Vec::new();
     for (level, n_rounds, robust) in ROUNDS {
@@ -176,7 +179,7 @@ fn ratio(found: &Lamp, given: &Lamp) -> f64 {
 
 impl Shadows<'_> {
     /// Turns each lamp to the best of the directions around it, one after the other.
-    fn search(&self, raster: &mut Rasterizer, lamps: &mut [Lamp]) {
+    fn search(&self, raster: &mut Rasterizer, lamps: &mut [Lamp], uncertainty: &LightUncertainty) {
         let disc = disc(N_SEARCH_POINTS);
         let mut taken: Vec<Vec<f32>> = lamps.iter().map(|lamp| self.taken(raster, lamp, &disc)).collect();
         let loss = |taken: &[Vec<f32>]| {
@@ -185,7 +188,7 @@ impl Shadows<'_> {
         };
         for (index, lamp) in lamps.iter_mut().enumerate() {
             let mut best = (loss(&taken), *lamp, taken[index].clone());
-            for step in directions() {
+            for step in directions(uncertainty.direction_rad) {
                 let turned = lamp.moved(&step);
                 taken[index] = self.taken(raster, &turned, &disc);
                 let loss = loss(&taken);
@@ -198,16 +201,23 @@ impl Shadows<'_> {
     }
 }
 
-/// Steps to directions on a disc around a lamp's own.
-fn directions() -> impl Iterator<Item = [f64; N_PARTS]> {
-    let steps = -SEARCH_STEPS..=SEARCH_STEPS;
-    let all = steps
-        .clone()
-        .flat_map(move |y| steps.clone().map(move |x| IVec2::new(x, y)));
-    let around =
-        all.filter(|step| *step != IVec2::ZERO && step.length_squared() <= SEARCH_STEPS * SEARCH_STEPS);
-    around.map(|step| {
-        let [x, y] = (step.as_dvec2() * SEARCH_STEP_RAD).to_array();
+/// Steps to directions on a disc around a lamp's own, of a radius where one is known.
+fn directions(most_rad: Option<f64>) -> impl Iterator<Item = [f64; N_PARTS]> {
+    let usual_rad = f64::from(SEARCH_STEPS) * SEARCH_STEP_RAD;
+    let most_rad = most_rad.unwrap_or(usual_rad).min(MOST_SEARCH_RAD);
+    let near = grid(SEARCH_STEP_RAD, most_rad.min(usual_rad));
+    let far = grid(FAR_STEP_RAD, most_rad).filter(move |step| step[0].hypot(step[1]) > usual_rad);
+    near.chain(far)
+}
+
+/// Steps on a square grid of a spacing, but for none, up to a radius.
+fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
+    #[allow(clippy::cast_possible_truncation, reason = "a handful")]
+    let n = (most_rad / apart_rad * (1.0 + 1e-9)) as i32;
+    let all = (-n..=n).flat_map(move |y| (-n..=n).map(move |x| IVec2::new(x, y)));
+    let around = all.filter(move |step| *step != IVec2::ZERO && step.length_squared() <= n * n);
+    around.map(move |step| {
+        let [x, y] = (step.as_dvec2() * apart_rad).to_array();
         [x, y, 0.0, 0.0]
     })
 }

@@ -1,6 +1,9 @@
 //! What is known of a lamp before its shadow is looked at.
 
+use glam::DQuat;
+
 use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
+use crate::scene::LightUncertainty;
 
 /// Deviations of what is given: directions in radians, the nearness over the given one, and the spread over the given one.
 const GIVEN_RAD: f64 = 0.2;
@@ -19,19 +22,25 @@ const FREE_SPREAD: f64 = 0.5;
 pub(super) struct Prior {
     lamp: Lamp,
     deviations: [f64; N_PARTS],
+    /// How far from it a lamp may be at most.
+    uncertainty: LightUncertainty,
 }
 
 impl Prior {
     /// Of a lamp that was given; one at infinity stays there.
-    pub(super) fn given(lamp: &Lamp) -> Self {
+    pub(super) fn given(lamp: &Lamp, uncertainty: &LightUncertainty) -> Self {
+        let spread = match uncertainty.size_ratio {
+            Some(ratio) if ratio <= 1.0 => 0.0,
+            Some(ratio) => (ratio - 1.0) * lamp.spread + GIVEN_POINT,
+            None => GIVEN_SPREAD * lamp.spread + GIVEN_POINT,
+        };
+        let nearness = uncertainty
+            .distance_ratio
+            .map_or(GIVEN_NEARNESS, |ratio| ratio - 1.0);
         Self {
             lamp: *lamp,
-            deviations: [
-                GIVEN_RAD,
-                GIVEN_RAD,
-                GIVEN_NEARNESS * lamp.nearness,
-                GIVEN_SPREAD * lamp.spread + GIVEN_POINT,
-            ],
+            deviations: [GIVEN_RAD, GIVEN_RAD, nearness * lamp.nearness, spread],
+            uncertainty: *uncertainty,
         }
     }
 
@@ -45,6 +54,7 @@ impl Prior {
         Self {
             lamp: far_point,
             deviations: [FREE_RAD, FREE_RAD, FREE_NEARNESS / radius_m, FREE_SPREAD],
+            uncertainty: LightUncertainty::default(),
         }
     }
 
@@ -60,6 +70,38 @@ impl Prior {
         Self {
             lamp: *lamp,
             deviations: [0.0; N_PARTS],
+            uncertainty: LightUncertainty::default(),
+        }
+    }
+
+    /// The nearest lamp that is no farther from the one given than that is uncertain.
+    pub(super) fn within(&self, lamp: Lamp) -> Lamp {
+        let within_ratio = |value: f64, given: f64, ratio: Option<f64>| {
+            ratio.map_or(value, |ratio| value.clamp(given / ratio, given * ratio))
+        };
+        let LightUncertainty {
+            direction_rad,
+            distance_ratio,
+            size_ratio,
+        } = self.uncertainty;
+        let from = self.lamp.direction;
+        let turned_rad = from.angle_between(lamp.direction);
+        let direction = match direction_rad {
+            Some(most_rad) if turned_rad > most_rad => {
+                let turn = DQuat::from_rotation_arc(from, lamp.direction).to_scaled_axis();
+                (DQuat::from_scaled_axis(turn.clamp_length_max(most_rad)) * from).normalize()
+            }
+            _ => lamp.direction,
+        };
+        Lamp {
+            direction,
+            nearness: within_ratio(lamp.nearness, self.lamp.nearness, distance_ratio),
+            // A point has no size that a ratio could bound.
+            spread: if self.lamp.spread > 0.0 {
+                within_ratio(lamp.spread, self.lamp.spread, size_ratio)
+            } else {
+                lamp.spread
+            },
         }
     }
 

@@ -58,7 +58,8 @@ impl Shadows<'_> {
         for (index, lamp) in lamps.iter_mut().enumerate() {
             let part = |part: usize| step[N_PARTS * index + part];
             let step = [part(0), part(1), part(2), part(3)];
-            *lamp = lamp.moved(&bounded(lamp, &priors[index], step, self.caster.shape.radius_m));
+            let moved = lamp.moved(&bounded(lamp, &priors[index], step, self.caster.shape.radius_m));
+            *lamp = priors[index].within(moved);
         }
         let deviations = (0..lamps.len()).map(|index| {
             let variance = |part: usize| covariance[(N_PARTS * index + part, N_PARTS * index + part)];

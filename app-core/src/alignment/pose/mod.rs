@@ -17,7 +17,7 @@ use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
 use super::report::PoseDeviation;
 use super::shape::Shape;
-use crate::scene::Intrinsics;
+use crate::scene::{Intrinsics, PoseUncertainty};
 use contour::{Element, contour};
 use matte::Band;
 use motion::{Held, Matrix6, Measured, Motion, Vector6, solve};
@@ -132,9 +132,10 @@ impl Found {
     }
 }
 
-/// Finds the pose, starting from that of `shape`; none where too little of the outline is seen.
-pub(super) fn find(shape: &Shape, pyramid: &Pyramid) -> Option<Found> {
-    let mut search = Search::new(shape, pyramid);
+/// Finds the pose, starting from that of `shape`, no farther from it than that is uncertain; none where too little of the outline is
+/// seen.
+pub(super) fn find(shape: &Shape, pyramid: &Pyramid, uncertainty: &PoseUncertainty) -> Option<Found> {
+    let mut search = Search::new(shape, pyramid, uncertainty);
     let start = Motion::none(shape.centre, shape.radius_m);
     let given = search.fit(&start)?;
     let mut motion = start;
@@ -155,7 +156,7 @@ pub(super) enum Start {
 
 /// The motion to the pose that fits best, and the distance of its outline in pixels; none where too little of that is seen.
 pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(DMat4, f64)> {
-    let mut search = Search::new(shape, pyramid);
+    let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
     let mut motion = Motion::none(shape.centre, shape.radius_m);
     let bands = match start {
         Start::Near => &FINE[N_WIDE_BANDS..],
@@ -198,13 +199,15 @@ struct Search<'a> {
     pyramid: &'a Pyramid,
     raster: Rasterizer,
     damping: Matrix6,
+    uncertainty: PoseUncertainty,
 }
 
 impl<'a> Search<'a> {
-    fn new(shape: &'a Shape, pyramid: &'a Pyramid) -> Self {
+    fn new(shape: &'a Shape, pyramid: &'a Pyramid, uncertainty: &PoseUncertainty) -> Self {
         Self {
             shape,
             pyramid,
+            uncertainty: *uncertainty,
             raster: Rasterizer::default(),
             damping: Matrix6::identity() * (PIECE_PX / (STEP * shape.radius_m)).powi(2),
         }
@@ -237,8 +240,12 @@ impl<'a> Search<'a> {
     }
 
     /// Freely, or held to a plane.
-    fn coarse(&mut self, mut motion: Motion, held: Option<&Held>) -> Motion {
-        for (level, reach_px) in COARSE {
+    fn coarse(&mut self, motion: Motion, held: Option<&Held>) -> Motion {
+        self.by_lines(motion, held, &COARSE)
+    }
+
+    fn by_lines(&mut self, mut motion: Motion, held: Option<&Held>, rounds: &[(usize, i32)]) -> Motion {
+        for (level, reach_px) in rounds.iter().copied() {
             let level = self.pyramid.level(level);
             let (coverage, elements) = self.outline(&motion, level);
             let odds = Odds::learn(level, &coverage, LEARNED_AROUND * reach_px);
@@ -249,7 +256,7 @@ impl<'a> Search<'a> {
                 None => solve(&measured, k, &motion, &self.damping).map(|(step, _)| step),
             };
             if let Some(step) = step {
-                motion = motion.then(&step);
+                motion = motion.then(&step).within(&self.uncertainty);
             }
         }
         motion
@@ -262,7 +269,7 @@ impl<'a> Search<'a> {
                 let (measured, _) = self.matte(&motion, *band)?;
                 let k = &self.pyramid.level(0).intrinsics;
                 let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.damping)?;
-                motion = motion.then(&step);
+                motion = motion.then(&step).within(&self.uncertainty);
                 last = Some(Converged {
                     motion,
                     information,

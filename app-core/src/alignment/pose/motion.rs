@@ -1,10 +1,10 @@
 //! Small rigid motions of the toy, and the one that moves its outline as measured.
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
 
 use super::contour::Element;
-use crate::scene::Intrinsics;
+use crate::scene::{Intrinsics, PoseUncertainty};
 
 /// Rotation vector times the toy's radius, then translation: six lengths in metres.
 pub(super) type Vector6 = SVector<f64, 6>;
@@ -63,6 +63,22 @@ impl Motion {
             translation: self.translation + DVec3::new(step[3], step[4], step[5]),
             ..*self
         }
+    }
+
+    /// The nearest motion that goes no farther than a pose is uncertain.
+    pub(super) fn within(self, uncertainty: &PoseUncertainty) -> Self {
+        let mut within = self;
+        if let Some(most_m) = uncertainty.position_m {
+            within.translation = within.translation.clamp_length_max(most_m);
+        }
+        let turn = within.rotation.to_scaled_axis();
+        if let Some(most_rad) = uncertainty
+            .rotation_rad
+            .filter(|most_rad| turn.length() > *most_rad)
+        {
+            within.rotation = DQuat::from_scaled_axis(turn.clamp_length_max(most_rad));
+        }
+        within
     }
 
     /// How far a piece of the outline moves along its normal, in pixels, for each part of a step.
@@ -127,6 +143,8 @@ fn normal_equations(
 /// Motions that keep a toy upright on its plane: a turn about the plane's normal and shifts in two directions of it.
 pub(super) struct Held {
     normal: DVec3,
+    /// Directions of the plane.
+    across: [DVec3; 2],
     freedoms: SMatrix<f64, 6, 3>,
 }
 
@@ -138,6 +156,7 @@ impl Held {
         let shift = |along: DVec3| Vector6::new(0.0, 0.0, 0.0, along.x, along.y, along.z);
         Self {
             normal,
+            across: [a, b],
             freedoms: SMatrix::from_columns(&[turn(normal), shift(a), shift(b)]),
         }
     }
@@ -146,6 +165,12 @@ impl Held {
     pub(super) fn turn(&self, angle_rad: f64, radius_m: f64) -> Vector6 {
         let turn = angle_rad * radius_m * self.normal;
         Vector6::new(turn.x, turn.y, turn.z, 0.0, 0.0, 0.0)
+    }
+
+    /// A shift along the plane, in metres.
+    pub(super) fn shift(&self, by_m: DVec2) -> Vector6 {
+        let shift = by_m.x * self.across[0] + by_m.y * self.across[1];
+        Vector6::new(0.0, 0.0, 0.0, shift.x, shift.y, shift.z)
     }
 
     /// As [`solve`] with these freedoms alone.

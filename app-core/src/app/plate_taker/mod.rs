@@ -99,7 +99,7 @@ pub enum PlateRefusal {
 /// first of the view.
 /// Measured by `tests/tests/plate_taker.rs` in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, what the
 /// sixteenth part of its variance and the rounding to codes add up to; after a hand has crossed it with 0.80, no pixel more
-/// than 3.7 off.
+/// than 4.1 off.
 ///
 /// Not told: a hand that rests in the picture without any movement from the first shot on; something that covers less
 /// than half of a tile of four squares, 48 pixels of 1920; and whether the camera moves over a place without any texture,

@@ -7,7 +7,7 @@ use super::light_estimate::light_estimate;
 use super::light_probe::probe;
 use super::place::{camera, distortion, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
-use super::{Capture, Frame, PictureStore, TruthFiles};
+use super::{Capture, Frame, PictureStore, TruthFiles, uncertainty};
 use crate::scene::{Intrinsics, Pose, Scene, check};
 use crate::session::SessionWarning;
 use crate::session::error::SessionError;
@@ -32,6 +32,9 @@ pub(super) fn capture_from_record(
     )?;
     let receivers = non_empty("receivers", &record.receivers, receiver)?;
     let lights = each("lights", &record.lights, light)?;
+    let uncertainty = record.uncertainty.as_ref();
+    let uncertainty = uncertainty.map(|record| uncertainty::uncertainty("uncertainty", record));
+    let uncertainty = uncertainty.transpose()?.unwrap_or_default();
 
     let toy = read_toy(files.as_ref(), &record.toy.file)?;
     let mut warnings = toy_warnings(&toy, &record.toy.file);
@@ -75,6 +78,7 @@ pub(super) fn capture_from_record(
         lights,
         plates,
         probe,
+        uncertainty,
     };
     Ok(Capture {
         store,

@@ -67,6 +67,8 @@ pub(super) struct CaptureRecord {
     pub(super) frames: Vec<FrameRecord>,
     /// A light probe that lay in the scene: it tells the lights where none is listed.
     pub(super) probe: Option<ProbeRecord>,
+    /// How far camera, toy and lights may be off, at most: alignment moves nothing farther than that.
+    pub(super) uncertainty: Option<UncertaintyRecord>,
 }
 
 #[derive(Deserialize)]
@@ -260,6 +262,42 @@ pub(super) struct LightEstimateRecord {
     /// Condon-Shortley phase: those of degree 1 go with y, z and x.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::HARMONIC)))]
     pub(super) spherical_harmonics: Option<[f64; 27]>,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct UncertaintyRecord {
+    /// Of the toy's place in each frame.
+    pub(super) toy: Option<PoseUncertaintyRecord>,
+    /// Of the camera of each frame and plate, but for the first plate's, which is held.
+    pub(super) camera: Option<PoseUncertaintyRecord>,
+    /// Of each light that is listed.
+    pub(super) lights: Option<LightUncertaintyRecord>,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct PoseUncertaintyRecord {
+    /// How far the middle of the toy, or the camera, may be elsewhere, metres. Zero where it is known.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_M)))]
+    pub(super) position: Option<f64>,
+    /// How far it may be turned, about whatever axis, degrees. Zero where that is known.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_DEG)))]
+    pub(super) rotation_deg: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub(super) struct LightUncertaintyRecord {
+    /// How far its direction, as seen from the toy, may be off, degrees. Zero where it is known.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_DEG)))]
+    pub(super) direction_deg: Option<f64>,
+    /// Largest ratio of true distance and given one, or the other way round. One where it is known.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_RATIO)))]
+    pub(super) distance_ratio: Option<f64>,
+    /// The same of the size as seen from the toy. One where it is known.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_RATIO)))]
+    pub(super) size_ratio: Option<f64>,
 }
 
 /// All kinds of probe in one record.

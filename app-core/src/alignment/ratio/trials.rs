@@ -1,7 +1,8 @@
-//! One focal length after the other, each with the pose and the lights that fit it best.
+//! One ratio after the other, each with the pose and the lights that fit it best.
 
 use glam::{DMat4, DVec3};
 
+use super::Unknown;
 use crate::alignment::camera::Finder;
 use crate::alignment::lights::{Around, Followed};
 use crate::alignment::photograph::{MOST_OUTLINE_PX, Photograph};
@@ -17,11 +18,11 @@ const LARGER_PIXELS: i32 = 40_000;
 const N_ROUNDS: usize = 1;
 const N_ROUNDS_LARGER: usize = 2;
 
-/// Toy or shadows cannot be seen with a focal length.
+/// Toy or shadows cannot be seen with a ratio.
 #[derive(Debug)]
 pub(super) struct Unseen;
 
-/// What a focal length leaves unexplained.
+/// What a ratio leaves unexplained.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
     /// Of the shadows, in variances.
@@ -30,10 +31,10 @@ pub(super) struct Trial {
     pub(super) outline_px: f64,
 }
 
-/// Toy and lights with a focal length.
+/// Toy and lights with a ratio.
 struct Tried {
     at: f64,
-    /// As found, with the focal length.
+    /// As found, with its focal length.
     camera: Camera,
     world_from_object: DMat4,
     outline_px: f64,
@@ -42,8 +43,9 @@ struct Tried {
     level: usize,
 }
 
-/// The trials so far. A focal length is named by the logarithm of its ratio to that given.
+/// The trials so far. A ratio is named by its logarithm.
 pub(super) struct Trials<'a> {
+    unknown: Unknown,
     input: &'a FrameInput,
     given: Plate,
     /// With that plate alone.
@@ -56,8 +58,13 @@ pub(super) struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    /// Starts with the focal length given.
-    pub(super) fn new(scene: &Scene, input: &'a FrameInput, lights: &[Light]) -> Result<Self, Unseen> {
+    /// Starts with what is given.
+    pub(super) fn new(
+        unknown: Unknown,
+        scene: &Scene,
+        input: &'a FrameInput,
+        lights: &[Light],
+    ) -> Result<Self, Unseen> {
         let plate = nearest(&scene.plates, &input.camera)
             .into_iter()
             .next()
@@ -85,6 +92,7 @@ impl<'a> Trials<'a> {
             level: Pyramid::SMALLEST,
         }];
         Ok(Self {
+            unknown,
             input,
             given,
             scene,
@@ -95,9 +103,10 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Tries a focal length, or tries it again.
+    /// Tries a ratio, or tries it again.
     pub(super) fn at(&mut self, at: f64) -> Result<Trial, Unseen> {
         let Self {
+            unknown,
             input,
             given,
             scene,
@@ -106,12 +115,17 @@ impl<'a> Trials<'a> {
             level,
             around,
         } = self;
-        let (photograph, camera) = photograph(scene, given, (cameras, input), at);
+        let focal_length = unknown.focal_length(at);
+        let (photograph, camera) = photograph(scene, given, (cameras, input), focal_length);
         let near = nearest_to(tried, at).ok_or(Unseen)?;
         let (world_from_object, outline_px) = if tried[near].at == at {
             (tried[near].world_from_object, tried[near].outline_px)
         } else {
-            posed(scene, &photograph, (&tried[near].slid(at, &camera), Start::Near))?
+            posed(
+                scene,
+                &photograph,
+                (&tried[near].slid(*unknown, at, &camera), Start::Near),
+            )?
         };
         let shape = photograph.shape(scene, &world_from_object).map_err(|_| Unseen)?;
         let mut followed = tried[near].followed.clone();
@@ -154,18 +168,35 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// Distance of the outline with the focal length that was tried next to one.
+    /// Distance of the outline with the ratio that was tried next to one.
     pub(super) fn outline_px(&self, at: f64) -> Option<f64> {
         nearest_to(&self.tried, at).map(|near| self.tried[near].outline_px)
     }
 }
 
 impl Tried {
-    /// The pose with another focal length that gives an outline of the same size: farther away as that is longer.
-    fn slid(&self, at: f64, camera: &Camera) -> DMat4 {
+    /// The pose with another ratio that gives an outline of the same size: farther away as the focal length is longer, or the toy larger.
+    fn slid(&self, unknown: Unknown, at: f64, camera: &Camera) -> DMat4 {
         let camera_from_object = self.camera.world_from_camera.inverse() * self.world_from_object;
-        let z_m = camera_from_object.w_axis.z * ((at - self.at).exp() - 1.0);
-        camera.world_from_camera * DMat4::from_translation(DVec3::new(0.0, 0.0, z_m)) * camera_from_object
+        let ratio = (at - self.at).exp();
+        let slide = match unknown {
+            Unknown::FocalLength => {
+                let z_m = camera_from_object.w_axis.z * (ratio - 1.0);
+                DMat4::from_translation(DVec3::new(0.0, 0.0, z_m))
+            }
+            Unknown::WorldScale => DMat4::from_scale(DVec3::splat(ratio)),
+        };
+        camera.world_from_camera * slide * camera_from_object
+    }
+}
+
+impl Unknown {
+    /// Logarithm of the focal length over that given.
+    fn focal_length(self, at: f64) -> f64 {
+        match self {
+            Self::FocalLength => at,
+            Self::WorldScale => 0.0,
+        }
     }
 }
 
@@ -190,8 +221,8 @@ fn photograph(
     if !pose.abs_diff_eq(camera.world_from_camera, SAME_CAMERA) {
         let found = cameras.find(
             (input.image.rgba(), &camera, None),
-            &scene.plates,
-            &scene.receivers,
+            (&scene.plates, &scene.receivers),
+            &scene.uncertainty.camera,
         );
         if let Some(found) = found.filter(|found| found.is_better()) {
             camera.world_from_camera = found.world_from_camera;
