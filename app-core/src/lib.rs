@@ -84,6 +84,7 @@ pub mod camera_frame;
 pub mod core;
 pub mod frame;
 pub mod gpu;
+pub mod ledger;
 pub mod preset;
 pub mod probe;
 pub mod recording;
@@ -125,6 +126,7 @@ pub mod internals {
     pub use crate::geometry::view::View;
     pub use crate::gpu::context::phone_limits;
     pub use crate::gpu::device::Kind;
+    pub use crate::gpu::meter::Memory;
     pub use crate::gpu::shader::{Part, Shader};
     pub use crate::gpu::shared::{Member, Mirror, NumberKind};
     pub use crate::model::diagnostics::conditioning::light_conditioning;

@@ -15,6 +15,7 @@ use crate::gpu::context::{AdapterChoice, Gpu};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::timer::Timer;
+use crate::gpu::work::Work;
 use crate::model::Model;
 use crate::passes::screen;
 use crate::preset::Preset;
@@ -65,6 +66,13 @@ impl Core {
         let gpu = Gpu::open(instance, &AdapterChoice::Fastest, Some(&surface)).await?;
         let window = Window::new(&gpu, surface, size_px)?;
         Ok(Self::new(gpu, Some(window)))
+    }
+
+    /// A core without a device: nothing is drawn, but each frame's report has the work of the passes that would run, from
+    /// the same descriptors. What is to be read of the device is an error.
+    #[must_use]
+    pub fn counting() -> Self {
+        Self::new(Gpu::default(), None)
     }
 
     fn new(gpu: Gpu, window: Option<Window>) -> Self {
@@ -129,7 +137,7 @@ impl Core {
     /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
     pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
         scene.check()?;
-        let largest_px = self.gpu.device.raw.limits().max_texture_dimension_2d;
+        let largest_px = self.gpu.limits().max_texture_dimension_2d;
         let size_px = [scene.width_px, scene.height_px];
         if size_px.iter().any(|side| !(1..=largest_px).contains(side)) {
             return Err(CoreError::SizeOutOfRange { size_px, largest_px });
@@ -166,7 +174,9 @@ impl Core {
         let made = gpu.guarded(|| {
             let mut recorder = Recorder::new(gpu, timer);
             let mut report = stage.encode(&mut recorder, input)?;
-            report.ran = recorder.submit();
+            let recorded = recorder.submit();
+            report.ran = recorded.ran;
+            report.uploaded_bytes = recorded.uploaded_bytes;
             Ok::<_, CoreError>(report)
         });
         match made {
@@ -178,11 +188,18 @@ impl Core {
         }
     }
 
+    /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
+    #[must_use]
+    pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
+        let picture_px = self.stage.as_ref().map(Finished::of)?.size_px;
+        Some(window::count(picture_px, screen_px, display))
+    }
+
     /// The texture that each frame's picture is drawn to, of the scene's size: sRGB codes as
     /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It stays until the next scene.
     #[must_use]
     pub fn picture(&self) -> Option<&wgpu::Texture> {
-        self.stage.as_ref().map(|stage| &stage.output.raw)
+        self.stage.as_ref().and_then(|stage| stage.output.raw())
     }
 
     /// Waits for the device and returns the latest picture, alpha 255.
@@ -191,10 +208,11 @@ impl Core {
     /// When there is no scene, or the device is lost.
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
-        let rgba8 = self.gpu.read_texture(&stage.output.raw)?;
+        let rgba8 = self.gpu.read_texture(stage.output.raw())?;
+        let [width_px, height_px] = stage.output.size_px().to_array();
         Ok(Image {
-            width_px: stage.output.raw.width(),
-            height_px: stage.output.raw.height(),
+            width_px,
+            height_px,
             rgba8,
         })
     }

@@ -10,6 +10,8 @@ use crate::plan::LeftOut;
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,
+    /// Bytes that the processor handed to the device for it.
+    pub uploaded_bytes: u64,
     /// What did not run, and why.
     pub skipped: Vec<LeftOut>,
     /// The work region; none when the camera frame passed through.

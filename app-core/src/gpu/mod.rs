@@ -6,15 +6,18 @@ pub(crate) mod bindings;
 pub(crate) mod buffer;
 pub(crate) mod context;
 pub(crate) mod device;
+pub(crate) mod meter;
 pub(crate) mod pass_run;
 pub(crate) mod pipeline;
 pub(crate) mod readback;
 pub(crate) mod recorder;
 pub(crate) mod samplers;
 pub(crate) mod shader;
+pub(crate) mod shape;
 pub(crate) mod shared;
 pub(crate) mod texture;
 pub(crate) mod timer;
 pub(crate) mod uniforms;
+pub(crate) mod work;
 
 pub use context::{AdapterChoice, Gpu, GpuError};

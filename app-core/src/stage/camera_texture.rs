@@ -6,13 +6,13 @@ use wgpu::TextureFormat;
 use crate::camera_frame::{CameraImage, PlanarImage};
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::camera_planes::{self, Planes};
 
 pub(super) struct CameraTexture {
     texture: Texture,
     /// View of its sRGB codes, not decoded.
-    codes: wgpu::TextureView,
+    codes: TextureView,
     /// The picture that is there.
     image: Option<CameraImage>,
     /// Once a picture has come as planes.
@@ -31,12 +31,12 @@ impl CameraTexture {
     }
 
     /// The picture, decoded where it is read.
-    pub(super) fn view(&self) -> &wgpu::TextureView {
+    pub(super) fn view(&self) -> &TextureView {
         &self.texture.view
     }
 
     /// The picture's sRGB codes.
-    pub(super) fn codes(&self) -> &wgpu::TextureView {
+    pub(super) fn codes(&self) -> &TextureView {
         &self.codes
     }
 

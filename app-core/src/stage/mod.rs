@@ -23,8 +23,8 @@ use crate::geometry::rect::PlaneRect;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::gpu::context::Gpu;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::pictures::Pictures;
 use crate::passes::present::{self, OUTPUT_FORMAT, Placement};
 use crate::passes::toy_mesh::ToyMesh;
@@ -74,7 +74,7 @@ pub(crate) struct Stage {
     reached_rects: Vec<PlaneRect>,
     pub(crate) output: Texture,
     /// The output, decoded where it is read.
-    finished: wgpu::TextureView,
+    finished: TextureView,
 }
 
 /// The method with its state, and the latest frame that this was learned from.
@@ -156,7 +156,7 @@ impl Stage {
     }
 
     /// The latest picture, decoded where it is read.
-    pub(crate) fn finished(&self) -> &wgpu::TextureView {
+    pub(crate) fn finished(&self) -> &TextureView {
         &self.finished
     }
 
@@ -247,6 +247,7 @@ impl Stage {
         let about_lights = (!inside.is_empty()).then_some(Warning::LightsInsideToy { lights: inside });
         let mut report = FrameReport {
             ran: Vec::new(),
+            uploaded_bytes: 0,
             skipped: Vec::new(),
             region: None,
             warnings: about_scene.chain(about_lights).collect(),
@@ -301,6 +302,7 @@ impl Stage {
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
         };
+        recorder.n_pixels = n_pixels(method.region().size_px);
         method.encode(recorder, &self.toy, &pictures, change);
         if change < Change::View {
             report.skipped.push(LeftOut {

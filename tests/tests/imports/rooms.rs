@@ -24,6 +24,7 @@ const ROOMS: &[&str] = &[
     "passes",
     "alignment",
     "probe",
+    "ledger",
     "frame",
     "plan",
     "preset",
