@@ -58,6 +58,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// What frames of a session must cost on any device, without one (`ledger --help` tells more)
+    #[command(disable_help_flag = true)]
+    Ledger {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Measure numerical stability on hard cases against bounds (`stability --help` tells more)
     #[command(disable_help_flag = true)]
     Stability {
@@ -120,6 +127,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Align { args } => return harness::run_on_processor(&toolchain, "align", &args),
         Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
+        Command::Ledger { args } => return harness::run_on_processor(&toolchain, "ledger", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,

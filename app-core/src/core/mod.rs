@@ -14,6 +14,7 @@ use crate::frame::report::FrameReport;
 use crate::gpu::context::{AdapterChoice, Gpu};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
+use crate::gpu::stages::{Clock, Stages};
 use crate::gpu::timer::Timer;
 use crate::gpu::work::Work;
 use crate::model::Model;
@@ -35,6 +36,7 @@ pub struct Core {
     stage: Option<Stage>,
     /// Only for those who ask.
     timer: Option<Timer>,
+    clock: Option<Clock>,
 }
 
 impl Core {
@@ -81,6 +83,7 @@ impl Core {
             window,
             stage: None,
             timer: None,
+            clock: None,
         }
     }
 
@@ -170,13 +173,15 @@ impl Core {
         if let Some(timer) = &mut self.timer {
             timer.start();
         }
-        let (gpu, timer) = (&self.gpu, self.timer.as_mut());
+        let (gpu, timer, clock) = (&self.gpu, self.timer.as_mut(), self.clock.clone());
         let made = gpu.guarded(|| {
             let mut recorder = Recorder::new(gpu, timer);
+            recorder.stages = Stages::new(clock);
             let mut report = stage.encode(&mut recorder, input)?;
             let recorded = recorder.submit();
             report.ran = recorded.ran;
             report.uploaded_bytes = recorded.uploaded_bytes;
+            report.stages = recorded.stages;
             Ok::<_, CoreError>(report)
         });
         match made {
@@ -228,6 +233,11 @@ impl Core {
             None
         };
         Ok(())
+    }
+
+    /// Times the stages of frames on the processor from the next one on, by a clock of the caller's; or no longer.
+    pub fn time_stages(&mut self, clock: Option<Clock>) {
+        self.clock = clock;
     }
 
     /// Waits for the device and returns the latest frame's time per pass; empty where nobody asked for it, or the device

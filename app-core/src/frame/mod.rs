@@ -8,6 +8,7 @@ pub(crate) mod warning;
 
 pub use crate::geometry::rect::PixelRect;
 pub use crate::gpu::pass_run::{PassRun, PassTime, Path};
+pub use crate::gpu::stages::{Clock, StageTime};
 pub use crate::gpu::work::Work;
 pub use crate::plan::LeftOut;
 pub use input::FrameInput;

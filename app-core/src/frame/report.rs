@@ -3,6 +3,7 @@
 use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::pass_run::PassRun;
+use crate::gpu::stages::StageTime;
 use crate::plan::LeftOut;
 
 /// The report of one frame.
@@ -10,6 +11,8 @@ use crate::plan::LeftOut;
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,
+    /// Times of its stages on the processor, where a clock was given.
+    pub stages: Vec<StageTime>,
     /// Bytes that the processor handed to the device for it.
     pub uploaded_bytes: u64,
     /// What did not run, and why.

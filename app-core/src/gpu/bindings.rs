@@ -10,10 +10,11 @@ use wgpu::{
 
 use super::buffer::Buffer;
 use super::device::Device;
+use super::meter::Meter;
 use super::samplers::Sampler;
 use super::texture::TextureView;
 use super::uniforms::Uniforms;
-use super::work::{Bound, Id};
+use super::work::Bound;
 
 /// Group shared by all passes: the globals, and a method's own uniforms.
 pub(crate) const GROUP_SCENE: usize = 0;
@@ -129,8 +130,8 @@ pub(crate) enum Resource<'a> {
 }
 
 impl<'a> Resource<'a> {
-    /// What it moves through a slot; `id` is one that nothing else has.
-    pub(super) fn bound(self, slot: Slot, id: impl FnOnce() -> Id) -> Option<Bound> {
+    /// What it moves through a slot.
+    pub(super) fn bound(self, slot: Slot) -> Option<Bound> {
         match (self, slot) {
             (Self::Buffer(buffer), _) => Some(Bound::Buffer {
                 id: buffer.id,
@@ -143,7 +144,7 @@ impl<'a> Resource<'a> {
             }),
             (Self::Sampler(_), _) => None,
             (Self::PerUse, _) => Some(Bound::Buffer {
-                id: id(),
+                id: Meter::id(),
                 n_bytes: slot.seen_bytes(0),
                 is_written: false,
             }),

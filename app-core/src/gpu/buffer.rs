@@ -3,7 +3,7 @@
 use wgpu::BufferUsages;
 
 use super::context::Gpu;
-use super::meter::Held;
+use super::meter::{Held, Meter};
 use super::work::Id;
 
 /// A buffer; where nothing is drawn, only counted, no more than its size.
@@ -59,7 +59,7 @@ impl Gpu {
     fn counted(&self, raw: Option<wgpu::Buffer>, n_bytes: u64) -> Buffer {
         Buffer {
             raw,
-            id: self.meter.id(),
+            id: Meter::id(),
             n_bytes,
             _held: self.meter.hold(n_bytes),
         }

@@ -17,10 +17,12 @@ pub struct Memory {
     pub made_bytes: u64,
 }
 
+/// Of the next resource, whatever device it is on.
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+
 /// The counts of one device.
 #[derive(Debug, Default)]
 pub(crate) struct Meter {
-    next_id: AtomicU64,
     uploaded: AtomicU64,
     made: AtomicU64,
     held: Arc<HeldBytes>,
@@ -35,8 +37,8 @@ struct HeldBytes {
 
 impl Meter {
     /// A number that no other resource has.
-    pub(super) fn id(&self) -> Id {
-        self.next_id.fetch_add(1, Ordering::Relaxed)
+    pub(super) fn id() -> Id {
+        NEXT_ID.fetch_add(1, Ordering::Relaxed)
     }
 
     /// Counts the bytes of a resource until what is returned is dropped.

@@ -15,6 +15,7 @@ pub(crate) mod samplers;
 pub(crate) mod shader;
 pub(crate) mod shape;
 pub(crate) mod shared;
+pub(crate) mod stages;
 pub(crate) mod texture;
 pub(crate) mod timer;
 pub(crate) mod uniforms;

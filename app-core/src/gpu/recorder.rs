@@ -9,6 +9,7 @@ use super::buffer::Buffer;
 use super::context::Gpu;
 use super::pass_run::{PassRun, Path};
 use super::pipeline::{Compute, Draw, Pipeline};
+use super::stages::{StageTime, Stages};
 use super::texture::{Texture, TextureView};
 use super::timer::Timer;
 use super::uniforms::Written;
@@ -21,6 +22,7 @@ pub(crate) struct Recorder<'g> {
     pub(crate) path: Path,
     /// Pixels of the pictures that are worked on: the most that a compute shader looks at.
     pub(crate) n_pixels: u64,
+    pub(crate) stages: Stages,
     raw: Option<wgpu::CommandEncoder>,
     uniforms: Written,
     timer: Option<&'g mut Timer>,
@@ -37,6 +39,7 @@ pub(crate) struct Recorded {
     pub(crate) ran: Vec<PassRun>,
     /// Bytes that the processor handed over meanwhile.
     pub(crate) uploaded_bytes: u64,
+    pub(crate) stages: Vec<StageTime>,
 }
 
 /// A bind group to be set.
@@ -62,6 +65,7 @@ impl<'g> Recorder<'g> {
             raw: gpu.live.as_ref().map(|live| live.device.encoder()),
             path: Path::Frame,
             n_pixels: u64::MAX,
+            stages: Stages::default(),
             uniforms: Written::default(),
             timer,
             ran: Vec::new(),
@@ -76,7 +80,7 @@ impl<'g> Recorder<'g> {
             index: u32::try_from(index).unwrap_or(u32::MAX),
             raw: self.group(pipeline, index, resources),
             offset: None,
-            bound: self.bound(pipeline.slots[index], resources),
+            bound: bound(pipeline.slots[index], resources),
         }
     }
 
@@ -234,6 +238,7 @@ impl<'g> Recorder<'g> {
 
     /// Submits the commands; returns the passes that are in them.
     pub(crate) fn submit(mut self) -> Recorded {
+        self.stages.begin("submit");
         if let (Some(live), Some(mut encoder)) = (&self.gpu.live, self.raw.take()) {
             if let Some(timer) = self.timer.take() {
                 timer.resolve(&mut encoder);
@@ -245,6 +250,7 @@ impl<'g> Recorder<'g> {
         Recorded {
             uploaded_bytes: self.gpu.meter.uploaded_bytes() - self.uploaded_bytes,
             ran: self.ran,
+            stages: self.stages.end(),
         }
     }
 
@@ -261,13 +267,14 @@ impl<'g> Recorder<'g> {
         live.bind(&layout, resources)
     }
 
-    fn bound(&self, slots: &[Slot], resources: &[Resource<'_>]) -> Vec<Bound> {
-        let id = || self.gpu.meter.id();
-        let pairs = slots.iter().zip(resources);
+
+}
+
+fn bound(slots: &[Slot], resources: &[Resource<'_>]) -> Vec<Bound> {
+    let pairs = slots.iter().zip(resources);
         pairs
-            .filter_map(|(slot, resource)| resource.bound(*slot, id))
+            .filter_map(|(slot, resource)| resource.bound(*slot))
             .collect()
-    }
 }
 
 /// The work of a pass, of which another run begins.

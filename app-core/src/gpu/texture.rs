@@ -4,7 +4,7 @@ use glam::UVec2;
 use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
 
 use super::context::Gpu;
-use super::meter::Held;
+use super::meter::{Held, Meter};
 use super::samplers::Sampler;
 use super::shape::Shape;
 use super::work::Id;
@@ -249,7 +249,7 @@ impl TextureView {
         let size_px = UVec2::new(texture.width(), texture.height());
         Self {
             raw: gpu.view(Some(texture), &wgpu::TextureViewDescriptor::default()),
-            id: gpu.meter.id(),
+            id: Meter::id(),
             shape: Shape::of(size_px, texture.format(), texture.usage()),
         }
     }
@@ -281,7 +281,7 @@ fn view_of(
     };
     TextureView {
         raw: gpu.view(texture, &descriptor),
-        id: gpu.meter.id(),
+        id: Meter::id(),
         shape: Shape { n_layers, ..*shape },
     }
 }

@@ -1,5 +1,6 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
+mod afford;
 mod camera_texture;
 mod footprint;
 pub(crate) mod method;
@@ -22,6 +23,7 @@ use crate::geometry::clip_reach::ClipReach;
 use crate::geometry::rect::PlaneRect;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
+use crate::governor::Step;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::texture::{Texture, TextureView};
@@ -60,6 +62,10 @@ pub(crate) struct Stage {
     /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
+    /// Settings that are turned down since the scene would cost too much.
+    turned_down: Vec<Step>,
+    /// What there is to say of that.
+    cost_warning: Option<Warning>,
     /// What the clip shown last reaches, with the poses shown so far.
     reach: Option<ClipReach>,
     /// Footprint of the latest frame.
@@ -142,6 +148,8 @@ impl Stage {
             is_object_placed: true,
             scene,
             is_shadow_withheld: false,
+            turned_down: Vec::new(),
+            cost_warning: None,
             reach: None,
             cached_footprint: None,
         })
@@ -236,7 +244,9 @@ impl Stage {
         recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
+        recorder.stages.begin("camera picture");
         self.camera.take(recorder, &input.image);
+        recorder.stages.begin("placement");
         self.follow_placement(recorder.gpu, input)?;
         let about_scene = self
             .receivers_warning
@@ -248,10 +258,12 @@ impl Stage {
         let mut report = FrameReport {
             ran: Vec::new(),
             uploaded_bytes: 0,
+            stages: Vec::new(),
             skipped: Vec::new(),
             region: None,
             warnings: about_scene.chain(about_lights).collect(),
         };
+        recorder.stages.begin("pose and footprint");
         let made_by = match self.footprint(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
@@ -276,7 +288,10 @@ impl Stage {
     ) {
         let gpu = recorder.gpu;
         self.toy.shown.write(gpu, &self.posed);
+        recorder.stages.begin("reuse");
         let change = self.update_method(gpu, input, footprint);
+        report.warnings.extend(self.cost_warning.clone());
+        recorder.stages.begin("encode");
         let Some(state) = &mut self.state else {
             return;
         };
