@@ -78,7 +78,9 @@ impl Phone {
             // A screen shows a frame for a whole number of its own.
             let screens = (time_ms / SCREEN_MS).ceil().max(self.budget_ms() / SCREEN_MS);
             let frame = Measured {
-                gpu_ms: known.filter(|_| self.has_stamps).map(|index| self.times_ms[index]),
+                gpu_ms: known
+                    .filter(|_| self.has_stamps)
+                    .map(|index| self.times_ms[index]),
                 interval_ms: screens.round() * SCREEN_MS,
                 heat: self.heat,
             };
@@ -101,7 +103,12 @@ impl Phone {
 
     /// Changes of direction among the latest turns.
     fn n_reversals(&self, from: usize) -> usize {
-        let ups: Vec<bool> = self.turns.iter().filter(|(at, _)| *at > from).map(|(_, t)| t.to < t.from).collect();
+        let ups: Vec<bool> = self
+            .turns
+            .iter()
+            .filter(|(at, _)| *at > from)
+            .map(|(_, t)| t.to < t.from)
+            .collect();
         ups.windows(2).filter(|pair| pair[0] != pair[1]).count()
     }
 }
@@ -130,8 +137,16 @@ fn a_step_of_the_load_is_answered_within_half_a_second_and_taken_back_when_it_is
         phone.run(30);
         assert!(phone.late_share(30) < 0.15, "{truth}: {:?}", phone.turns);
         phone.run(MINUTE);
-        assert!(phone.late_share(MINUTE) < 0.03, "{truth}: {}", phone.late_share(MINUTE));
-        assert!(level > 0 && phone.n_reversals(begin) <= 1, "{truth}: {:?}", phone.turns);
+        assert!(
+            phone.late_share(MINUTE) < 0.03,
+            "{truth}: {}",
+            phone.late_share(MINUTE)
+        );
+        assert!(
+            level > 0 && phone.n_reversals(begin) <= 1,
+            "{truth}: {:?}",
+            phone.turns
+        );
         assert!(!phone.governor.turned_down()[0].what.is_empty());
         // Each step up waits for its time and a window.
         phone.full_ms = 0.5 * SCREEN_MS;
@@ -153,7 +168,10 @@ fn whatever_the_load_it_comes_to_rest() {
             let late: Vec<_> = phone.turns.iter().filter(|(at, _)| *at > before).collect();
             assert!(late.len() <= 1, "{truth} at {percent} %: {late:?}");
             let is_at_end = phone.level() == BALANCED_FRONT.len();
-            assert!(phone.late_share(MINUTE) < 0.05 || is_at_end, "{truth} at {percent} %");
+            assert!(
+                phone.late_share(MINUTE) < 0.05 || is_at_end,
+                "{truth} at {percent} %"
+            );
         }
     }
 }
@@ -170,7 +188,11 @@ fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
             _ => Heat::Serious,
         };
         phone.run(MINUTE);
-        assert!(phone.late_share(MINUTE / 2) < 0.05, "minute {minute}: {:?}", phone.turns);
+        assert!(
+            phone.late_share(MINUTE / 2) < 0.05,
+            "minute {minute}: {:?}",
+            phone.turns
+        );
     }
     let ups = phone.turns.iter().filter(|(_, turned)| turned.to < turned.from);
     assert_eq!(ups.count(), 0, "{:?}", phone.turns);
@@ -203,7 +225,11 @@ fn without_device_times_late_frames_tell_and_trials_grow_rare() {
     assert!(phone.level() > 0);
     phone.run(30 * MINUTE);
     // Half an hour under a load that only the steps hold: each trial is late for less than a second.
-    assert!(phone.late_share(30 * MINUTE) < 0.03, "{}", phone.late_share(30 * MINUTE));
+    assert!(
+        phone.late_share(30 * MINUTE) < 0.03,
+        "{}",
+        phone.late_share(30 * MINUTE)
+    );
     // The wait has doubled to its most, 9600 frames; a trial turns twice.
     let last = phone.times_ms.len() - 10 * MINUTE;
     let n_late = phone.turns.iter().filter(|(at, _)| *at > last).count();
@@ -229,6 +255,9 @@ fn thirty_frames_a_second_are_the_last_resort_and_a_frame_then_has_twice_the_tim
     let mut phone = Phone::new(2.2 * SCREEN_MS);
     phone.run(MINUTE);
     assert_eq!(phone.governor.frames_per_second(), 30);
-    assert_eq!(phone.governor.turned_down().last().unwrap().knob, Knob::FramesPerSecond);
+    assert_eq!(
+        phone.governor.turned_down().last().unwrap().knob,
+        Knob::FramesPerSecond
+    );
     assert!(phone.late_share(MINUTE / 2) < 0.05);
 }

@@ -156,7 +156,10 @@ impl Governor {
     #[must_use]
     pub fn value(&self, knob: Knob) -> Option<u32> {
         let steps = self.turned_down().iter().rev();
-        steps.filter(|step| step.knob == knob).map(|step| step.value).next()
+        steps
+            .filter(|step| step.knob == knob)
+            .map(|step| step.value)
+            .next()
     }
 
     /// Frames a second that are to be shown.

@@ -266,15 +266,13 @@ impl<'g> Recorder<'g> {
         let layout = layout.unwrap_or_else(|| live.layout(&[]));
         live.bind(&layout, resources)
     }
-
-
 }
 
 fn bound(slots: &[Slot], resources: &[Resource<'_>]) -> Vec<Bound> {
     let pairs = slots.iter().zip(resources);
-        pairs
-            .filter_map(|(slot, resource)| resource.bound(*slot))
-            .collect()
+    pairs
+        .filter_map(|(slot, resource)| resource.bound(*slot))
+        .collect()
 }
 
 /// The work of a pass, of which another run begins.

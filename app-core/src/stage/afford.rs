@@ -17,10 +17,11 @@ use crate::passes::pictures::Pictures;
 use crate::plan::Change;
 use crate::preset::ModelSettings;
 
-/// Most triangles of a new view that are drawn. Phones set up some hundred millions a second; a toy of 100,000 triangles
-/// stays below it with every setting of `balanced`, and one of 250,000 with all of them turned down.
-const MOST_TRIANGLES: u64 = 20_000_000;
-/// Most pixels that the triangles of a frame cover one over the other. Phones fill some thousand millions a second.
+/// Most triangles of a new view that are drawn: with one light 90,000 of a toy stay below it with the settings of
+/// `balanced`, and 250,000, the most that is read, with all of them turned down.
+const MOST_TRIANGLES: u64 = 30_000_000;
+/// Most pixels that the triangles of a new frame's shadows and toy cover, one over the other: a phone that fills some thousand
+/// millions a second takes seconds for it.
 const MOST_COVERED_PX: f64 = 4e9;
 /// Times that the toy is drawn as the camera sees it: coverage, its samples and those of the moved mask.
 const N_CAMERA_DRAWS: f64 = 40.0;
@@ -59,7 +60,10 @@ impl Stage {
             let settings = self.settings(settings);
             let plan = Plan::new(&facts, &settings);
             let cost = self.cost(&plan, footprint, (&covered, settings.ambient_divisor));
-            let Cost { triangles, covered_px } = *first.get_or_insert(cost);
+            let Cost {
+                triangles,
+                covered_px,
+            } = *first.get_or_insert(cost);
             if !cost.is_too_much() {
                 if !self.turned_down.is_empty() {
                     let what = self.turned_down.iter().map(|step: &Step| step.what).collect();
@@ -123,8 +127,11 @@ impl Stage {
         let sum = |place: &dyn Fn(DVec3) -> Option<DVec2>| -> f64 {
             let places: Vec<Option<DVec2>> = points.iter().map(|point| place(*point)).collect();
             let triangles = self.scene.toy.indices().as_chunks().0.iter();
-            let areas = triangles.map(|corners: &[u32; 3]| area_px(corners.map(|corner| places[corner as usize])));
-            0.5 * areas.map(|area| area.unwrap_or(most_px).min(most_px)).sum::<f64>()
+            let areas =
+                triangles.map(|corners: &[u32; 3]| area_px(corners.map(|corner| places[corner as usize])));
+            0.5 * areas
+                .map(|area| area.unwrap_or(most_px).min(most_px))
+                .sum::<f64>()
         };
         let above = Vec4::new(0.0, 1.0, 0.0, 0.0);
         let shadow_px = |light: Vec4| sum(&|point| image_px(flattened(point, light.as_dvec4())?));

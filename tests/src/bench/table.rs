@@ -169,7 +169,11 @@ fn costs(rows: &[Row]) -> Vec<Vec<String>> {
     let mut cells = vec![heads];
     for row in rows.iter().filter(|row| !row.times.is_empty()) {
         let [width, height] = row.size_px;
-        let mut line = vec![row.session.clone(), row.preset.clone(), format!("{width} x {height}")];
+        let mut line = vec![
+            row.session.clone(),
+            row.preset.clone(),
+            format!("{width} x {height}"),
+        ];
         let counted = |kind| {
             let times = row.times.iter().find(|times| times.kind == kind);
             times.and_then(|times| times.counted.as_ref())

@@ -35,7 +35,10 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let folder = args.session.clone().unwrap_or_else(|| PathBuf::from(BUNDLED_SESSION));
+    let folder = args
+        .session
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(BUNDLED_SESSION));
     let session = Capture::open(open_session(&folder)?)?;
     let own_px = [session.scene().width_px, session.scene().height_px];
     let size_px = args.size.unwrap_or(own_px);
@@ -46,7 +49,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let mut text = String::new();
     for &preset in &args.presets {
         let counted = count(&scene, preset, &input)?;
-        text.push_str(&format!("{} {preset} {width} x {height}\n{}", scene.name, ledgers(&counted)));
+        text.push_str(&format!(
+            "{} {preset} {width} x {height}\n{}",
+            scene.name,
+            ledgers(&counted)
+        ));
     }
     io::stdout()
         .write_all(text.as_bytes())
