@@ -19,6 +19,7 @@ pub mod page;
 pub mod photographer;
 pub mod process;
 pub mod program;
+pub mod profiled;
 pub mod progress;
 pub mod random;
 pub mod reference;

@@ -4,7 +4,7 @@ use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::pass_run::PassRun;
 use crate::gpu::stages::StageTime;
-use crate::plan::LeftOut;
+use crate::plan::{Change, LeftOut};
 
 /// The report of one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct FrameReport {
     pub stages: Vec<StageTime>,
     /// Bytes that the processor handed to the device for it.
     pub uploaded_bytes: u64,
+    /// What changed since the frame before; none when the camera frame passed through.
+    pub change: Option<Change>,
     /// What did not run, and why.
     pub skipped: Vec<LeftOut>,
     /// The work region; none when the camera frame passed through.

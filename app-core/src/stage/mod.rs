@@ -259,6 +259,7 @@ impl Stage {
             ran: Vec::new(),
             uploaded_bytes: 0,
             stages: Vec::new(),
+            change: None,
             skipped: Vec::new(),
             region: None,
             warnings: about_scene.chain(about_lights).collect(),
@@ -327,6 +328,7 @@ impl Stage {
         }
         report.skipped.extend_from_slice(method.left_out());
         report.region = Some(method.region());
+        report.change = Some(change);
         report.warnings.extend(self.plate_warning(footprint));
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
