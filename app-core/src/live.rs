@@ -123,11 +123,12 @@ impl Live {
         let size_px = UVec2::from(screen.size_px.map(|side| side.max(1)));
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let target = Texture::target(self.core.gpu(), "screen", size_px, format);
-        let commands = self.draw_on(&target.raw, screen, time_s)?;
+        let raw = target.raw().ok_or(CoreError::NoScene)?;
+        let commands = self.draw_on(raw, screen, time_s)?;
         let image = Image {
             width_px: size_px.x,
             height_px: size_px.y,
-            rgba8: self.core.gpu().read_texture(&target.raw)?,
+            rgba8: self.core.gpu().read_texture(Some(raw))?,
         };
         Ok((image, commands))
     }
@@ -236,6 +237,8 @@ fn paint(
     painting: &Painting,
     below: LoadOp<wgpu::Color>,
 ) {
+    // Nothing is painted where costs are only counted.
+    let Some(gpu) = &gpu.opened else { return };
     let painter = painter.get_or_insert_with(|| Painter::new(gpu, target.format()));
     painter.paint(gpu, target, (painting, &interface.take_textures()), below);
 }

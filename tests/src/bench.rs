@@ -16,14 +16,16 @@ use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
 
 use crate::alignment::{Alignments, Lights, Ratio};
+use crate::count::count;
 use crate::metrics::Scores;
 use crate::metrics::flicker::Flicker;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
+use crate::sized::{SizePx, sized_input, sized_scene};
 
 pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
-pub use kinds::{FRAME_KINDS, FrameKind, KindTimes};
+pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
 pub(crate) use table::aligned;
 pub use table::{csv, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
@@ -40,6 +42,8 @@ pub struct Options {
     pub n_repeats: usize,
     /// The frames, all without it.
     pub frames: Option<Range<usize>>,
+    /// Size of the pictures that are timed and counted, the session's own without it; errors are always of that.
+    pub size_px: Option<SizePx>,
     /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
     pub with_exact: bool,
     /// Whether cameras, toy and lights are first aligned by the pictures; with exact visibility they never are.
@@ -131,10 +135,39 @@ fn measure(
         scores: report.mean.scores,
         flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
-        size_px: [session.scene().width_px, session.scene().height_px],
-        times: kinds::measure(core, &inputs, options.n_repeats)?,
         n_taps: mean_taps(core, &inputs)?,
+        size_px: options.size_px.unwrap_or(own_px(session)),
+        times: times(session, core, preset, (options, &inputs))?,
     })
+}
+
+/// Times and costs in pictures of the size that is asked for.
+fn times(
+    session: &Capture,
+    core: &mut Core,
+    preset: Preset,
+    (options, inputs): (&Options, &[FrameInput]),
+) -> Result<Vec<KindTimes>, ReplayError> {
+    let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
+        Some(size_px) => {
+            let inputs = inputs.iter().take(kinds::MOST_INPUTS);
+            let scene = sized_scene(session.scene(), size_px);
+            core.set_scene(scene.clone(), preset)?;
+            (scene, inputs.map(|input| sized_input(input, size_px)).collect())
+        }
+        None => (session.scene().clone(), inputs.to_vec()),
+    };
+    let mut times = kinds::measure(core, &inputs, options.n_repeats)?;
+    if let Some(first) = inputs.first() {
+        for (times, counted) in times.iter_mut().zip(count(&scene, preset, first)?) {
+            times.counted = Some(counted);
+        }
+    }
+    Ok(times)
+}
+
+fn own_px(session: &Capture) -> SizePx {
+    [session.scene().width_px, session.scene().height_px]
 }
 
 fn replay_options(options: &Options) -> replay::Options {

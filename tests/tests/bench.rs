@@ -18,6 +18,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         presets: vec![Preset::Balanced, Preset::Paper],
         n_repeats: 1,
         frames: Some(0..2),
+        size_px: None,
         with_exact: false,
         is_aligned: true,
         ratio: Ratio::Given,

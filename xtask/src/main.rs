@@ -65,6 +65,20 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// What frames of a session must cost on any device, without one (`ledger --help` tells more)
+    #[command(disable_help_flag = true)]
+    Ledger {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Profile a session, or read a profile of a phone: a trace for Perfetto, and a table of tasks (`profile --help` tells more)
+    #[command(disable_help_flag = true)]
+    Profile {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Measure numerical stability on hard cases against bounds (`stability --help` tells more)
     #[command(disable_help_flag = true)]
     Stability {
@@ -135,6 +149,8 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
         Command::Import { args } => return harness::run_on_processor(&toolchain, "import", &args),
         Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
+        Command::Ledger { args } => return harness::run_on_processor(&toolchain, "ledger", &args),
+        Command::Profile { args } => return harness::run(&toolchain, "profile", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::View { args } => return harness::run(&toolchain, "view", &args),
         Command::Bless { args } => return bless(&toolchain, &args),

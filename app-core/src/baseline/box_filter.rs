@@ -6,10 +6,10 @@ use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Recorder, cleared, loaded};
+use crate::gpu::recorder::{Attachment, Recorder, cleared, loaded};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::{Texture, TextureLayers};
+use crate::gpu::texture::{Texture, TextureLayers, TextureView};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 use crate::scene::MAX_LIGHTS;
@@ -41,7 +41,7 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) terms: &'a wgpu::TextureView,
+    pub(crate) terms: &'a TextureView,
     pub(crate) n_receivers: u32,
 }
 
@@ -97,8 +97,8 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         (scene, summed): (Scene<'_>, Summed),
-        from: &wgpu::TextureView,
-        to: wgpu::RenderPassColorAttachment<'_>,
+        from: &TextureView,
+        to: Attachment<'_>,
     ) {
         let groups = [
             recorder.bind(&self.draw, GROUP_SCENE, &scene.resources()),

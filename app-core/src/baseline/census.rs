@@ -5,6 +5,7 @@ use wgpu::BufferUsages;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::BASELINE;
 use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
@@ -31,7 +32,7 @@ pub(crate) struct Pass {
 
 pub(crate) struct Targets {
     /// [`SeenSets`].
-    pub(crate) seen_sets: wgpu::Buffer,
+    pub(crate) seen_sets: Buffer,
 }
 
 impl Targets {
@@ -59,8 +60,7 @@ impl Pass {
         recorder.clear(&targets.seen_sets);
         let resources = [(&labels.view).into(), (&targets.seen_sets).into()];
         let own = recorder.bind(&self.compute, GROUP_PASS, &resources);
-        let (width, height) = (labels.raw.width(), labels.raw.height());
-        let workgroups = [width.div_ceil(WORKGROUP_PX), height.div_ceil(WORKGROUP_PX), 1];
-        recorder.compute(&self.compute, &[own], workgroups);
+        let workgroups = labels.size_px().map(|side| side.div_ceil(WORKGROUP_PX)).extend(1);
+        recorder.compute(&self.compute, &[own], workgroups.to_array());
     }
 }

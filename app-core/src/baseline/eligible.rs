@@ -9,7 +9,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 
@@ -25,8 +25,8 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) mask: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) mask: &'a TextureView,
+    pub(crate) visibility: &'a TextureView,
 }
 
 /// Of the region's size.

@@ -4,6 +4,7 @@ use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::baseline::plan::BaselinePlan;
 use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared};
@@ -48,7 +49,7 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        globals: &wgpu::Buffer,
+        globals: &Buffer,
         toy: &ToyMesh,
         targets: &Targets,
     ) {
@@ -56,6 +57,6 @@ impl Pass {
         let colors = [Some(cleared(&targets.mask.view))];
         let mut render = recorder.render(SHADER.name, &colors, None, StoreOp::Discard);
         render.begin(&self.draw, &[group]);
-        toy.draw_positions(&mut render.0, &toy.physical.positions, 0..1);
+        toy.draw_positions(&mut render, &toy.physical.positions, 0..1);
     }
 }

@@ -9,10 +9,11 @@ mod unseen;
 use crate::baseline::order::{Pose, Step, order};
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, Scene};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
@@ -28,8 +29,8 @@ passes!(BaselinePlan: masks, warp, pcss, eligible, census, search, box_filter, r
 pub(crate) struct Baseline {
     pub(crate) plan: BaselinePlan,
     order: [Vec<(Path, Step)>; Change::ALL.len()],
-    globals: wgpu::Buffer,
-    uniform: wgpu::Buffer,
+    globals: Buffer,
+    uniform: Buffer,
     plate: Texture,
     targets: Targets,
     injected: Injected,
@@ -75,7 +76,7 @@ impl Baseline {
     }
 
     /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+    pub(crate) fn picture(&self) -> &TextureView {
         &self.targets.retarget.codes
     }
 
@@ -127,7 +128,7 @@ impl Baseline {
                     Pose::Shown => &self.injected.shown,
                 };
                 if let Some(injected) = injected {
-                    recorder.copy(&injected.raw, &targets.pcss.visibility.raw);
+                    recorder.copy(injected, &targets.pcss.visibility);
                 }
             }
             Step::Eligible => {

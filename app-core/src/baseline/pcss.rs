@@ -9,7 +9,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::{Texture, half_float};
+use crate::gpu::texture::{Texture, TextureView, half_float};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 use crate::scene::MAX_LIGHTS;
@@ -54,10 +54,10 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         scene: Scene<'_>,
-        warp: &wgpu::TextureView,
+        warp: &TextureView,
         targets: &Targets,
     ) {
-        let format = targets.visibility.raw.format();
+        let format = targets.visibility.format();
         let Some((_, draw)) = self.draws.iter().find(|(of_draw, _)| *of_draw == format) else {
             return;
         };

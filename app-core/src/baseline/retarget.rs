@@ -9,7 +9,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 use crate::passes::present::REGION_FORMAT;
@@ -39,12 +39,12 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) plate: &'a wgpu::TextureView,
-    pub(crate) mask: &'a wgpu::TextureView,
-    pub(crate) labels: &'a wgpu::TextureView,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) terms: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) plate: &'a TextureView,
+    pub(crate) mask: &'a TextureView,
+    pub(crate) labels: &'a TextureView,
+    pub(crate) visibility: &'a TextureView,
+    pub(crate) terms: &'a TextureView,
 }
 
 /// Of the region's size: two multisampled ones that are never stored, and the picture.
@@ -53,7 +53,7 @@ pub(crate) struct Targets {
     depth: Texture,
     pub(crate) picture: Texture,
     /// View of its sRGB codes, not decoded.
-    pub(crate) codes: wgpu::TextureView,
+    pub(crate) codes: TextureView,
 }
 
 impl Targets {
@@ -106,11 +106,11 @@ impl Pass {
         let depth = Some(&targets.depth.view);
         let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
         render.begin(&self.receiver, &groups);
-        render.0.draw(0..3, 0..1);
+        render.draw(0..3, 0..1);
         render.begin(&self.toy, &groups);
         let toy = inputs.toy;
-        render.0.set_vertex_buffer(1, toy.physical.positions.slice(..));
-        toy.draw_positions(&mut render.0, &toy.shown.positions, 0..1);
+        render.set_vertices(1, &toy.physical.positions);
+        toy.draw_positions(&mut render, &toy.shown.positions, 0..1);
     }
 }
 

@@ -5,11 +5,12 @@ use wgpu::TextureFormat;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 
@@ -37,11 +38,11 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) warp: &'a wgpu::TextureView,
-    pub(crate) labels: &'a wgpu::TextureView,
-    pub(crate) seen_sets: &'a wgpu::Buffer,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) warp: &'a TextureView,
+    pub(crate) labels: &'a TextureView,
+    pub(crate) seen_sets: &'a Buffer,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) plate: &'a TextureView,
 }
 
 /// Of the region's size.

@@ -3,6 +3,7 @@
 use crate::geometry::bounds::Bounds;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
@@ -37,8 +38,8 @@ shared_struct! {
 /// Resources of [`SCENE_SLOTS`].
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
-    pub(crate) baseline: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
+    pub(crate) baseline: &'a Buffer,
 }
 
 impl<'a> Scene<'a> {

@@ -5,6 +5,7 @@ use wgpu::{StoreOp, TextureFormat, VertexFormat};
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::BASELINE;
 use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, cleared};
@@ -30,7 +31,7 @@ pub(crate) struct Pass {
 
 /// The shadow of one light that a toy casts in a pose.
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
     pub(crate) light: u32,
@@ -77,9 +78,9 @@ impl Pass {
         let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
         render.begin(&self.draw, &[group]);
         let toy = inputs.toy;
-        render.0.set_vertex_buffer(1, toy.physical.positions.slice(..));
+        render.set_vertices(1, &toy.physical.positions);
         let first = inputs.light * N_SLOTS;
         let instances = first..first + inputs.n_receivers;
-        toy.draw_positions(&mut render.0, &inputs.pose.positions, instances);
+        toy.draw_positions(&mut render, &inputs.pose.positions, instances);
     }
 }

@@ -4,6 +4,7 @@ use bytemuck::Zeroable;
 
 use super::{Core, CoreError};
 use crate::gpu::device::Kind;
+use crate::gpu::meter::Memory;
 use crate::model::plan::Plan;
 use crate::model::state::grids::Grid;
 use crate::model::state::solution::Fit;
@@ -16,6 +17,9 @@ use crate::stage::Stage;
 pub trait Inspect {
     /// How many objects of each kind the device was asked to make so far, whether they still live or not.
     fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()];
+
+    /// Bytes of textures and buffers that the device was asked for so far, by their descriptors.
+    fn memory(&self) -> Memory;
 
     /// The model's plan of the latest retargeted frame, once there was one.
     fn plan(&self) -> Option<&Plan>;
@@ -66,6 +70,10 @@ impl Inspect for Core {
     fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()] {
         let counts = self.gpu.n_created();
         Kind::ALL.map(|kind| (kind, counts[kind as usize]))
+    }
+
+    fn memory(&self) -> Memory {
+        self.gpu.memory()
     }
 
     fn plan(&self) -> Option<&Plan> {

@@ -15,7 +15,9 @@ use crate::frame::report::FrameReport;
 use crate::gpu::context::{AdapterChoice, Gpu};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
+use crate::gpu::stages::{Clock, Stages};
 use crate::gpu::timer::Timer;
+use crate::gpu::work::Work;
 use crate::model::Model;
 use crate::passes::screen;
 use crate::preset::Preset;
@@ -38,6 +40,7 @@ pub struct Core {
     preview: Option<Preview>,
     /// Only for those who ask.
     timer: Option<Timer>,
+    clock: Option<Clock>,
 }
 
 impl Core {
@@ -71,6 +74,13 @@ impl Core {
         Ok(Self::new(gpu, Some(window)))
     }
 
+    /// A core without a device: nothing is drawn, but each frame's report has the work of the passes that would run, from
+    /// the same descriptors. What is to be read of the device is an error.
+    #[must_use]
+    pub fn counting() -> Self {
+        Self::new(Gpu::default(), None)
+    }
+
     fn new(gpu: Gpu, window: Option<Window>) -> Self {
         Self {
             gpu: Arc::new(gpu),
@@ -78,6 +88,7 @@ impl Core {
             stage: None,
             preview: None,
             timer: None,
+            clock: None,
         }
     }
 
@@ -193,11 +204,15 @@ impl Core {
         if let Some(timer) = &mut self.timer {
             timer.start();
         }
-        let (gpu, timer) = (&self.gpu, self.timer.as_mut());
+        let (gpu, timer, clock) = (&self.gpu, self.timer.as_mut(), self.clock.clone());
         let made = gpu.guarded(|| {
             let mut recorder = Recorder::new(gpu, timer);
+            recorder.stages = Stages::new(clock);
             let mut report = stage.encode(&mut recorder, input)?;
-            report.ran = recorder.submit();
+            let recorded = recorder.submit();
+            report.ran = recorded.ran;
+            report.uploaded_bytes = recorded.uploaded_bytes;
+            report.stages = recorded.stages;
             Ok::<_, CoreError>(report)
         });
         match made {
@@ -209,11 +224,18 @@ impl Core {
         }
     }
 
+    /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
+    #[must_use]
+    pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
+        let picture_px = self.stage.as_ref().map(Finished::of)?.size_px;
+        Some(window::count(picture_px, screen_px, display))
+    }
+
     /// The texture that each frame's picture is drawn to, of the scene's size: sRGB codes as
     /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It stays until the next scene.
     #[must_use]
     pub fn picture(&self) -> Option<&wgpu::Texture> {
-        self.stage.as_ref().map(|stage| &stage.output.raw)
+        self.stage.as_ref().and_then(|stage| stage.output.raw())
     }
 
     /// Waits for the device and returns the latest picture, alpha 255.
@@ -222,10 +244,11 @@ impl Core {
     /// When there is no scene, or the device is lost.
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
-        let rgba8 = self.gpu.read_texture(&stage.output.raw)?;
+        let rgba8 = self.gpu.read_texture(stage.output.raw())?;
+        let [width_px, height_px] = stage.output.size_px().to_array();
         Ok(Image {
-            width_px: stage.output.raw.width(),
-            height_px: stage.output.raw.height(),
+            width_px,
+            height_px,
             rgba8,
         })
     }
@@ -243,6 +266,11 @@ impl Core {
         Ok(())
     }
 
+    /// Times the stages of frames on the processor from the next one on, by a clock of the caller's; or no longer.
+    pub fn time_stages(&mut self, clock: Option<Clock>) {
+        self.clock = clock;
+    }
+
     /// Waits for the device and returns the latest frame's time per pass; empty where nobody asked for it, or the device
     /// cannot tell.
     ///
@@ -258,7 +286,7 @@ impl Core {
     }
 
     fn check_sides(&self, size_px: [u32; 2]) -> Result<(), CoreError> {
-        let largest_px = self.gpu.device.raw.limits().max_texture_dimension_2d;
+        let largest_px = self.gpu.limits().max_texture_dimension_2d;
         if size_px.iter().all(|side| (1..=largest_px).contains(side)) {
             Ok(())
         } else {

@@ -4,7 +4,10 @@ use wgpu::CurrentSurfaceTexture;
 
 use crate::camera_frame::Display;
 use crate::gpu::context::{Gpu, GpuError};
-use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::work::Work;
+use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen::{self, ScreenMap};
 use crate::stage::Stage;
 
@@ -19,19 +22,19 @@ pub(super) struct Window {
 #[derive(Clone, Copy)]
 pub(super) struct Finished<'a> {
     /// Decoded where it is read.
-    view: &'a wgpu::TextureView,
-    size_px: [u32; 2],
+    view: &'a TextureView,
+    pub(super) size_px: [u32; 2],
 }
 
 impl<'a> Finished<'a> {
-    pub(super) fn new(view: &'a wgpu::TextureView, size_px: [u32; 2]) -> Self {
+    pub(super) fn new(view: &'a TextureView, size_px: [u32; 2]) -> Self {
         Self { view, size_px }
     }
 
     pub(super) fn of(stage: &'a Stage) -> Self {
         Self {
             view: stage.finished(),
-            size_px: [stage.output.raw.width(), stage.output.raw.height()],
+            size_px: stage.output.size_px().to_array(),
         }
     }
 }
@@ -45,16 +48,16 @@ impl Window {
         let failed = |reason: &str| GpuError::Surface {
             reason: reason.to_owned(),
         };
-        let adapter = gpu
-            .adapter
-            .as_ref()
+        let opened = gpu.opened.as_ref();
+        let adapter = opened
+            .and_then(|opened| opened.adapter.as_ref())
             .ok_or_else(|| failed("the device was opened by the caller, who presents by itself"))?;
         let mut config = surface
             .get_default_config(adapter, width.max(1), height.max(1))
             .ok_or_else(|| failed("the adapter offers no configuration for it"))?;
         // `screen` writes sRGB codes; a surface that encodes once more would show them too bright.
         config.format = config.format.remove_srgb_suffix();
-        surface.configure(&gpu.device.raw, &config);
+        configure(gpu, &surface, &config);
         Ok(Self {
             screen: screen::Pass::new(gpu, config.format),
             surface,
@@ -65,7 +68,7 @@ impl Window {
     pub(super) fn resize(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) {
         self.config.width = width.max(1);
         self.config.height = height.max(1);
-        self.surface.configure(&gpu.device.raw, &self.config);
+        configure(gpu, &self.surface, &self.config);
     }
 
     /// Shows `picture`, or black.
@@ -80,7 +83,7 @@ impl Window {
             CurrentSurfaceTexture::Success(texture) | CurrentSurfaceTexture::Suboptimal(texture) => texture,
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
             CurrentSurfaceTexture::Outdated => {
-                self.surface.configure(&gpu.device.raw, &self.config);
+                configure(gpu, &self.surface, &self.config);
                 return Ok(());
             }
             other => {
@@ -94,7 +97,9 @@ impl Window {
             None => blacken(gpu, &texture.texture),
         }
         paint(gpu, &texture.texture);
-        gpu.queue.present(texture);
+        if let Some(opened) = &gpu.opened {
+            opened.queue.present(texture);
+        }
         Ok(())
     }
 }
@@ -106,21 +111,47 @@ pub(super) fn show(
     (picture, display): (Finished<'_>, Display),
     target: &wgpu::Texture,
 ) {
-    let view = gpu.device.view(target, &wgpu::TextureViewDescriptor::default());
-    let image_from_screen = display.image_from_screen(picture.size_px, [target.width(), target.height()]);
+    let target = TextureView::of_other(gpu, target);
+    encode(gpu, screen, (picture, display), &target).submit();
+}
+
+/// What that costs.
+pub(super) fn count(picture_px: [u32; 2], screen_px: [u32; 2], display: Display) -> Work {
+    let gpu = Gpu::default();
+    let target = |size_px: [u32; 2]| Texture::target(&gpu, "", size_px.into(), OUTPUT_FORMAT);
+    let (picture, target) = (target(picture_px), target(screen_px));
+    let picture = Finished {
+        view: &picture.view,
+        size_px: picture_px,
+    };
+    let screen = screen::Pass::new(&gpu, OUTPUT_FORMAT);
+    let recorded = encode(&gpu, &screen, (picture, display), &target.view).submit();
+    recorded.ran.iter().map(|run| run.work).sum()
+}
+
+fn encode<'g>(
+    gpu: &'g Gpu,
+    screen: &screen::Pass,
+    (picture, display): (Finished<'_>, Display),
+    target: &TextureView,
+) -> Recorder<'g> {
+    let screen_px = target.size_px().to_array();
+    let image_from_screen = display.image_from_screen(picture.size_px, screen_px);
     let map = ScreenMap::new(&image_from_screen, picture.size_px);
     let mut recorder = Recorder::new(gpu, None);
-    screen.encode(&mut recorder, (picture.view, &map), &view);
-    recorder.submit();
+    screen.encode(&mut recorder, (picture.view, &map), target);
+    recorder
 }
 
 fn blacken(gpu: &Gpu, target: &wgpu::Texture) {
-    let view = gpu.device.view(target, &wgpu::TextureViewDescriptor::default());
-    let mut encoder = gpu.device.encoder();
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("black"),
-        color_attachments: &[Some(cleared(&view))],
-        ..Default::default()
-    });
-    gpu.queue.submit([encoder.finish()]);
+    let view = TextureView::of_other(gpu, target);
+    let mut recorder = Recorder::new(gpu, None);
+    recorder.blacken(&view);
+    recorder.submit();
+}
+
+fn configure(gpu: &Gpu, surface: &wgpu::Surface<'static>, config: &wgpu::SurfaceConfiguration) {
+    if let Some(opened) = &gpu.opened {
+        surface.configure(&opened.device.raw, config);
+    }
 }

@@ -8,7 +8,9 @@ pub(crate) mod warning;
 
 pub use crate::geometry::rect::PixelRect;
 pub use crate::gpu::pass_run::{PassRun, PassTime, Path};
-pub use crate::plan::LeftOut;
+pub use crate::gpu::stages::{Clock, StageTime};
+pub use crate::gpu::work::Work;
+pub use crate::plan::{Change, LeftOut};
 pub use input::FrameInput;
 pub use mismatch::Mismatch;
 pub use no_light::NoLight;

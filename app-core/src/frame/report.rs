@@ -3,13 +3,20 @@
 use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::pass_run::PassRun;
-use crate::plan::LeftOut;
+use crate::gpu::stages::StageTime;
+use crate::plan::{Change, LeftOut};
 
 /// The report of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,
+    /// Times of its stages on the processor, where a clock was given.
+    pub stages: Vec<StageTime>,
+    /// Bytes that the processor handed to the device for it.
+    pub uploaded_bytes: u64,
+    /// What changed since the frame before; none when the camera frame passed through.
+    pub change: Option<Change>,
     /// What did not run, and why.
     pub skipped: Vec<LeftOut>,
     /// The work region; none when the camera frame passed through.

@@ -67,6 +67,22 @@ pub enum Warning {
         /// What would have to be seen.
         unseen: Vec<UnseenShadow>,
     },
+    /// With the preset's own settings the scene would cost too much: some are turned down.
+    TurnedDown {
+        /// Which, in words.
+        what: Vec<&'static str>,
+        /// Triangles that a new view would take without that.
+        triangles: u64,
+        /// Pixels that they would cover, one over the other.
+        covered_px: f64,
+    },
+    /// The scene would cost too much, whatever is turned down: the camera frame passes through.
+    TooCostly {
+        /// Triangles that a new view would take.
+        triangles: u64,
+        /// Pixels that they would cover, one over the other.
+        covered_px: f64,
+    },
     /// The camera sees what the model cannot explain.
     Outlier(Outlier),
     /// The toy and its shadow are out of the picture.
@@ -154,6 +170,22 @@ impl fmt::Display for Warning {
                 f,
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
+            ),
+            Self::TurnedDown {
+                what,
+                triangles,
+                covered_px,
+            } => write!(
+                f,
+                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much: {}",
+                listed(what, ", ")
+            ),
+            Self::TooCostly {
+                triangles,
+                covered_px,
+            } => write!(
+                f,
+                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much with every setting turned down: the camera frame passes through; take a simpler toy"
             ),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),

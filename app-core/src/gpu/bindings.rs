@@ -8,8 +8,13 @@ use wgpu::{
     BindingType, BufferBindingType, SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension,
 };
 
+use super::buffer::Buffer;
 use super::device::Device;
+use super::meter::Meter;
+use super::samplers::Sampler;
+use super::texture::TextureView;
 use super::uniforms::Uniforms;
+use super::work::Bound;
 
 /// Group shared by all passes: the globals, and a method's own uniforms.
 pub(crate) const GROUP_SCENE: usize = 0;
@@ -115,17 +120,40 @@ impl Slot {
 #[derive(Clone, Copy)]
 pub(crate) enum Resource<'a> {
     /// A whole buffer.
-    Buffer(&'a wgpu::Buffer),
+    Buffer(&'a Buffer),
     /// A texture.
-    View(&'a wgpu::TextureView),
+    View(&'a TextureView),
     /// A sampler.
-    Sampler(&'a wgpu::Sampler),
+    Sampler(&'a Sampler),
     /// Uniforms that are written for each use.
     PerUse,
 }
 
 impl<'a> Resource<'a> {
-    fn binding(self, slot: Slot, uniforms: &'a Uniforms) -> wgpu::BindingResource<'a> {
+    /// What it moves through a slot.
+    pub(super) fn bound(self, slot: Slot) -> Option<Bound> {
+        match (self, slot) {
+            (Self::Buffer(buffer), _) => Some(Bound::Buffer {
+                id: buffer.id,
+                n_bytes: slot.seen_bytes(buffer.n_bytes),
+                is_written: slot == Slot::ReadWrite,
+            }),
+            (Self::View(view), _) => Some(Bound::View {
+                id: view.id,
+                shape: view.shape,
+            }),
+            (Self::Sampler(_), _) => None,
+            (Self::PerUse, _) => Some(Bound::Buffer {
+                id: Meter::id(),
+                n_bytes: slot.seen_bytes(0),
+                is_written: false,
+            }),
+        }
+    }
+}
+
+impl Held {
+    fn binding<'a>(&'a self, slot: Slot, uniforms: &'a Uniforms) -> wgpu::BindingResource<'a> {
         match (self, slot) {
             (Self::Buffer(buffer), _) => buffer.as_entire_binding(),
             (Self::View(view), _) => wgpu::BindingResource::TextureView(view),
@@ -137,20 +165,20 @@ impl<'a> Resource<'a> {
     }
 }
 
-impl<'a> From<&'a wgpu::Buffer> for Resource<'a> {
-    fn from(buffer: &'a wgpu::Buffer) -> Self {
+impl<'a> From<&'a Buffer> for Resource<'a> {
+    fn from(buffer: &'a Buffer) -> Self {
         Self::Buffer(buffer)
     }
 }
 
-impl<'a> From<&'a wgpu::TextureView> for Resource<'a> {
-    fn from(view: &'a wgpu::TextureView) -> Self {
+impl<'a> From<&'a TextureView> for Resource<'a> {
+    fn from(view: &'a TextureView) -> Self {
         Self::View(view)
     }
 }
 
-impl<'a> From<&'a wgpu::Sampler> for Resource<'a> {
-    fn from(sampler: &'a wgpu::Sampler) -> Self {
+impl<'a> From<&'a Sampler> for Resource<'a> {
+    fn from(sampler: &'a Sampler) -> Self {
         Self::Sampler(sampler)
     }
 }
@@ -164,14 +192,15 @@ enum Held {
     PerUse,
 }
 
-impl From<&Resource<'_>> for Held {
-    fn from(resource: &Resource<'_>) -> Self {
-        match *resource {
-            Resource::Buffer(buffer) => Self::Buffer(buffer.clone()),
-            Resource::View(view) => Self::View(view.clone()),
-            Resource::Sampler(sampler) => Self::Sampler(sampler.clone()),
+impl Held {
+    /// None of a resource that was only counted.
+    fn of(resource: &Resource<'_>) -> Option<Self> {
+        Some(match *resource {
+            Resource::Buffer(buffer) => Self::Buffer(buffer.raw.clone()?),
+            Resource::View(view) => Self::View(view.raw.clone()?),
+            Resource::Sampler(sampler) => Self::Sampler(sampler.0.clone()?),
             Resource::PerUse => Self::PerUse,
-        }
+        })
     }
 }
 
@@ -212,30 +241,34 @@ impl BindingCache {
         layout.clone()
     }
 
-    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
+    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one; none where one of them
+    /// is on no device.
     pub(crate) fn group(
         &self,
         (device, uniforms): (&Device, &Uniforms),
         layout: &Layout,
         resources: &[Resource<'_>],
-    ) -> wgpu::BindGroup {
-        let held: Vec<Held> = resources.iter().map(Held::from).collect();
+    ) -> Option<wgpu::BindGroup> {
+        let held: Vec<Held> = resources.iter().map(Held::of).collect::<Option<_>>()?;
+        let key = (layout.slots, held);
         let mut groups = locked(&self.groups);
-        let group = groups.entry((layout.slots, held)).or_insert_with(|| {
-            let entries: Vec<_> = (0..)
-                .zip(layout.slots.iter().zip(resources))
-                .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {
-                    binding,
-                    resource: resource.binding(*slot, uniforms),
-                })
-                .collect();
-            device.bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &layout.raw,
-                entries: &entries,
+        if let Some(group) = groups.get(&key) {
+            return Some(group.clone());
+        }
+        let entries: Vec<_> = (0..)
+            .zip(layout.slots.iter().zip(&key.1))
+            .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {
+                binding,
+                resource: resource.binding(*slot, uniforms),
             })
+            .collect();
+        let group = device.bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout.raw,
+            entries: &entries,
         });
-        group.clone()
+        groups.insert(key, group.clone());
+        Some(group)
     }
 
     /// Drops everything, to be made anew.

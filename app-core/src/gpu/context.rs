@@ -9,7 +9,8 @@ use thiserror::Error;
 
 use super::bindings::{BindingCache, Layout, Resource, Slot};
 use super::device::{Device, Kind};
-use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, PipelineCache};
+use super::meter::{Memory, Meter};
+use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, PipelineCache};
 use super::samplers::Samplers;
 use super::uniforms::Uniforms;
 
@@ -63,14 +64,21 @@ pub enum GpuError {
     },
 }
 
-/// Device and queue, and everything that is created once per device.
+/// A device and everything that is created once on it, or none: then nothing is drawn, and what would be is counted.
+#[derive(Default)]
 pub struct Gpu {
+    pub(crate) opened: Option<Opened>,
+    pub(crate) samplers: Samplers,
+    pub(super) meter: Meter,
+}
+
+/// Device and queue, and everything that is created once per device.
+pub(crate) struct Opened {
     pub(crate) device: Device,
     pub(crate) queue: wgpu::Queue,
     /// None for an adopted device.
     pub(crate) adapter: Option<wgpu::Adapter>,
-    pub(crate) uniforms: Uniforms,
-    pub(crate) samplers: Samplers,
+    pub(super) uniforms: Uniforms,
     pipelines: PipelineCache,
     bindings: BindingCache,
     info: wgpu::AdapterInfo,
@@ -139,69 +147,110 @@ impl Gpu {
         let device = Device::new(device);
         let (uniforms, samplers) = guarded(&device.raw, || (Uniforms::new(&device), Samplers::new(&device)))?;
         Ok(Self {
-            pipelines: PipelineCache::default(),
-            bindings: BindingCache::default(),
-            info,
-            uniforms,
+            opened: Some(Opened {
+                pipelines: PipelineCache::default(),
+                bindings: BindingCache::default(),
+                info,
+                uniforms,
+                adapter,
+                device,
+                queue,
+            }),
             samplers,
-            adapter,
-            device,
-            queue,
+            meter: Meter::default(),
         })
     }
 
     /// Runs `work` on the device, and fails where the device refused any of it.
     pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        let done = guarded(&self.device.raw, work);
+        let Some(opened) = &self.opened else {
+            return Ok(work());
+        };
+        let done = guarded(&opened.device.raw, work);
         if done.is_err() {
             // What was refused must not be taken from a cache as if it were sound.
-            self.pipelines.clear();
-            self.bindings.clear();
+            opened.pipelines.clear();
+            opened.bindings.clear();
         }
         done
     }
 
+    /// The limits that all work keeps to.
+    pub(crate) fn limits(&self) -> wgpu::Limits {
+        let opened = self.opened.as_ref();
+        opened.map_or_else(phone_limits, |opened| opened.device.raw.limits())
+    }
+
+    /// Bytes of textures and buffers that were made so far.
+    pub(crate) fn memory(&self) -> Memory {
+        self.meter.memory()
+    }
+
     /// Number of objects created on the device so far, by kind.
     pub(crate) fn n_created(&self) -> [u64; Kind::ALL.len()] {
-        self.device.n_created()
+        self.opened
+            .as_ref()
+            .map_or([0; Kind::ALL.len()], |opened| opened.device.n_created())
     }
 
     /// The render pipeline of `spec`, compiled at the first call.
     pub(crate) fn draw(&self, spec: &DrawSpec) -> Draw {
-        self.pipelines.draw((&self.device, &self.bindings), spec)
+        match &self.opened {
+            Some(opened) => opened.pipelines.draw((&opened.device, &opened.bindings), spec),
+            None => Pipeline {
+                name: spec.shader.name,
+                slots: spec.groups,
+                compiled: None,
+            },
+        }
     }
 
     /// The compute pipeline of `spec`, compiled at the first call.
     pub(crate) fn compute(&self, spec: &ComputeSpec) -> Compute {
-        self.pipelines.compute((&self.device, &self.bindings), spec)
-    }
-
-    /// The layout of a group of `slots`.
-    pub(crate) fn layout(&self, slots: &'static [Slot]) -> Layout {
-        self.bindings.layout(&self.device, slots)
-    }
-
-    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
-    pub(crate) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> wgpu::BindGroup {
-        let on = (&self.device, &self.uniforms);
-        self.bindings.group(on, layout, resources)
+        match &self.opened {
+            Some(opened) => opened.pipelines.compute((&opened.device, &opened.bindings), spec),
+            None => Pipeline {
+                name: spec.shader.name,
+                slots: spec.groups,
+                compiled: None,
+            },
+        }
     }
 
     /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
     pub(crate) fn release_groups(&self) {
-        self.bindings.release_groups();
+        if let Some(opened) = &self.opened {
+            opened.bindings.release_groups();
+        }
     }
 
     /// Name of the adapter and of its driver, for reports.
     #[must_use]
     pub fn adapter_name(&self) -> String {
-        format!("{} ({})", self.info.name, self.info.driver_info)
+        self.opened.as_ref().map_or_else(
+            || "no device".to_owned(),
+            |opened| format!("{} ({})", opened.info.name, opened.info.driver_info),
+        )
     }
 
     /// Whether the adapter is a software renderer on the CPU.
     #[must_use]
     pub fn is_software(&self) -> bool {
-        self.info.device_type == wgpu::DeviceType::Cpu
+        let opened = self.opened.as_ref();
+        opened.is_some_and(|opened| opened.info.device_type == wgpu::DeviceType::Cpu)
+    }
+}
+
+impl Opened {
+    /// The layout of a group of `slots`.
+    pub(super) fn layout(&self, slots: &'static [Slot]) -> Layout {
+        self.bindings.layout(&self.device, slots)
+    }
+
+    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
+    pub(super) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> Option<wgpu::BindGroup> {
+        let on = (&self.device, &self.uniforms);
+        self.bindings.group(on, layout, resources)
     }
 }
 

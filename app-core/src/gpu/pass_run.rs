@@ -1,5 +1,7 @@
 //! Records of the passes that ran.
 
+use super::work::Work;
+
 /// Which of the two paths a pass belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Path {
@@ -29,6 +31,8 @@ pub struct PassRun {
     pub pass: &'static str,
     /// How often it ran.
     pub n_runs: u32,
+    /// What that costs.
+    pub work: Work,
 }
 
 /// Device time of one pass.

@@ -65,12 +65,20 @@ pub(crate) struct ComputeSpec {
     pub(crate) groups: Groups,
 }
 
-/// A pipeline, and the layouts of its groups.
+/// A pipeline.
 #[derive(Clone, Debug)]
 pub(crate) struct Pipeline<T> {
     pub(crate) name: &'static str,
-    pub(crate) raw: T,
-    pub(crate) layouts: [Option<Layout>; N_GROUPS],
+    pub(crate) slots: Groups,
+    /// None where nothing is drawn, only counted.
+    pub(super) compiled: Option<Compiled<T>>,
+}
+
+/// A pipeline on its device, and the layouts of its groups.
+#[derive(Clone, Debug)]
+pub(super) struct Compiled<T> {
+    pub(super) raw: T,
+    pub(super) layouts: [Option<Layout>; N_GROUPS],
 }
 
 /// A render pipeline.
@@ -147,8 +155,8 @@ impl PipelineCache {
         });
         Pipeline {
             name: spec.shader.name,
-            raw,
-            layouts,
+            slots: spec.groups,
+            compiled: Some(Compiled { raw, layouts }),
         }
     }
 
@@ -164,8 +172,8 @@ impl PipelineCache {
         });
         Pipeline {
             name: spec.shader.name,
-            raw,
-            layouts,
+            slots: spec.groups,
+            compiled: Some(Compiled { raw, layouts }),
         }
     }
 

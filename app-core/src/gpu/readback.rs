@@ -1,13 +1,44 @@
 //! Read-back of buffers and textures: blocking, for replay and tests.
 
-use super::context::{Gpu, GpuError};
+use super::buffer::Buffer;
+use super::context::{Gpu, GpuError, Opened};
 
 /// Fills the read-back before the copy, so that a copy that never ran cannot look like black.
 const POISON: u8 = 0xa5;
 
 impl Gpu {
     /// Waits for the device and returns the bytes of a buffer that can be copied from.
-    pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    pub(crate) fn read_buffer(&self, buffer: &Buffer) -> Result<Vec<u8>, GpuError> {
+        let (opened, raw) = self
+            .opened
+            .as_ref()
+            .zip(buffer.raw.as_ref())
+            .ok_or_else(GpuError::no_device)?;
+        opened.read_buffer(raw)
+    }
+
+    /// Waits for the device and returns the texels of a texture, row by row without padding, layer after layer.
+    pub(crate) fn read_texture(&self, texture: Option<&wgpu::Texture>) -> Result<Vec<u8>, GpuError> {
+        let (opened, raw) = self
+            .opened
+            .as_ref()
+            .zip(texture)
+            .ok_or_else(GpuError::no_device)?;
+        opened.read_texture(raw)
+    }
+}
+
+impl GpuError {
+    /// What is only counted cannot be read.
+    pub(crate) fn no_device() -> Self {
+        Self::ReadBack {
+            reason: "there is no device: what would be drawn is only counted".to_owned(),
+        }
+    }
+}
+
+impl Opened {
+    pub(super) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
         let staging = self.staging(buffer.size());
         let mut encoder = self.device.encoder();
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
@@ -15,8 +46,7 @@ impl Gpu {
         self.map(&staging)
     }
 
-    /// Waits for the device and returns the texels of a texture, row by row without padding, layer after layer.
-    pub(crate) fn read_texture(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
+    fn read_texture(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
         let texel_bytes = texture.format().block_copy_size(None).unwrap_or(4);
         let row_bytes = texture.width() * texel_bytes;
         let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

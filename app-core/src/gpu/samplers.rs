@@ -2,24 +2,28 @@
 
 use super::device::Device;
 
-#[derive(Debug)]
+/// A sampler; none where nothing is drawn, only counted.
+#[derive(Debug, Default)]
+pub(crate) struct Sampler(pub(super) Option<wgpu::Sampler>);
+
+#[derive(Debug, Default)]
 pub(crate) struct Samplers {
     /// Bilinear between texels, clamped to the edge.
-    pub(crate) linear: wgpu::Sampler,
+    pub(crate) linear: Sampler,
     /// Filtered comparison, 1 where the compared depth is as near as the map's, or nearer; depth is reversed.
-    pub(crate) nearer: wgpu::Sampler,
+    pub(crate) nearer: Sampler,
 }
 
 impl Samplers {
     pub(crate) fn new(device: &Device) -> Self {
         let sampler = |label, compare| {
-            device.sampler(&wgpu::SamplerDescriptor {
+            Sampler(Some(device.sampler(&wgpu::SamplerDescriptor {
                 label: Some(label),
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 compare,
                 ..Default::default()
-            })
+            })))
         };
         Self {
             linear: sampler("linear", None),

@@ -4,23 +4,26 @@ use glam::UVec2;
 use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
 
 use super::context::Gpu;
+use super::meter::{Held, Meter};
+use super::samplers::Sampler;
+use super::shape::Shape;
+use super::work::Id;
 
-/// A texture with its whole view.
+/// A texture with its whole view; where nothing is drawn, only counted, no more than its shape.
 #[derive(Debug)]
 pub(crate) struct Texture {
-    pub(crate) raw: wgpu::Texture,
-    pub(crate) view: wgpu::TextureView,
+    raw: Option<wgpu::Texture>,
+    pub(crate) view: TextureView,
+    _held: Held,
 }
 
-/// What a texture is to be.
-#[derive(Clone, Copy, Debug)]
-struct Shape {
-    size_px: UVec2,
-    n_layers: u32,
-    n_levels: u32,
-    format: TextureFormat,
-    n_samples: u32,
-    usage: TextureUsages,
+/// A view of a texture, or of some of its layers.
+#[derive(Debug)]
+pub(crate) struct TextureView {
+    pub(super) raw: Option<wgpu::TextureView>,
+    /// The texture's, of which those with several layers have one each.
+    pub(super) id: Id,
+    pub(super) shape: Shape,
 }
 
 impl Texture {
@@ -78,37 +81,58 @@ impl Texture {
             n_layers,
             ..Shape::of(size_px, TextureFormat::Rgba8UnormSrgb, usage)
         };
-        let raw = shape.make(gpu, label);
-        Self {
-            view: view_of(gpu, &raw, (TextureViewDimension::D2Array, 0, n_layers)),
-            raw,
-        }
+        Self::of(gpu, label, (TextureViewDimension::D2Array, shape))
     }
 
     fn new(gpu: &Gpu, label: &str, shape: Shape) -> Self {
-        let raw = shape.make(gpu, label);
+        Self::of(gpu, label, (TextureViewDimension::D2, shape))
+    }
+
+    fn of(gpu: &Gpu, label: &str, (dimension, shape): (TextureViewDimension, Shape)) -> Self {
+        let raw = make(gpu, label, &shape);
         Self {
-            view: view_of(gpu, &raw, (TextureViewDimension::D2, 0, 1)),
+            view: view_of(gpu, raw.as_ref(), (dimension, 0, shape.n_layers), &shape),
             raw,
+            _held: gpu.meter.hold(shape.held_bytes()),
         }
     }
 
+    /// The texture on its device; none where nothing is drawn, only counted.
+    pub(crate) fn raw(&self) -> Option<&wgpu::Texture> {
+        self.raw.as_ref()
+    }
+
+    pub(crate) fn format(&self) -> TextureFormat {
+        self.view.shape.format
+    }
+
+    pub(crate) fn size_px(&self) -> UVec2 {
+        self.view.shape.size_px
+    }
+
     /// A view of the codes of an sRGB texture, not decoded.
-    pub(crate) fn codes(&self, gpu: &Gpu) -> wgpu::TextureView {
+    pub(crate) fn codes(&self, gpu: &Gpu) -> TextureView {
         self.view_as(gpu, TextureFormat::Rgba8Unorm)
     }
 
     /// A view of a texture of sRGB codes that decodes them.
-    pub(crate) fn decoded(&self, gpu: &Gpu) -> wgpu::TextureView {
+    pub(crate) fn decoded(&self, gpu: &Gpu) -> TextureView {
         self.view_as(gpu, TextureFormat::Rgba8UnormSrgb)
     }
 
-    fn view_as(&self, gpu: &Gpu, format: TextureFormat) -> wgpu::TextureView {
+    fn view_as(&self, gpu: &Gpu, format: TextureFormat) -> TextureView {
         let descriptor = wgpu::TextureViewDescriptor {
             format: Some(format),
             ..Default::default()
         };
-        gpu.device.view(&self.raw, &descriptor)
+        TextureView {
+            raw: gpu.view(self.raw.as_ref(), &descriptor),
+            id: self.view.id,
+            shape: Shape {
+                format,
+                ..self.view.shape
+            },
+        }
     }
 
     /// Fills the whole texture with rows of texels, nothing between them.
@@ -122,12 +146,16 @@ impl Texture {
     }
 
     fn write_part(&self, gpu: &Gpu, (level, layer): (u32, u32), texels: &[u8]) {
-        let mut destination = self.raw.as_image_copy();
+        gpu.meter.upload(texels.len());
+        let (Some(opened), Some(raw)) = (&gpu.opened, &self.raw) else {
+            return;
+        };
+        let mut destination = raw.as_image_copy();
         destination.mip_level = level;
         destination.origin.z = layer;
-        let size = self.raw.size().mip_level_size(level, self.raw.dimension());
-        let texel_bytes = self.raw.format().block_copy_size(None);
-        gpu.queue.write_texture(
+        let size = raw.size().mip_level_size(level, raw.dimension());
+        let texel_bytes = raw.format().block_copy_size(None);
+        opened.queue.write_texture(
             destination,
             texels,
             wgpu::TexelCopyBufferLayout {
@@ -146,11 +174,12 @@ impl Texture {
 /// Targets of one shape, drawn to one by one and read together.
 #[derive(Debug)]
 pub(crate) struct TextureLayers {
-    pub(crate) raw: wgpu::Texture,
+    raw: Option<wgpu::Texture>,
     /// All of them, as an array.
-    pub(crate) view: wgpu::TextureView,
+    pub(crate) view: TextureView,
     /// Each by itself.
-    pub(crate) layers: Vec<wgpu::TextureView>,
+    pub(crate) layers: Vec<TextureView>,
+    _held: Held,
 }
 
 impl TextureLayers {
@@ -167,68 +196,94 @@ impl TextureLayers {
             n_layers,
             ..Shape::of(size_px, format, usage)
         };
-        let raw = shape.make(gpu, label);
+        let raw = make(gpu, label, &shape);
+        let view = |layers| view_of(gpu, raw.as_ref(), layers, &shape);
         Self {
-            view: view_of(gpu, &raw, (TextureViewDimension::D2Array, 0, n_layers)),
+            view: view((TextureViewDimension::D2Array, 0, n_layers)),
             layers: (0..n_layers)
-                .map(|layer| view_of(gpu, &raw, (TextureViewDimension::D2, layer, 1)))
+                .map(|layer| view((TextureViewDimension::D2, layer, 1)))
                 .collect(),
+            _held: gpu.meter.hold(shape.held_bytes()),
             raw,
+        }
+    }
+
+    /// The texture on its device; none where nothing is drawn, only counted.
+    pub(crate) fn raw(&self) -> Option<&wgpu::Texture> {
+        self.raw.as_ref()
+    }
+}
+
+/// Makes a texture; none where there is no device.
+fn make(gpu: &Gpu, label: &str, shape: &Shape) -> Option<wgpu::Texture> {
+    // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
+    let view_formats: &[_] = match (shape.format, shape.n_samples) {
+        (TextureFormat::Rgba8UnormSrgb, 1) => &[TextureFormat::Rgba8Unorm],
+        (TextureFormat::Rgba8Unorm, 1) => &[TextureFormat::Rgba8UnormSrgb],
+        _ => &[],
+    };
+    let opened = gpu.opened.as_ref()?;
+    Some(opened.device.texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: shape.size_px.x,
+            height: shape.size_px.y,
+            depth_or_array_layers: shape.n_layers,
+        },
+        mip_level_count: shape.n_levels,
+        sample_count: shape.n_samples,
+        dimension: wgpu::TextureDimension::D2,
+        format: shape.format,
+        usage: shape.usage,
+        view_formats,
+    }))
+}
+
+impl TextureView {
+    pub(crate) fn size_px(&self) -> UVec2 {
+        self.shape.size_px
+    }
+
+    /// The whole of a texture that is not the core's own.
+    pub(crate) fn of_other(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
+        let size_px = UVec2::new(texture.width(), texture.height());
+        Self {
+            raw: gpu.view(Some(texture), &wgpu::TextureViewDescriptor::default()),
+            id: Meter::id(),
+            shape: Shape::of(size_px, texture.format(), texture.usage()),
         }
     }
 }
 
-impl Shape {
-    fn of(size_px: UVec2, format: TextureFormat, usage: TextureUsages) -> Self {
-        Self {
-            size_px,
-            n_layers: 1,
-            n_levels: 1,
-            format,
-            n_samples: 1,
-            usage,
-        }
-    }
-
-    fn make(self, gpu: &Gpu, label: &str) -> wgpu::Texture {
-        // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
-        let view_formats: &[_] = match (self.format, self.n_samples) {
-            (TextureFormat::Rgba8UnormSrgb, 1) => &[TextureFormat::Rgba8Unorm],
-            (TextureFormat::Rgba8Unorm, 1) => &[TextureFormat::Rgba8UnormSrgb],
-            _ => &[],
-        };
-        gpu.device.texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d {
-                width: self.size_px.x,
-                height: self.size_px.y,
-                depth_or_array_layers: self.n_layers,
-            },
-            mip_level_count: self.n_levels,
-            sample_count: self.n_samples,
-            dimension: wgpu::TextureDimension::D2,
-            format: self.format,
-            usage: self.usage,
-            view_formats,
-        })
+impl Gpu {
+    fn view(
+        &self,
+        texture: Option<&wgpu::Texture>,
+        descriptor: &wgpu::TextureViewDescriptor<'_>,
+    ) -> Option<wgpu::TextureView> {
+        let opened = self.opened.as_ref()?;
+        Some(opened.device.view(texture?, descriptor))
     }
 }
 
 /// The view of `n_layers` layers from `first` on.
 fn view_of(
     gpu: &Gpu,
-    texture: &wgpu::Texture,
+    texture: Option<&wgpu::Texture>,
     (dimension, first, n_layers): (TextureViewDimension, u32, u32),
-) -> wgpu::TextureView {
-    gpu.device.view(
-        texture,
-        &wgpu::TextureViewDescriptor {
-            dimension: Some(dimension),
-            base_array_layer: first,
-            array_layer_count: Some(n_layers),
-            ..Default::default()
-        },
-    )
+    shape: &Shape,
+) -> TextureView {
+    let descriptor = wgpu::TextureViewDescriptor {
+        dimension: Some(dimension),
+        base_array_layer: first,
+        array_layer_count: Some(n_layers),
+        ..Default::default()
+    };
+    TextureView {
+        raw: gpu.view(texture, &descriptor),
+        id: Meter::id(),
+        shape: Shape { n_layers, ..*shape },
+    }
 }
 
 /// The narrowest format of half floats that has so many channels, of up to four.
@@ -242,14 +297,16 @@ pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
 }
 
 /// A sampler that filters a picture and its mips; `modes` are what it shows beyond its border.
-pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode; 2]) -> wgpu::Sampler {
-    gpu.device.sampler(&wgpu::SamplerDescriptor {
-        label: Some(label),
-        address_mode_u: modes[0],
-        address_mode_v: modes[1],
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    })
+pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode; 2]) -> Sampler {
+    Sampler(gpu.opened.as_ref().map(|opened| {
+        opened.device.sampler(&wgpu::SamplerDescriptor {
+            label: Some(label),
+            address_mode_u: modes[0],
+            address_mode_v: modes[1],
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        })
+    }))
 }

@@ -1,6 +1,6 @@
 //! Time stamps: device time of each pass of the latest submission, on request.
 
-use super::context::{Gpu, GpuError};
+use super::context::{Gpu, GpuError, Opened};
 use super::pass_run::{PassTime, Path};
 
 /// Maximum number of timed passes of one submission.
@@ -18,21 +18,17 @@ pub(crate) struct Timer {
 impl Timer {
     /// None where the device has no time stamps.
     pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
-        if !gpu
-            .device
-            .raw
-            .features()
-            .contains(wgpu::Features::TIMESTAMP_QUERY)
-        {
+        let Opened { device, .. } = gpu.opened.as_ref()?;
+        if !device.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
         }
         Some(Self {
-            queries: gpu.device.query_set(&wgpu::QuerySetDescriptor {
+            queries: device.query_set(&wgpu::QuerySetDescriptor {
                 label: Some("pass times"),
                 ty: wgpu::QueryType::Timestamp,
                 count: 2 * MAX_TIMED,
             }),
-            stamps: gpu.device.buffer(&wgpu::BufferDescriptor {
+            stamps: device.buffer(&wgpu::BufferDescriptor {
                 label: Some("pass times"),
                 size: 2 * u64::from(MAX_TIMED) * STAMP_BYTES,
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
@@ -67,9 +63,12 @@ impl Timer {
     /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first
     /// run.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
-        let bytes = gpu.read_buffer(&self.stamps)?;
+        let Some(opened) = &gpu.opened else {
+            return Ok(Vec::new());
+        };
+        let bytes = opened.read_buffer(&self.stamps)?;
         let stamps: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
-        let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
+        let ms_per_tick = f64::from(opened.queue.get_timestamp_period()) * 1e-6;
         let mut times: Vec<PassTime> = Vec::new();
         for (&(path, pass), stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
             #[allow(

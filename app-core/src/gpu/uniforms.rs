@@ -55,6 +55,10 @@ impl Written {
         u32::try_from(offset).unwrap_or(u32::MAX)
     }
 
+    pub(crate) fn n_bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
     /// Writes them to the device's buffer.
     pub(crate) fn write(&self, queue: &wgpu::Queue, uniforms: &Uniforms) {
         if !self.bytes.is_empty() {

@@ -3,7 +3,7 @@
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
 use super::{Painting, Textures};
-use crate::gpu::context::Gpu;
+use crate::gpu::context::Opened;
 
 /// egui's own renderer, for targets of one format that take sRGB codes as they are.
 pub(crate) struct Painter {
@@ -11,7 +11,7 @@ pub(crate) struct Painter {
 }
 
 impl Painter {
-    pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+    pub(crate) fn new(gpu: &Opened, format: wgpu::TextureFormat) -> Self {
         Self {
             renderer: Renderer::new(&gpu.device.raw, format, RendererOptions::PREDICTABLE),
         }
@@ -20,7 +20,7 @@ impl Painter {
     /// Paints over what is there, or what it is cleared to.
     pub(crate) fn paint(
         &mut self,
-        gpu: &Gpu,
+        gpu: &Opened,
         target: &wgpu::Texture,
         (painting, textures): (&Painting, &Textures),
         below: wgpu::LoadOp<wgpu::Color>,

@@ -16,7 +16,7 @@ use crate::geometry::bounds::Sphere;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::{FramePath, FrameTargets};
 use crate::model::lighting::Lighting;
@@ -134,7 +134,7 @@ impl Model {
     }
 
     /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+    pub(crate) fn picture(&self) -> &TextureView {
         &self.drawn.by_pass.composite.codes
     }
 

@@ -14,16 +14,16 @@ impl Model {
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let (captured, drawn) = (&self.captured, &self.drawn);
         let map = match map {
-            Map::Validity => read_texture(gpu, &captured.by_pass.validity.marks.raw),
-            Map::GbufferBase => read_texture(gpu, &captured.by_pass.gbuffer.base.raw),
-            Map::GbufferReceived => read_texture(gpu, &captured.by_pass.gbuffer.received.raw),
-            Map::Appearance => read_texture(gpu, &captured.by_pass.appearance.color.raw),
-            Map::PhysicalVisibility => read_texture(gpu, &captured.light.visibility.lights.raw),
-            Map::PhysicalAmbient => read_texture(gpu, &captured.light.visibility.ambient.raw),
-            Map::Visibility => read_texture(gpu, &drawn.light.visibility.lights.raw),
-            Map::Ambient => read_texture(gpu, &drawn.light.visibility.ambient.raw),
+            Map::Validity => read_texture(gpu, captured.by_pass.validity.marks.raw()),
+            Map::GbufferBase => read_texture(gpu, captured.by_pass.gbuffer.base.raw()),
+            Map::GbufferReceived => read_texture(gpu, captured.by_pass.gbuffer.received.raw()),
+            Map::Appearance => read_texture(gpu, captured.by_pass.appearance.color.raw()),
+            Map::PhysicalVisibility => read_texture(gpu, captured.light.visibility.lights.raw()),
+            Map::PhysicalAmbient => read_texture(gpu, captured.light.visibility.ambient.raw()),
+            Map::Visibility => read_texture(gpu, drawn.light.visibility.lights.raw()),
+            Map::Ambient => read_texture(gpu, drawn.light.visibility.ambient.raw()),
             Map::Coverage => self.read_coverage(gpu),
-            Map::Plate => read_texture(gpu, &captured.plate.raw),
+            Map::Plate => read_texture(gpu, captured.plate.raw()),
             Map::Residual => self.read_residual(gpu, 0),
             Map::DirectFraction => self.read_direct_fraction(gpu),
             Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
@@ -35,7 +35,7 @@ impl Model {
 
     /// Covered fractions of pixels, from the counts of `coverage`.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let mut map = read_texture(gpu, &self.drawn.by_pass.coverage.covered.count.raw)?;
+        let mut map = read_texture(gpu, self.drawn.by_pass.coverage.covered.count.raw())?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
         map.texels.iter_mut().for_each(|texel| texel[0] /= all);

@@ -1,6 +1,7 @@
 //! The work region of the latest view: its plan and its globals.
 
 use crate::geometry::rect::PixelRect;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::model::plan::Plan;
 use crate::passes::globals::Globals;
@@ -9,7 +10,7 @@ pub(crate) struct Region {
     pub(crate) plan: Plan,
     /// Contents of `globals`.
     pub(crate) uniform: Globals,
-    pub(crate) globals: wgpu::Buffer,
+    pub(crate) globals: Buffer,
 }
 
 impl Region {

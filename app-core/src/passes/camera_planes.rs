@@ -10,7 +10,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::parts::FULLSCREEN;
 
 pub(crate) const SHADER: Shader =
@@ -64,7 +64,7 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         (image, planes): (&PlanarImage, &Planes),
-        frame_codes: &wgpu::TextureView,
+        frame_codes: &TextureView,
     ) {
         let map = image.encoding().srgb_from_ycbcr();
         let column = |index| map.matrix.col(index).extend(0.0).to_array();

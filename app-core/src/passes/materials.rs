@@ -10,9 +10,11 @@ use glam::UVec2;
 use wgpu::BufferUsages;
 
 use crate::gpu::bindings::{GROUP_DRAW, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::recorder::{Group, Recorder};
+use crate::gpu::samplers::Sampler;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::texture::{Texture, picture_sampler};
 use crate::passes::mips::mips;
@@ -28,7 +30,7 @@ const WHITE: [u8; 4] = [255; 4];
 
 /// The materials of a toy.
 pub(crate) struct Materials {
-    base_colors_linear: wgpu::Buffer,
+    base_colors_linear: Buffer,
     /// For each material the index of its look.
     look_of_material: Vec<usize>,
     looks: Vec<Look>,
@@ -42,7 +44,7 @@ struct Look {
     texture: usize,
     /// Addressing of u and v.
     wraps: [Wrap; 2],
-    sampler: wgpu::Sampler,
+    sampler: Sampler,
 }
 
 impl Materials {

@@ -1,11 +1,14 @@
 //! Pictures that a method reads: the camera frame and the scene's plates.
 
+use crate::gpu::buffer::Buffer;
+use crate::gpu::texture::TextureView;
+
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
-    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
     /// Exposure of `frame` over that of the frame that last updated the state.
     pub(crate) exposure_ratio: f32,
-    pub(crate) plates: &'a wgpu::TextureView,
+    pub(crate) plates: &'a TextureView,
     /// Cameras and exposures of the plates.
-    pub(crate) plate_views: &'a wgpu::Buffer,
+    pub(crate) plate_views: &'a Buffer,
 }

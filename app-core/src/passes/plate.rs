@@ -3,11 +3,13 @@
 use wgpu::TextureFormat;
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
+use crate::gpu::texture::TextureView;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::FULLSCREEN;
 use crate::scene::MAX_RECEIVERS;
@@ -48,10 +50,10 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
-    pub(crate) views: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
+    pub(crate) views: &'a Buffer,
     /// An array of pictures, in the order of `views`.
-    pub(crate) plates: &'a wgpu::TextureView,
+    pub(crate) plates: &'a TextureView,
 }
 
 impl Pass {
@@ -67,12 +69,7 @@ impl Pass {
         }
     }
 
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        inputs: &Inputs<'_>,
-        target: &wgpu::TextureView,
-    ) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
         let groups = [
             recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
             recorder.bind(

@@ -8,6 +8,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::TextureView;
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -34,8 +35,8 @@ pub(crate) struct Pass {
 
 /// Views of sRGB textures as plain codes.
 pub(crate) struct Inputs<'a> {
-    pub(crate) frame_codes: &'a wgpu::TextureView,
-    pub(crate) region_codes: &'a wgpu::TextureView,
+    pub(crate) frame_codes: &'a TextureView,
+    pub(crate) region_codes: &'a TextureView,
     pub(crate) placement: Placement,
 }
 
@@ -52,12 +53,7 @@ impl Pass {
         }
     }
 
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        inputs: &Inputs<'_>,
-        target: &wgpu::TextureView,
-    ) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
         let resources = [
             Resource::PerUse,
             inputs.frame_codes.into(),

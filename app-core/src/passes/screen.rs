@@ -9,6 +9,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::TextureView;
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -55,8 +56,8 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (picture, map): (&wgpu::TextureView, &ScreenMap),
-        screen: &wgpu::TextureView,
+        (picture, map): (&TextureView, &ScreenMap),
+        screen: &TextureView,
     ) {
         let resources = [
             Resource::PerUse,

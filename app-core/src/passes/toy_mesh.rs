@@ -5,6 +5,7 @@ use std::ops::Range;
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
@@ -21,8 +22,8 @@ pub(crate) const LOOK_STREAMS: [Stream; 4] = [
 
 /// Positions and normals of a pose, in anchor space.
 pub(crate) struct PoseBuffers {
-    pub(crate) positions: wgpu::Buffer,
-    pub(crate) normals: wgpu::Buffer,
+    pub(crate) positions: Buffer,
+    pub(crate) normals: Buffer,
     /// Holds all positions.
     pub(crate) around: Sphere,
 }
@@ -63,11 +64,11 @@ struct Run {
 
 /// The toy's buffers.
 pub(crate) struct ToyMesh {
-    indices: wgpu::Buffer,
-    shadow_indices: wgpu::Buffer,
+    indices: Buffer,
+    shadow_indices: Buffer,
     pub(crate) shadow_ranges: ShadowRanges,
-    uvs: wgpu::Buffer,
-    colors: wgpu::Buffer,
+    uvs: Buffer,
+    colors: Buffer,
     runs: Vec<Run>,
     materials: Materials,
     /// The pose the real toy was made in.
@@ -114,33 +115,26 @@ impl ToyMesh {
     }
 
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
-    pub(crate) fn draw_positions(
-        &self,
-        render: &mut wgpu::RenderPass<'_>,
-        positions: &wgpu::Buffer,
-        instances: Range<u32>,
-    ) {
+    pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
         self.bind_positions(render, positions);
-        render.draw_indexed(self.shadow_ranges.all.clone(), 0, instances);
+        render.draw_indexed(self.shadow_ranges.all.clone(), instances);
     }
 
     /// Binds what [`ToyMesh::shadow_ranges`] are ranges of; positions are in slot 0.
-    pub(crate) fn bind_positions(&self, render: &mut wgpu::RenderPass<'_>, positions: &wgpu::Buffer) {
-        render.set_vertex_buffer(0, positions.slice(..));
-        render.set_index_buffer(self.shadow_indices.slice(..), wgpu::IndexFormat::Uint32);
+    pub(crate) fn bind_positions(&self, render: &mut Render<'_>, positions: &Buffer) {
+        render.set_vertices(0, positions);
+        render.set_indices(&self.shadow_indices);
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
     pub(crate) fn draw_parts(&self, render: &mut Render<'_>, streams: &[&PoseBuffers], looks: &[Group]) {
-        render.0.set_vertex_buffer(0, self.uvs.slice(..));
-        render.0.set_vertex_buffer(1, self.colors.slice(..));
+        render.set_vertices(0, &self.uvs);
+        render.set_vertices(1, &self.colors);
         for (slot, pose) in (2..).step_by(2).zip(streams) {
-            render.0.set_vertex_buffer(slot, pose.positions.slice(..));
-            render.0.set_vertex_buffer(slot + 1, pose.normals.slice(..));
+            render.set_vertices(slot, &pose.positions);
+            render.set_vertices(slot + 1, &pose.normals);
         }
-        render
-            .0
-            .set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        render.set_indices(&self.indices);
         let mut current = None;
         for run in &self.runs {
             if current != Some(run.look)
@@ -149,9 +143,7 @@ impl ToyMesh {
                 render.set(look);
                 current = Some(run.look);
             }
-            render
-                .0
-                .draw_indexed(run.indices.clone(), 0, run.material..run.material + 1);
+            render.draw_indexed(run.indices.clone(), run.material..run.material + 1);
         }
     }
 }

@@ -43,6 +43,17 @@ pub enum Change {
 }
 
 impl Change {
+    /// The name in reports and profiles.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pose => "pose",
+            Self::Picture => "picture",
+            Self::View => "view",
+            Self::Scene => "scene",
+        }
+    }
+
     /// Every change, the least first.
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }

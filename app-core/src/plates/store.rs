@@ -4,6 +4,7 @@ use bytemuck::Zeroable;
 use glam::{DVec3, UVec2};
 
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::texture::Texture;
 use crate::passes::plate::{MAX_PLATES, PlateViews};
@@ -14,7 +15,7 @@ use crate::scene::Scene;
 pub(crate) struct PlateStore {
     pub(crate) pictures: Texture,
     /// Their cameras and exposures, for the latest view.
-    pub(crate) views: wgpu::Buffer,
+    pub(crate) views: Buffer,
     /// Index of the scene's plate in each layer.
     loaded: Vec<Option<usize>>,
     /// Gain of each of the scene's plates to the exposure of the first.

@@ -1,7 +1,5 @@
 //! Injected visibilities, in place of those that the passes compute.
 
-use glam::UVec2;
-
 use crate::gpu::context::Gpu;
 use crate::gpu::texture::Texture;
 use crate::readback::FloatMap;
@@ -24,8 +22,8 @@ pub(crate) struct Injected {
 
 /// A texture of the size and format of `like`, in f16, with the values of `map`.
 pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
-    let format = like.raw.format();
-    let size_px = UVec2::new(like.raw.width(), like.raw.height());
+    let format = like.format();
+    let size_px = like.size_px();
     let texture = Texture::target(gpu, "injected visibility", size_px, format);
     let n_channels = usize::from(format.components());
     let halves: Vec<u8> = map

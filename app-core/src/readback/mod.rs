@@ -91,8 +91,9 @@ pub struct FloatMap {
 }
 
 /// Waits for the device and returns a texture as numbers.
-pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<FloatMap, GpuError> {
-    let bytes = gpu.read_texture(texture)?;
+pub(crate) fn read_texture(gpu: &Gpu, texture: Option<&wgpu::Texture>) -> Result<FloatMap, GpuError> {
+    let texture = texture.ok_or_else(GpuError::no_device)?;
+    let bytes = gpu.read_texture(Some(texture))?;
     let format = texture.format();
     let n_channels = usize::from(format.components());
     let values: Vec<f32> = match format {

@@ -6,13 +6,13 @@ use wgpu::TextureFormat;
 use crate::camera_frame::{CameraImage, PlanarImage};
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::camera_planes::{self, Planes};
 
 pub(crate) struct CameraTexture {
     texture: Texture,
     /// View of its sRGB codes, not decoded.
-    codes: wgpu::TextureView,
+    codes: TextureView,
     /// The picture that is there.
     image: Option<CameraImage>,
     /// Once a picture has come as planes.
@@ -31,12 +31,12 @@ impl CameraTexture {
     }
 
     /// The picture, decoded where it is read.
-    pub(crate) fn view(&self) -> &wgpu::TextureView {
+    pub(crate) fn view(&self) -> &TextureView {
         &self.texture.view
     }
 
     /// The picture's sRGB codes.
-    pub(crate) fn codes(&self) -> &wgpu::TextureView {
+    pub(crate) fn codes(&self) -> &TextureView {
         &self.codes
     }
 

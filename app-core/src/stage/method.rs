@@ -5,6 +5,7 @@ use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::TextureView;
 use crate::model::{self, Model};
 use crate::passes;
 use crate::passes::list::WarmUp;
@@ -53,7 +54,7 @@ impl Method {
     }
 
     /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+    pub(crate) fn picture(&self) -> &TextureView {
         match self {
             Self::Model(model) => model.picture(),
             Self::Baseline(baseline) => baseline.picture(),

@@ -1,5 +1,6 @@
 //! A scene on the device: the toy, the plates and the frame, and what was learned from them.
 
+mod afford;
 pub(crate) mod camera_texture;
 mod footprint;
 pub(crate) mod method;
@@ -22,9 +23,10 @@ use crate::geometry::clip_reach::ClipReach;
 use crate::geometry::rect::PlaneRect;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
+use crate::governor::Step;
 use crate::gpu::context::Gpu;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::pictures::Pictures;
 use crate::passes::present::{self, OUTPUT_FORMAT, Placement};
 use crate::passes::toy_mesh::ToyMesh;
@@ -60,6 +62,10 @@ pub(crate) struct Stage {
     /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
+    /// Settings that are turned down since the scene would cost too much.
+    turned_down: Vec<Step>,
+    /// What there is to say of that.
+    cost_warning: Option<Warning>,
     /// What the clip shown last reaches, with the poses shown so far.
     reach: Option<ClipReach>,
     /// Footprint of the latest frame.
@@ -74,7 +80,7 @@ pub(crate) struct Stage {
     reached_rects: Vec<PlaneRect>,
     pub(crate) output: Texture,
     /// The output, decoded where it is read.
-    finished: wgpu::TextureView,
+    finished: TextureView,
 }
 
 /// The method with its state, and the latest frame that this was learned from.
@@ -142,6 +148,8 @@ impl Stage {
             is_object_placed: true,
             scene,
             is_shadow_withheld: false,
+            turned_down: Vec::new(),
+            cost_warning: None,
             reach: None,
             cached_footprint: None,
         })
@@ -156,7 +164,7 @@ impl Stage {
     }
 
     /// The latest picture, decoded where it is read.
-    pub(crate) fn finished(&self) -> &wgpu::TextureView {
+    pub(crate) fn finished(&self) -> &TextureView {
         &self.finished
     }
 
@@ -236,7 +244,9 @@ impl Stage {
         recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
+        recorder.stages.begin("camera picture");
         self.camera.take(recorder, &input.image);
+        recorder.stages.begin("placement");
         self.follow_placement(recorder.gpu, input)?;
         let about_scene = self
             .receivers_warning
@@ -247,10 +257,14 @@ impl Stage {
         let about_lights = (!inside.is_empty()).then_some(Warning::LightsInsideToy { lights: inside });
         let mut report = FrameReport {
             ran: Vec::new(),
+            uploaded_bytes: 0,
+            stages: Vec::new(),
+            change: None,
             skipped: Vec::new(),
             region: None,
             warnings: about_scene.chain(about_lights).collect(),
         };
+        recorder.stages.begin("pose and footprint");
         let made_by = match self.footprint(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
@@ -275,7 +289,10 @@ impl Stage {
     ) {
         let gpu = recorder.gpu;
         self.toy.shown.write(gpu, &self.posed);
+        recorder.stages.begin("reuse");
         let change = self.update_method(gpu, input, footprint);
+        report.warnings.extend(self.cost_warning.clone());
+        recorder.stages.begin("encode");
         let Some(state) = &mut self.state else {
             return;
         };
@@ -301,6 +318,7 @@ impl Stage {
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
         };
+        recorder.n_pixels = n_pixels(method.region().size_px);
         method.encode(recorder, &self.toy, &pictures, change);
         if change < Change::View {
             report.skipped.push(LeftOut {
@@ -310,6 +328,7 @@ impl Stage {
         }
         report.skipped.extend_from_slice(method.left_out());
         report.region = Some(method.region());
+        report.change = Some(change);
         report.warnings.extend(self.plate_warning(footprint));
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);

@@ -103,10 +103,10 @@ impl Stage {
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         self.drop_method(gpu);
         let method = match self.preset.settings() {
-            Settings::Model(settings) => {
-                let plan = Plan::new(&self.facts(footprint, footprint.region), &self.settings(settings));
-                self.model(gpu, plan, footprint)
-            }
+            Settings::Model(settings) => match self.affordable(settings, footprint) {
+                Some(plan) => self.model(gpu, plan, footprint),
+                None => return,
+            },
             Settings::Baseline(settings) => {
                 let (plan, globals, uniform) = self.baseline_parts(&settings, footprint.region, footprint);
                 Method::Baseline(Box::new(Baseline::new(gpu, plan, &globals, &uniform)))
@@ -171,14 +171,17 @@ impl Stage {
         }
     }
 
-    fn settings(&self, preset: ModelSettings) -> ModelSettings {
-        ModelSettings {
+    /// Those of a preset, as far as they can be afforded.
+    pub(super) fn settings(&self, preset: ModelSettings) -> ModelSettings {
+        let mut settings = ModelSettings {
             is_shadow_withheld: self.is_shadow_withheld,
             ..preset
-        }
+        };
+        self.turned_down.iter().for_each(|step| step.apply(&mut settings));
+        settings
     }
 
-    fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {
+    pub(super) fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {
         let world_from_anchor = self.layout().world_from_anchor();
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_receivers = self.receivers.len() as u32;
@@ -233,7 +236,7 @@ impl Stage {
     }
 
     /// The points of each light, as many as are planned.
-    fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+    pub(super) fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
         let lights = self.lights.used.iter();
         lights
             .map(|light| self.points_of(light, plan.n_light_points))
@@ -241,7 +244,7 @@ impl Stage {
     }
 
     /// Points over a light in the space of each receiver in turn: the same ones, so that shadows meet where receivers do.
-    fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
+    pub(super) fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
         let world_from_anchor = self.layout().world_from_anchor();
         let target = self.toy_in_anchor();
         let points = light_points(light, &world_from_anchor.inverse(), target, n_points);

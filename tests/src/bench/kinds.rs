@@ -5,13 +5,16 @@ use std::time::Instant;
 use app_core::camera_frame::CameraImage;
 use app_core::core::{Core, CoreError};
 use app_core::frame::{FrameInput, PassTime};
+use app_core::internals::Inspect;
 use app_core::scene::{Camera, Image};
 use glam::DMat4;
+
+use crate::count::Counted;
 
 /// Turn of the camera about its own axis to the right that makes a new view, some five pixels, and back.
 const TURN_RAD: f64 = 0.005;
 /// Frames that are timed in turn, of those of a session.
-const MOST_INPUTS: usize = 4;
+pub(super) const MOST_INPUTS: usize = 4;
 
 /// What is new in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +53,14 @@ pub struct KindTimes {
     pub gpu_ms: Option<f64>,
     /// Each pass on the device, all of its runs in a frame together, in order.
     pub passes: Vec<(&'static str, f64)>,
+    /// What it must cost on any device; none where nothing was counted.
+    pub counted: Option<Counted>,
+    /// Objects that the device was asked for in all of these frames together.
+    pub n_made: u64,
+    /// Bytes of them.
+    pub made_bytes: u64,
+    /// Half of the distance between the quartiles of the device's time, or else the processor's.
+    pub spread_ms: Option<f64>,
     /// Time of such a frame over that of the preset `paper` on this session in this run.
     pub ratio_to_paper: Option<f64>,
 }
@@ -81,12 +92,14 @@ fn of_kind(
     n_repeats: usize,
 ) -> Result<KindTimes, CoreError> {
     let (mut cpu, mut device) = (Vec::new(), Vec::new());
+    let (mut n_made, mut made_bytes) = (0, 0);
     for input in inputs.iter().take(MOST_INPUTS) {
-        let others = [input.clone(), other(input, kind)];
+        let others = [input.clone(), with_new(input, kind)];
         // Where either is new, what was learned of the place stays.
         for known in &others {
             core.frame(known)?;
         }
+        let before = made(core);
         for next in others.iter().cycle().take(2 * n_repeats) {
             core.read_pass_times()?;
             let start = Instant::now();
@@ -94,18 +107,48 @@ fn of_kind(
             cpu.push(start.elapsed().as_secs_f64() * 1e3);
             device.push(core.read_pass_times()?);
         }
+        let after = made(core);
+        // Each reading of times takes one buffer, which is none of the frame's.
+        n_made += after.0 - before.0 - n_readings(core, 2 * n_repeats);
+        made_bytes += after.1 - before.1;
     }
+    let gpu: Vec<f64> = device.iter().filter_map(|times| total_ms(times)).collect();
     Ok(KindTimes {
         kind,
+        spread_ms: spread(if gpu.is_empty() { &cpu } else { &gpu }),
         cpu_ms: super::median(cpu),
-        gpu_ms: super::median(device.iter().filter_map(|times| total_ms(times)).collect()),
+        gpu_ms: super::median(gpu),
+        counted: None,
+        n_made,
+        made_bytes,
         passes: passes(&device),
         ratio_to_paper: None,
     })
 }
 
-/// The frame with something new in it.
-fn other(input: &FrameInput, kind: FrameKind) -> FrameInput {
+/// Objects and bytes that the device was asked for so far.
+fn made(core: &Core) -> (u64, u64) {
+    let n_made = core.n_created().iter().map(|(_, n)| n).sum();
+    (n_made, core.memory().made_bytes)
+}
+
+/// Buffers that reading the times of so many frames took.
+fn n_readings(core: &Core, n_frames: usize) -> u64 {
+    let has_times = core.read_pass_times().is_ok_and(|times| !times.is_empty());
+    if has_times { 2 * n_frames as u64 } else { 0 }
+}
+
+/// Half of the distance between the quartiles.
+fn spread(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = |part: usize| sorted.get(part * sorted.len() / 4).copied();
+    Some(0.5 * (at(3)? - at(1)?))
+}
+
+/// A frame with something new in it.
+#[must_use]
+pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
     let picture = || CameraImage::from(Image::clone(input.image.rgba()));
     let turn = DMat4::from_rotation_x(TURN_RAD);
     match kind {

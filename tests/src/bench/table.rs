@@ -1,12 +1,15 @@
 //! Rows as a person reads them, and as a program does.
 
+use app_core::ledger::Ledger;
+
+use crate::count::Counted;
 use crate::metrics::flicker::Flicker;
 use crate::metrics::{Score, Scores};
 
 use super::{FRAME_KINDS, FrameKind, KindTimes, Row};
 
-const CSV_HEADER: &str = "session,preset,width,height,frame_kind,n_frames,gpu_ms_median,cpu_ms_median,align_ms,\
-ratio_to_paper,times_faster_than_paper,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,frame_rmse,frame_ssim,\
+const CSV_HEADER: &str = "session,preset,width,height,frame_kind,n_frames,gpu_ms_median,cpu_ms_median,spread_ms,align_ms,\
+ratio_to_paper,times_faster_than_paper,triangles,mebibytes_moved,copies_counted,peak_gpu_mib,objects_made,kib_made,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,frame_rmse,frame_ssim,\
 shadow_flicker,toy_flicker,edge_flicker,frame_flicker,taps_per_missing_texel,pass_ms";
 
 /// One line for each row and kind of frame, under a header. What was not measured is empty; passes are
@@ -44,11 +47,13 @@ fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
     let times = [
         of_kind(|times| times.gpu_ms),
         of_kind(|times| times.cpu_ms),
+        of_kind(|times| times.spread_ms),
         row.align_ms,
         ratio,
         ratio.filter(|ratio| *ratio > 0.0).map(f64::recip),
     ];
     fields.extend(times.map(number));
+    fields.extend(counts(kind));
     fields.extend(
         regions(row)
             .into_iter()
@@ -60,12 +65,30 @@ fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
     fields.join(",")
 }
 
+/// Triangles, mebibytes, copies and peak by the ledger, then objects and KiB that the device was asked for.
+fn counts(kind: Option<&KindTimes>) -> [String; 6] {
+    let counted = kind.and_then(|kind| kind.counted.as_ref());
+    let ledger = counted.map(|counted| &counted.ledger);
+    [
+        ledger.map_or_else(String::new, |ledger| ledger.total().triangles().to_string()),
+        number(ledger.map(Ledger::mebibytes_moved)),
+        number(ledger.map(Ledger::copies_moved)),
+        number(counted.map(Counted::peak_mib)),
+        kind.map_or_else(String::new, |kind| kind.n_made.to_string()),
+        #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
+        number(kind.map(|kind| kind.made_bytes as f64 / 1024.0)),
+    ]
+}
+
 /// The rows in columns, then their times by kind of frame, and what these are worth on this adapter.
 #[must_use]
 pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     let mut text = aligned(&errors(rows));
     text.push_str("Scores are RMSE in 8-bit codes (SSIM); flicker is that of changes from frame to frame, in the shadow and on the toy; alignment is a mean over all frames.\n\n");
     text.push_str(&aligned(&times(rows)));
+    text.push_str("\n");
+    text.push_str(&aligned(&costs(rows)));
+    text.push_str("By the ledger, the same on any device, with showing the picture on a screen of its size: triangles, copies of that screen; most memory of textures and buffers.\n\n");
     text.push_str(
         "Medians. What is new in a frame: the pose shown; the camera's picture; the camera's place, too.\n",
     );
@@ -132,6 +155,35 @@ fn times(rows: &[Row]) -> Vec<Vec<String>> {
                 short(times.and_then(|times| times.ratio_to_paper), 2),
             ]);
         }
+        cells.push(line);
+    }
+    cells
+}
+
+/// Two columns for each kind of frame, then the peak.
+fn costs(rows: &[Row]) -> Vec<Vec<String>> {
+    let of_kind = |kind: FrameKind| ["triangles", "copies"].map(|head| format!("{} {head}", kind.name()));
+    let mut heads = ["session", "preset", "size"].map(str::to_owned).to_vec();
+    heads.extend(FRAME_KINDS.into_iter().flat_map(of_kind));
+    heads.push("peak MiB".to_owned());
+    let mut cells = vec![heads];
+    for row in rows.iter().filter(|row| !row.times.is_empty()) {
+        let [width, height] = row.size_px;
+        let mut line = vec![
+            row.session.clone(),
+            row.preset.clone(),
+            format!("{width} x {height}"),
+        ];
+        let counted = |kind| {
+            let times = row.times.iter().find(|times| times.kind == kind);
+            times.and_then(|times| times.counted.as_ref())
+        };
+        for kind in FRAME_KINDS {
+            let ledger = counted(kind).map(|counted| &counted.ledger);
+            line.push(ledger.map_or("-".to_owned(), |ledger| ledger.total().triangles().to_string()));
+            line.push(short(ledger.map(Ledger::copies_moved), 2));
+        }
+        line.push(short(counted(FrameKind::View).map(Counted::peak_mib), 1));
         cells.push(line);
     }
     cells

@@ -19,6 +19,7 @@ use harness::bench::{
 use harness::files::BUNDLED_SESSION;
 use harness::output::{make_folder, remove_file, write_png, write_whole};
 use harness::program::{exit_code, open_session};
+use harness::sized::{SizePx, parse_size};
 
 /// Where the result goes that was given no place, below the top of the repository.
 const RESULTS: &str = "target/bench";
@@ -43,6 +44,9 @@ struct Args {
     /// Only the first N frames of each session
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     first: Option<u16>,
+    /// Time and count pictures of this size; errors are of the session's own [default: the session's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
+    size: Option<SizePx>,
     /// Add rows with visibility from rays, which takes minutes
     #[arg(long)]
     exact: bool,
@@ -174,6 +178,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
             start: 0,
             end: usize::from(n_frames),
         }),
+        size_px: args.size,
         with_exact: args.exact,
         is_aligned: !args.as_given,
         lights: args.lights,

@@ -7,7 +7,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer::{self, BASE_FORMAT};
 use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
@@ -47,8 +47,8 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) scene: Scene<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 

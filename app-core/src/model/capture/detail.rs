@@ -7,7 +7,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::observed::Observed;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
@@ -47,7 +47,7 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) observed: Observed<'a>,
-    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) plate: &'a TextureView,
 }
 
 /// Of the region's size, where it is needed.

@@ -1,11 +1,12 @@
 //! `estimate`: the plate, completed by an estimate where no plate covers the pixel.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::observed::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
@@ -58,9 +59,9 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) grids: &'a wgpu::Buffer,
-    pub(crate) lit_cells: &'a wgpu::Buffer,
-    pub(crate) photographed: &'a wgpu::TextureView,
+    pub(crate) grids: &'a Buffer,
+    pub(crate) lit_cells: &'a Buffer,
+    pub(crate) photographed: &'a TextureView,
     pub(crate) observed: Observed<'a>,
 }
 
@@ -99,7 +100,7 @@ impl Pass {
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
         fineness: Fineness,
-        target: &wgpu::TextureView,
+        target: &TextureView,
     ) {
         let draw = match fineness {
             Fineness::Smooth => &self.smooth,

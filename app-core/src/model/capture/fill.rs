@@ -1,6 +1,7 @@
 //! `fill`: the cells that the toy hides, from those around, by pull-push.
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
@@ -17,7 +18,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) grids: &'a Buffer,
     pub(crate) n_receivers: u32,
 }
 
@@ -33,7 +34,7 @@ impl Pass {
     }
 
     /// Fills the finest levels of `cells` in place.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, cells: &wgpu::Buffer) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, cells: &Buffer) {
         let own = recorder.bind(&self.compute, GROUP_PASS, &[inputs.grids.into(), cells.into()]);
         recorder.compute(&self.compute, &[own], [inputs.n_receivers, 1, 1]);
     }

@@ -3,11 +3,13 @@
 use wgpu::BufferUsages;
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
 use crate::model::capture::observed::Observed;
 use crate::model::parts::{HEMISPHERES, MODEL, TOY_RADIANCE};
@@ -112,13 +114,13 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) observed: Observed<'a>,
-    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) plate: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
 /// Rows of sums, one per workgroup and channel.
 pub(crate) struct Targets {
-    pub(crate) rows: wgpu::Buffer,
+    pub(crate) rows: Buffer,
 }
 
 impl Targets {
@@ -173,6 +175,8 @@ impl Pass {
         ];
         #[allow(clippy::cast_possible_truncation, reason = "three")]
         let n_channels = N_CHANNELS as u32;
-        recorder.compute(&self.compute, &groups, [step.n_rows, 1, n_channels]);
+        let workgroups = [step.n_rows, 1, n_channels];
+        let n_sampled = n_pixels(inputs.plate.size_px() / step.stride_px.max(1));
+        recorder.compute_over(&self.compute, &groups, workgroups, n_sampled);
     }
 }

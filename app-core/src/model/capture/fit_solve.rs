@@ -1,6 +1,7 @@
 //! `fit_solve`: the solution of the normal equations that `fit` summed, with weak priors.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
@@ -32,9 +33,9 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     /// Rows of sums of this step.
-    pub(crate) rows: &'a wgpu::Buffer,
+    pub(crate) rows: &'a Buffer,
 }
 
 impl Pass {

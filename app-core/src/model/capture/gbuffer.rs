@@ -3,6 +3,7 @@
 use wgpu::{StoreOp, TextureFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
 use crate::gpu::recorder::{Recorder, cleared};
@@ -37,7 +38,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) self_shadow: &'a self_shadow::Targets,
 }

@@ -6,7 +6,7 @@ pub(crate) mod pool;
 
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::estimate::Fineness;
 use crate::model::capture::fit::Task;
 use crate::model::capture::observed::Observed;
@@ -251,7 +251,7 @@ impl CapturePath<'_> {
         }
     }
 
-    fn validity(&self) -> &wgpu::TextureView {
+    fn validity(&self) -> &TextureView {
         &self.captured.by_pass.validity.marks.view
     }
 

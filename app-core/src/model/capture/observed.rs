@@ -1,13 +1,15 @@
 //! What a view shows of the receivers, with the light that reaches them in the physical pose.
 
+use crate::gpu::texture::TextureView;
+
 /// Maps of the region that passes which learn from the receivers read, each pixel by pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Observed<'a> {
     /// The camera's picture, of the image's size.
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) validity: &'a TextureView,
     /// Of each light.
-    pub(crate) visibility: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a TextureView,
     /// Of the ambient light; smaller, and filtered.
-    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) ambient: &'a TextureView,
 }

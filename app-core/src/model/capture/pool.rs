@@ -1,10 +1,12 @@
 //! Pooling of pictures in the cells of coarse grids, for `lit` and `residual`.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::texture::TextureView;
 use crate::model::state::grids::CellBuffers;
 use crate::model::state::solution::{SCENE_SLOTS, Scene};
 
@@ -20,7 +22,7 @@ pub(crate) struct Pool {
 /// Grids and cells to pool into.
 pub(crate) struct PoolGrids<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) grids: &'a wgpu::Buffer,
+    pub(crate) grids: &'a Buffer,
     pub(crate) cells: &'a CellBuffers,
     pub(crate) n_receivers: u32,
 }
@@ -38,12 +40,7 @@ impl Pool {
     }
 
     /// Pools `pictures`, which are in the order of the slots, the sampler after them.
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        on: &PoolGrids<'_>,
-        pictures: &[&wgpu::TextureView],
-    ) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, on: &PoolGrids<'_>, pictures: &[&TextureView]) {
         let buffers = [on.grids, &on.cells.cells, &on.cells.accumulated].map(Resource::from);
         let sampler = Resource::from(&recorder.gpu.samplers.linear);
         let resources: Vec<_> = buffers

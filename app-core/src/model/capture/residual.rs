@@ -4,6 +4,7 @@ use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::TextureView;
 use crate::model::capture::observed::Observed;
 use crate::model::capture::pool::{POOL, Pool, PoolGrids};
 use crate::model::parts::{ACCUMULATED, MODEL};
@@ -40,7 +41,7 @@ pub(crate) struct Pass(Pool);
 pub(crate) struct Inputs<'a> {
     pub(crate) on: PoolGrids<'a>,
     pub(crate) observed: Observed<'a>,
-    pub(crate) plate: &'a wgpu::TextureView,
+    pub(crate) plate: &'a TextureView,
 }
 
 impl Pass {

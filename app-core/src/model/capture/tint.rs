@@ -3,8 +3,9 @@
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
 use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
@@ -47,8 +48,8 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) scene: Scene<'a>,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
@@ -84,7 +85,13 @@ impl Pass {
             recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
         ];
         let size_px = inputs.plan.region.size_px;
-        let workgroups = size_px.map(|side_px| side_px.div_ceil(stride_px).div_ceil(WORKGROUP_PX));
-        recorder.compute(&self.compute, &groups, [workgroups.x, workgroups.y, 1]);
+        let sampled_px = size_px.map(|side_px| side_px.div_ceil(stride_px));
+        let workgroups = sampled_px.map(|side_px| side_px.div_ceil(WORKGROUP_PX)).extend(1);
+        recorder.compute_over(
+            &self.compute,
+            &groups,
+            workgroups.to_array(),
+            n_pixels(sampled_px),
+        );
     }
 }

@@ -7,7 +7,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::plan::Plan;
 use crate::passes::parts::{DEPTH, FULLSCREEN};
 
@@ -58,7 +58,7 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (gbuffer_depth, plan): (&wgpu::TextureView, &Plan),
+        (gbuffer_depth, plan): (&TextureView, &Plan),
         targets: &Targets,
     ) {
         let own = recorder.bind(&self.draw, GROUP_PASS, &[gbuffer_depth.into()]);

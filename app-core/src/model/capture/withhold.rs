@@ -5,7 +5,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
@@ -34,8 +34,8 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a TextureView,
+    pub(crate) ambient: &'a TextureView,
 }
 
 /// Of the region's size, where it is needed.
@@ -75,7 +75,7 @@ impl Pass {
         marks: &Texture,
     ) {
         let Some(all) = &targets.all else { return };
-        recorder.copy(&marks.raw, &all.raw);
+        recorder.copy(marks, all);
         let resources = [
             (&all.view).into(),
             inputs.visibility.into(),

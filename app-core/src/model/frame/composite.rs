@@ -1,12 +1,13 @@
 //! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::coverage::COVERED;
 use crate::model::frame::toy;
@@ -68,31 +69,31 @@ pub(crate) struct Pass {
 /// Visibility maps of one pose.
 #[derive(Clone, Copy)]
 pub(crate) struct Light<'a> {
-    pub(crate) visibility: &'a wgpu::TextureView,
-    pub(crate) ambient: &'a wgpu::TextureView,
+    pub(crate) visibility: &'a TextureView,
+    pub(crate) ambient: &'a TextureView,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
-    pub(crate) grids: &'a wgpu::Buffer,
-    pub(crate) cells: &'a wgpu::Buffer,
-    pub(crate) frame: &'a wgpu::TextureView,
-    pub(crate) plate: &'a wgpu::TextureView,
-    pub(crate) validity: &'a wgpu::TextureView,
+    pub(crate) grids: &'a Buffer,
+    pub(crate) cells: &'a Buffer,
+    pub(crate) frame: &'a TextureView,
+    pub(crate) plate: &'a TextureView,
+    pub(crate) validity: &'a TextureView,
     pub(crate) physical: Light<'a>,
     pub(crate) shown: Light<'a>,
-    pub(crate) coverage: &'a wgpu::TextureView,
+    pub(crate) coverage: &'a TextureView,
     pub(crate) toy: &'a toy::Targets,
-    pub(crate) moved_mask: &'a wgpu::TextureView,
+    pub(crate) moved_mask: &'a TextureView,
     /// Each pixel's own residual; without it the frame's own pixels serve.
-    pub(crate) detail: Option<&'a wgpu::TextureView>,
+    pub(crate) detail: Option<&'a TextureView>,
 }
 
 /// Of the region's size.
 pub(crate) struct Targets {
     pub(crate) picture: Texture,
     /// View of its sRGB codes, not decoded.
-    pub(crate) codes: wgpu::TextureView,
+    pub(crate) codes: TextureView,
 }
 
 impl Targets {

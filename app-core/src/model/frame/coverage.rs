@@ -3,6 +3,7 @@
 use wgpu::{CompareFunction, Face, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::Recorder;
@@ -28,7 +29,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) camera_in_anchor: glam::Vec3,
 }
@@ -69,7 +70,7 @@ impl Pass {
         let triangles = toy.shadow_ranges.seen_from(is_within);
         let mut render = targets.covered.render(recorder, SHADER.name);
         render.begin(&self.draw, &[group]);
-        toy.bind_positions(&mut render.0, &pose.positions);
-        render.0.draw_indexed(triangles, 0, 0..N_POSITIONS);
+        toy.bind_positions(&mut render, &pose.positions);
+        render.draw_indexed(triangles, 0..N_POSITIONS);
     }
 }

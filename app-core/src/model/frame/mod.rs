@@ -2,6 +2,7 @@
 
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::TextureView;
 use crate::model::capture::CaptureTargets;
 use crate::model::frame::composite::Light;
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
@@ -73,7 +74,7 @@ pub(crate) struct FramePath<'a> {
     pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
     pub(crate) state: &'a SceneState,
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) frame: &'a wgpu::TextureView,
+    pub(crate) frame: &'a TextureView,
 }
 
 impl FramePath<'_> {

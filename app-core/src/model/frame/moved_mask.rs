@@ -3,6 +3,7 @@
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
@@ -61,7 +62,7 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        globals: &wgpu::Buffer,
+        globals: &Buffer,
         toy: &ToyMesh,
         targets: &Targets,
     ) {
@@ -70,7 +71,7 @@ impl Pass {
         let depth = Some(&targets.depth.view);
         let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
         render.begin(&self.draw, &[group]);
-        render.0.set_vertex_buffer(1, toy.shown.positions.slice(..));
-        toy.draw_positions(&mut render.0, &toy.physical.positions, 0..1);
+        render.set_vertices(1, &toy.shown.positions);
+        toy.draw_positions(&mut render, &toy.physical.positions, 0..1);
     }
 }

@@ -8,7 +8,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, discarded, resolved};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow::{
@@ -80,7 +80,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
-    pub(crate) gbuffer_depth: &'a wgpu::TextureView,
+    pub(crate) gbuffer_depth: &'a TextureView,
     /// Of the shown pose, and of the physical one.
     pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
@@ -119,7 +119,7 @@ impl Targets {
     }
 
     /// What was drawn; the first stands in for draws that there are not.
-    pub(crate) fn views(&self) -> [&wgpu::TextureView; OFFSETS_PX.len()] {
+    pub(crate) fn views(&self) -> [&TextureView; OFFSETS_PX.len()] {
         [0, 1, 2, 3].map(|draw| &self.drawn.get(draw).unwrap_or(&self.drawn[0]).view)
     }
 }

@@ -5,6 +5,7 @@ use glam::Vec4;
 
 use crate::geometry::light_points::ambient_directions;
 use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
@@ -72,7 +73,7 @@ pub(crate) struct Lighting {
 /// A toy in a pose, in a view.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
 }
@@ -127,7 +128,7 @@ impl Lighting {
                 if channel + 1 == self.lights.len()
                     && let Some(injected) = &maps.injected
                 {
-                    recorder.copy(&injected.raw, &maps.visibility.lights.raw);
+                    recorder.copy(injected, &maps.visibility.lights);
                 }
             }
             Step::Ambient => {

@@ -6,6 +6,7 @@ use glam::{UVec2, Vec4};
 use wgpu::{CompareFunction, Face, VertexFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::Recorder;
@@ -66,7 +67,7 @@ pub(crate) struct LightPointsBuffer {
     pub(crate) n_points: u32,
     /// Size of the maps and of the region, in texels and pixels.
     sizes: (UVec2, UVec2),
-    uniform: wgpu::Buffer,
+    uniform: Buffer,
 }
 
 impl LightPointsBuffer {
@@ -119,7 +120,7 @@ pub(crate) struct Pass {
 
 /// A posed toy, and the points of a light whose occlusion is tested.
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
     pub(crate) n_receivers: u32,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
@@ -159,15 +160,15 @@ impl Pass {
         let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
         let triangles = inputs.triangles();
         let mut render = targets.render(recorder, SHADER.name);
-        inputs.toy.bind_positions(&mut render.0, &inputs.pose.positions);
+        inputs.toy.bind_positions(&mut render, &inputs.pose.positions);
         for receiver in 0..n_receivers {
             if n_receivers > 1 {
                 render.begin(&self.route, &groups);
-                render.0.draw(0..3, receiver..receiver + 1);
+                render.draw(0..3, receiver..receiver + 1);
             }
             render.begin(&self.cover, &groups);
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            render.0.draw_indexed(triangles.clone(), 0, instances);
+            render.draw_indexed(triangles.clone(), instances);
         }
     }
 }

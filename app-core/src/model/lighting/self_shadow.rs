@@ -6,6 +6,7 @@ use wgpu::{StoreOp, TextureFormat, VertexFormat};
 use crate::geometry::bounds::Sphere;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::Recorder;
@@ -76,7 +77,7 @@ impl SelfShadow {
 
 /// The depth maps of one pose.
 pub(crate) struct Targets {
-    tiles: wgpu::Buffer,
+    tiles: Buffer,
     depth: Texture,
 }
 
@@ -138,6 +139,6 @@ impl Pass {
         let n_tiles = tiles.n_tiles.iter().sum();
         inputs
             .toy
-            .draw_positions(&mut render.0, &inputs.pose.positions, 0..n_tiles);
+            .draw_positions(&mut render, &inputs.pose.positions, 0..n_tiles);
     }
 }

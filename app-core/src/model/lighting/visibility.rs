@@ -7,7 +7,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared, loaded};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::texture::{Texture, half_float};
+use crate::gpu::texture::{Texture, TextureView, half_float};
 use crate::model::lighting::occlusion::HIDDEN;
 use crate::model::plan::Plan;
 use crate::passes::parts::FULLSCREEN;
@@ -30,7 +30,7 @@ pub(crate) struct Pass {
 
 /// Counts of hidden light points per texel, and the number that was drawn.
 pub(crate) struct Inputs<'a> {
-    pub(crate) hidden: &'a wgpu::TextureView,
+    pub(crate) hidden: &'a TextureView,
     pub(crate) n_points: u32,
 }
 
@@ -78,7 +78,7 @@ impl Pass {
         inputs: &Inputs<'_>,
         (map, channel): (&Texture, usize),
     ) {
-        let of_format = self.draws.iter().find(|(format, _)| *format == map.raw.format());
+        let of_format = self.draws.iter().find(|(format, _)| *format == map.format());
         let Some(draw) = of_format.and_then(|(_, draws)| draws.get(channel)) else {
             return;
         };

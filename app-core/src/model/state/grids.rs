@@ -3,6 +3,7 @@
 use wgpu::BufferUsages;
 
 use crate::geometry::rect::PlaneRect;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
@@ -90,8 +91,8 @@ fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
 
 /// Cells of one quantity on the grids: pyramids, and sums over the frames so far.
 pub(crate) struct CellBuffers {
-    pub(crate) cells: wgpu::Buffer,
-    pub(crate) accumulated: wgpu::Buffer,
+    pub(crate) cells: Buffer,
+    pub(crate) accumulated: Buffer,
 }
 
 impl CellBuffers {

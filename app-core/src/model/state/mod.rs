@@ -7,6 +7,7 @@ pub(crate) mod tints;
 use wgpu::BufferUsages;
 
 use crate::geometry::bounds::Sphere;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::model::state::grids::{CellBuffers, Grids};
@@ -16,12 +17,12 @@ use crate::model::state::tints::Tints;
 /// Fits, residuals, lit colours and tints, with their accumulated sums.
 pub(crate) struct SceneState {
     /// Solution of the fits.
-    pub(crate) solution: wgpu::Buffer,
+    pub(crate) solution: Buffer,
     /// Accumulated sums of the fits.
-    pub(crate) fit_sums: wgpu::Buffer,
+    pub(crate) fit_sums: Buffer,
     /// Contents of `grids`.
     pub(crate) layout: Grids,
-    pub(crate) grids: wgpu::Buffer,
+    pub(crate) grids: Buffer,
     pub(crate) residual: CellBuffers,
     pub(crate) lit: CellBuffers,
     pub(crate) tints: Tints,

@@ -1,6 +1,7 @@
 //! The solution of the fits, and the sums that it is solved from.
 
 use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
@@ -47,8 +48,8 @@ shared_struct! {
 /// Resources of [`SCENE_SLOTS`].
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
-    pub(crate) globals: &'a wgpu::Buffer,
-    pub(crate) solution: &'a wgpu::Buffer,
+    pub(crate) globals: &'a Buffer,
+    pub(crate) solution: &'a Buffer,
 }
 
 impl<'a> Scene<'a> {

@@ -3,6 +3,7 @@
 use wgpu::BufferUsages;
 
 use crate::geometry::bounds::Sphere;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
@@ -48,13 +49,13 @@ pub struct TintMap {
 
 /// The tints of a toy's paint, on grids over its physical pose.
 pub(crate) struct Tints {
-    pub(crate) grid: wgpu::Buffer,
+    pub(crate) grid: Buffer,
     /// All levels of each material's grid, finest first.
-    pub(crate) cells: wgpu::Buffer,
+    pub(crate) cells: Buffer,
     /// Sums of one frame.
-    pub(crate) sums: wgpu::Buffer,
+    pub(crate) sums: Buffer,
     /// Accumulated sums of the finest cells.
-    pub(crate) accumulated: wgpu::Buffer,
+    pub(crate) accumulated: Buffer,
     /// Contents of `grid`.
     pub(crate) layout: TintGrid,
 }

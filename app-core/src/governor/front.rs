@@ -1,0 +1,100 @@
+//! The front: settings to be turned down, in the order in which least is lost for what is gained.
+
+use crate::preset::ModelSettings;
+
+/// A setting that can be turned down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Knob {
+    /// Points of each light from which the toy's shadow on itself is drawn.
+    SelfShadowPoints,
+    /// Region pixels per texel of the ambient map, along each side.
+    AmbientDivisor,
+    /// Directions of ambient light.
+    AmbientDirections,
+    /// Points over each light.
+    LightPoints,
+    /// Frames a second.
+    FramesPerSecond,
+}
+
+/// A step of the front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// What is turned down.
+    pub knob: Knob,
+    /// Its value from there on.
+    pub value: u32,
+    /// Expected load after the step over the load before it, 0 to 1.
+    pub gain: f64,
+    /// As a person is told.
+    pub what: &'static str,
+}
+
+/// The front of preset `balanced`.
+///
+/// The order is that in which error grows least; half the light points before the last are the most that hold below four
+/// (eight leave steps in penumbrae). What a step is expected to bring is from triangles and bytes of the ledger at one light
+/// and 10,000 triangles, a new pose; where it was taken, the governor knows better.
+pub const BALANCED_FRONT: &[Step] = &[
+    Step {
+        knob: Knob::SelfShadowPoints,
+        value: 4,
+        gain: 0.93,
+        what: "the toy's shadow on itself is drawn from 4 points of each light",
+    },
+    Step {
+        knob: Knob::AmbientDivisor,
+        value: 8,
+        gain: 0.98,
+        what: "ambient shadow is drawn at an eighth of the resolution",
+    },
+    Step {
+        knob: Knob::AmbientDirections,
+        value: 32,
+        gain: 0.83,
+        what: "ambient shadow is drawn from 32 directions",
+    },
+    Step {
+        knob: Knob::LightPoints,
+        value: 32,
+        gain: 0.79,
+        what: "shadows are drawn from 32 points of each light",
+    },
+    Step {
+        knob: Knob::LightPoints,
+        value: 16,
+        gain: 0.87,
+        what: "shadows are drawn from 16 points of each light",
+    },
+    Step {
+        knob: Knob::AmbientDirections,
+        value: 16,
+        gain: 0.87,
+        what: "ambient shadow is drawn from 16 directions",
+    },
+    Step {
+        knob: Knob::FramesPerSecond,
+        value: 30,
+        gain: 0.5,
+        what: "30 frames are shown a second",
+    },
+];
+
+impl Step {
+    /// Turns a setting down that is finer than this; the rate of frames is no setting.
+    pub fn apply(&self, settings: &mut ModelSettings) {
+        let points = self.value as usize;
+        match self.knob {
+            Knob::SelfShadowPoints => {
+                settings.n_self_shadow_points = settings.n_self_shadow_points.min(points);
+            }
+            Knob::AmbientDivisor => settings.ambient_divisor = settings.ambient_divisor.max(self.value),
+            Knob::AmbientDirections => {
+                settings.n_ambient_directions = settings.n_ambient_directions.min(points);
+            }
+            Knob::LightPoints => settings.n_light_points = settings.n_light_points.min(points),
+            Knob::FramesPerSecond => {}
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The latest of many numbers.
+
+use std::collections::VecDeque;
+
+/// So many of the latest numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Window {
+    size: usize,
+    numbers: VecDeque<f64>,
+}
+
+impl Window {
+    pub(super) fn new(size: usize) -> Self {
+        Self {
+            size,
+            numbers: VecDeque::with_capacity(size),
+        }
+    }
+
+    pub(super) fn push(&mut self, number: f64) {
+        if self.numbers.len() == self.size {
+            self.numbers.pop_front();
+        }
+        self.numbers.push_back(number);
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.numbers.clear();
+    }
+
+    /// None until it is full.
+    pub(super) fn median(&self) -> Option<f64> {
+        let mut sorted: Vec<f64> = self.full()?.collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
+    }
+
+    /// None until it is full.
+    pub(super) fn mean(&self) -> Option<f64> {
+        #[allow(clippy::cast_precision_loss, reason = "a handful")]
+        let n = self.size as f64;
+        Some(self.full()?.sum::<f64>() / n)
+    }
+
+    fn full(&self) -> Option<impl Iterator<Item = f64>> {
+        (self.numbers.len() == self.size && self.size > 0).then(|| self.numbers.iter().copied())
+    }
+}

@@ -1,0 +1,85 @@
+//! Counts of what is made and moved, on a device or on none.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::work::Id;
+
+/// Bytes of textures and buffers that a core made, by their descriptors: a driver may round them up. Targets that never
+/// leave the chip, which a tiler gives no memory, are not in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Of those that there are.
+    pub held_bytes: u64,
+    /// Most that there were at a time.
+    pub peak_bytes: u64,
+    /// Of all that were made.
+    pub made_bytes: u64,
+}
+
+/// Of the next resource, whatever device it is on.
+static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+
+/// The counts of one device.
+#[derive(Debug, Default)]
+pub(crate) struct Meter {
+    uploaded: AtomicU64,
+    made: AtomicU64,
+    held: Arc<HeldBytes>,
+}
+
+/// Bytes of what is kept, and the most that they were.
+#[derive(Debug, Default)]
+struct HeldBytes {
+    now: AtomicU64,
+    peak: AtomicU64,
+}
+
+impl Meter {
+    /// A number that no other resource has.
+    pub(super) fn id() -> Id {
+        NEXT_ID.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Counts the bytes of a resource until what is returned is dropped.
+    pub(super) fn hold(&self, n_bytes: u64) -> Held {
+        self.made.fetch_add(n_bytes, Ordering::Relaxed);
+        let now = self.held.now.fetch_add(n_bytes, Ordering::Relaxed) + n_bytes;
+        self.held.peak.fetch_max(now, Ordering::Relaxed);
+        Held {
+            of: Arc::clone(&self.held),
+            n_bytes,
+        }
+    }
+
+    /// Counts bytes that the processor hands over.
+    pub(super) fn upload(&self, n_bytes: usize) {
+        self.uploaded.fetch_add(n_bytes as u64, Ordering::Relaxed);
+    }
+
+    /// Bytes that the processor handed over so far.
+    pub(super) fn uploaded_bytes(&self) -> u64 {
+        self.uploaded.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn memory(&self) -> Memory {
+        Memory {
+            held_bytes: self.held.now.load(Ordering::Relaxed),
+            peak_bytes: self.held.peak.load(Ordering::Relaxed),
+            made_bytes: self.made.load(Ordering::Relaxed),
+        }
+    }
+}
+
+/// Bytes of one texture or buffer.
+#[derive(Debug)]
+pub(super) struct Held {
+    of: Arc<HeldBytes>,
+    n_bytes: u64,
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.of.now.fetch_sub(self.n_bytes, Ordering::Relaxed);
+    }
+}

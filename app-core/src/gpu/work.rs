@@ -1,0 +1,199 @@
+//! What passes cost, counted from the very attachments, bindings and draws that they are recorded with.
+
+use std::iter::Sum;
+use std::ops::AddAssign;
+
+use super::bindings::Slot;
+use super::shape::Shape;
+
+/// Work of a pass, over all of its runs. Only a recorder makes one that is not empty, from descriptors.
+///
+/// Bytes are those that a tiler moves at least: an attachment that is loaded or stored counts whole, whatever is drawn to
+/// it; of a texture that is read each texel counts once a pass, and no more texels a layer than the pass has pixels, or
+/// than it says that it looks at; buffers count whole, indices as far as they are drawn. What stays on the chip costs
+/// nothing, nor does what a tiler writes of its own accord for the triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Work {
+    n_draws: u32,
+    triangles: u64,
+    vertices: u64,
+    bytes_read: u64,
+    bytes_written: u64,
+}
+
+impl Work {
+    /// Draws, and dispatches of compute shaders.
+    #[must_use]
+    pub fn n_draws(&self) -> u32 {
+        self.n_draws
+    }
+
+    /// Triangles, of all instances.
+    #[must_use]
+    pub fn triangles(&self) -> u64 {
+        self.triangles
+    }
+
+    /// Vertices of all instances: the most that can be shaded, where none is shared by triangles.
+    #[must_use]
+    pub fn vertices(&self) -> u64 {
+        self.vertices
+    }
+
+    /// Bytes that are read from memory.
+    #[must_use]
+    pub fn bytes_read(&self) -> u64 {
+        self.bytes_read
+    }
+
+    /// Bytes that are written to memory.
+    #[must_use]
+    pub fn bytes_written(&self) -> u64 {
+        self.bytes_written
+    }
+
+    /// Bytes that are moved either way.
+    #[must_use]
+    pub fn bytes_moved(&self) -> u64 {
+        self.bytes_read + self.bytes_written
+    }
+
+    pub(super) fn draw(&mut self, n_vertices: u32, n_instances: u32) {
+        self.n_draws += 1;
+        self.triangles += u64::from(n_vertices / 3) * u64::from(n_instances);
+        self.vertices += u64::from(n_vertices) * u64::from(n_instances);
+    }
+
+    pub(super) fn read(&mut self, n_bytes: u64) {
+        self.bytes_read += n_bytes;
+    }
+
+    fn write(&mut self, n_bytes: u64) {
+        self.bytes_written += n_bytes;
+    }
+}
+
+impl AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.n_draws += other.n_draws;
+        self.triangles += other.triangles;
+        self.vertices += other.vertices;
+        self.bytes_read += other.bytes_read;
+        self.bytes_written += other.bytes_written;
+    }
+}
+
+impl Sum for Work {
+    fn sum<I: Iterator<Item = Self>>(works: I) -> Self {
+        works.fold(Self::default(), |mut sum, work| {
+            sum += work;
+            sum
+        })
+    }
+}
+
+/// What tells a texture or a buffer from all others of its device.
+pub(crate) type Id = u64;
+
+/// A resource of a group, as far as it moves bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Bound {
+    /// A part of a buffer.
+    Buffer { id: Id, n_bytes: u64, is_written: bool },
+    /// A view of a texture.
+    View { id: Id, shape: Shape },
+}
+
+/// A pass that is being counted.
+pub(super) struct Tally<'a> {
+    work: &'a mut Work,
+    /// Pixels that it looks at in each layer.
+    n_pixels: u64,
+    /// What was counted already.
+    counted: Vec<Id>,
+}
+
+impl<'a> Tally<'a> {
+    pub(super) fn new(work: &'a mut Work, n_pixels: u64) -> Self {
+        Self {
+            work,
+            n_pixels,
+            counted: Vec::new(),
+        }
+    }
+
+    /// An attachment that is brought to the chip, or taken from it.
+    pub(super) fn attach(&mut self, shape: &Shape, is_loaded: bool, is_stored: bool) {
+        let n_bytes = shape.n_texels() * shape.texel_bytes();
+        self.work.read(if is_loaded { n_bytes } else { 0 });
+        self.work.write(if is_stored { n_bytes } else { 0 });
+    }
+
+    /// Narrows what it looks at to so many pixels.
+    pub(super) fn narrow(&mut self, n_pixels: u64) {
+        self.n_pixels = self.n_pixels.min(n_pixels);
+    }
+
+    /// Resources that its shaders see from here on.
+    pub(super) fn bind(&mut self, bound: &[Bound]) {
+        for resource in bound {
+            match *resource {
+                Bound::Buffer {
+                    id,
+                    n_bytes,
+                    is_written,
+                } => {
+                    if self.is_new(id) {
+                        self.work.read(n_bytes);
+                        self.work.write(if is_written { n_bytes } else { 0 });
+                    }
+                }
+                Bound::View { id, shape } => {
+                    if self.is_new(id) {
+                        let most = self.n_pixels.saturating_mul(u64::from(shape.n_layers));
+                        self.work.read(shape.n_texels().min(most) * shape.texel_bytes());
+                    }
+                }
+            }
+        }
+    }
+
+    /// A stream of vertices.
+    pub(super) fn stream(&mut self, id: Id, n_bytes: u64) {
+        if self.is_new(id) {
+            self.work.read(n_bytes);
+        }
+    }
+
+    pub(super) fn draw(&mut self, n_vertices: u32, n_instances: u32) {
+        self.work.draw(n_vertices, n_instances);
+    }
+
+    /// The same by indices of 32 bits.
+    pub(super) fn draw_indexed(&mut self, n_indices: u32, n_instances: u32) {
+        self.work.draw(n_indices, n_instances);
+        self.work.read(u64::from(n_indices) * size_of::<u32>() as u64);
+    }
+
+    pub(super) fn dispatch(&mut self) {
+        self.work.n_draws += 1;
+    }
+
+    fn is_new(&mut self, id: Id) -> bool {
+        let is_new = !self.counted.contains(&id);
+        if is_new {
+            self.counted.push(id);
+        }
+        is_new
+    }
+}
+
+impl Slot {
+    /// Bytes of a buffer of `n_bytes` that a shader sees through the slot.
+    pub(super) fn seen_bytes(self, n_bytes: u64) -> u64 {
+        match self {
+            Self::Uniform(size) | Self::PerUse(size) => size as u64,
+            _ => n_bytes,
+        }
+    }
+}

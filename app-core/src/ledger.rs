@@ -1,0 +1,136 @@
+//! The ledger of a frame: what its passes must cost on any device, summed up and set in columns.
+//!
+//! Its entries are the passes of a [`FrameReport`], whose work a recorder counts from the descriptors that it records
+//! with; [`Core::counting`](crate::Core::counting) makes such reports without a device.
+
+use crate::frame::report::FrameReport;
+use crate::gpu::pass_run::{PassRun, Path};
+use crate::gpu::work::Work;
+
+/// Bytes of a mebibyte.
+const MEBIBYTE: f64 = 1048576.0;
+/// Bytes of a pixel of the screen.
+const SCREEN_PIXEL_BYTES: u64 = 4;
+
+/// What a frame costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ledger {
+    /// Width and height of the screen that copies are stated in.
+    screen_px: [u32; 2],
+    entries: Vec<PassRun>,
+    uploaded_bytes: u64,
+}
+
+impl Ledger {
+    /// Of a frame on a screen of `screen_px` pixels; `present` is what showing it there costs, where it is shown.
+    #[must_use]
+    pub fn new(report: &FrameReport, screen_px: [u32; 2], present: Option<Work>) -> Self {
+        let shown = present.map(|work| PassRun {
+            path: Path::Frame,
+            pass: "screen",
+            n_runs: 1,
+            work,
+        });
+        Self {
+            screen_px,
+            entries: report.ran.iter().copied().chain(shown).collect(),
+            uploaded_bytes: report.uploaded_bytes,
+        }
+    }
+
+    /// The passes, in the order of their first runs.
+    #[must_use]
+    pub fn entries(&self) -> &[PassRun] {
+        &self.entries
+    }
+
+    /// Sums over all passes.
+    #[must_use]
+    pub fn total(&self) -> Work {
+        self.entries.iter().map(|run| run.work).sum()
+    }
+
+    /// Bytes that the processor hands over, which are written once: camera picture, pose, uniforms.
+    #[must_use]
+    pub fn uploaded_bytes(&self) -> u64 {
+        self.uploaded_bytes
+    }
+
+    /// Bytes that the device moves, with those that the processor hands over.
+    #[must_use]
+    pub fn bytes_moved(&self) -> u64 {
+        self.total().bytes_moved() + self.uploaded_bytes
+    }
+
+    /// The same in units of 2^20 bytes.
+    #[must_use]
+    pub fn mebibytes_moved(&self) -> f64 {
+        mebibytes(self.bytes_moved())
+    }
+
+    /// Copies of the screen: each is a read and a write of all of its pixels, of four bytes.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
+    pub fn copies(&self, bytes: u64) -> f64 {
+        let [width, height] = self.screen_px.map(u64::from);
+        let copy = 2 * SCREEN_PIXEL_BYTES * width * height;
+        bytes as f64 / copy.max(1) as f64
+    }
+
+    /// Copies of the screen that the frame costs in all.
+    #[must_use]
+    pub fn copies_moved(&self) -> f64 {
+        self.copies(self.bytes_moved())
+    }
+
+    /// A row for each pass, then one for what the processor hands over and one for all, under a head: pass, runs,
+    /// triangles, vertices, mebibytes read and written, copies of the screen.
+    #[must_use]
+    pub fn rows(&self) -> Vec<[String; 7]> {
+        let head = [
+            "pass",
+            "runs",
+            "triangles",
+            "vertices",
+            "MiB read",
+            "MiB written",
+            "copies",
+        ];
+        let mut rows = vec![head.map(str::to_owned)];
+        for run in &self.entries {
+            let name = format!("{} ({})", run.pass, run.path.name());
+            rows.push(self.row(name, run.n_runs.to_string(), &run.work, 0));
+        }
+        rows.push(self.row(
+            "from the processor".to_owned(),
+            String::new(),
+            &Work::default(),
+            self.uploaded_bytes,
+        ));
+        rows.push(self.row(
+            "all".to_owned(),
+            String::new(),
+            &self.total(),
+            self.uploaded_bytes,
+        ));
+        rows
+    }
+
+    fn row(&self, name: String, n_runs: String, work: &Work, uploaded_bytes: u64) -> [String; 7] {
+        let moved = work.bytes_moved() + uploaded_bytes;
+        [
+            name,
+            n_runs,
+            work.triangles().to_string(),
+            work.vertices().to_string(),
+            format!("{:.2}", mebibytes(work.bytes_read())),
+            format!("{:.2}", mebibytes(work.bytes_written() + uploaded_bytes)),
+            format!("{:.3}", self.copies(moved)),
+        ]
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
+fn mebibytes(bytes: u64) -> f64 {
+    bytes as f64 / MEBIBYTE
+}

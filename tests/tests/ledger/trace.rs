@@ -1,0 +1,293 @@
+//! What a device was given, by its own trace: draws, attachments and bindings of each pass, worked out from nothing else.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Work of a pass, over all of its runs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Given {
+    pub(crate) n_runs: u32,
+    pub(crate) n_draws: u32,
+    pub(crate) triangles: u64,
+    pub(crate) vertices: u64,
+    pub(crate) bytes_written: u64,
+    /// None of a compute pass, whose shader alone knows what it looks at.
+    pub(crate) bytes_read: Option<u64>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Texture {
+    size: [u64; 3],
+    texel_bytes: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct View {
+    of: u64,
+    first_layer: u64,
+    n_layers: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Uniform { n_bytes: u64, is_dynamic: bool },
+    Storage { is_written: bool },
+    Other,
+}
+
+/// Objects that the device has.
+#[derive(Debug, Default)]
+pub(crate) struct Objects {
+    textures: HashMap<u64, Texture>,
+    views: HashMap<u64, View>,
+    buffers: HashMap<u64, u64>,
+    layouts: HashMap<u64, Vec<Kind>>,
+    /// Layout, then what is bound.
+    groups: HashMap<u64, (u64, Vec<u64>)>,
+}
+
+/// The number after `key` in a line.
+fn after(line: &str, key: &str) -> Option<u64> {
+    let rest = &line[line.find(key)? + key.len()..];
+    let rest = rest.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().ok()
+}
+
+fn pointer(line: &str) -> Option<u64> {
+    after(line, "PointerId(")
+}
+
+/// The first number after `key` in some lines; none where the first such line has `None`.
+fn number(lines: &[&str], key: &str) -> Option<u64> {
+    let line = lines.iter().find(|line| line.trim_start().starts_with(key))?;
+    after(line, key)
+}
+
+/// Bytes of a texel, by the names of WebGPU.
+fn texel_bytes(format: &str) -> u64 {
+    match format {
+        "r8unorm" => 1,
+        "rg8unorm" | "rg8uint" | "r16float" | "depth16unorm" => 2,
+        "rgba8unorm" | "rgba8unorm-srgb" | "rg16float" | "depth32float" => 4,
+        "rgba16float" => 8,
+        "rgba32float" => 16,
+        other => panic!("{other}"),
+    }
+}
+
+/// Lines from `first` on to the one that closes what it opens, at the same depth.
+fn block<'a>(lines: &'a [&'a str], first: usize) -> &'a [&'a str] {
+    let depth = |line: &str| line.len() - line.trim_start().len();
+    let own = depth(lines[first]);
+    let rest = lines[first + 1..].iter();
+    let n_within = rest.take_while(|line| depth(line) > own).count();
+    let n_lines = if n_within == 0 { 1 } else { n_within + 2 };
+    &lines[first..(first + n_lines).min(lines.len())]
+}
+
+impl Objects {
+    /// Takes a part of a trace; returns the passes in it.
+    pub(crate) fn take(&mut self, trace: &str) -> BTreeMap<String, Given> {
+        let lines: Vec<&str> = trace.lines().collect();
+        let mut passes = BTreeMap::new();
+        let mut at = 0;
+        while at < lines.len() {
+            let text = block(&lines, at);
+            let line = lines[at].trim_start();
+            if line.starts_with("Create") {
+                self.create(line, text);
+                at += text.len();
+            } else if line.starts_with("RunRenderPass") || line.starts_with("RunComputePass") {
+                self.pass(text, &mut passes);
+                at += text.len();
+            } else {
+                at += 1;
+            }
+        }
+        passes
+    }
+
+    fn create(&mut self, line: &str, text: &[&str]) {
+        let id = pointer(line).or_else(|| text.iter().find_map(|line| pointer(line)));
+        let Some(id) = id else {
+            return;
+        };
+        if line.starts_with("CreateTextureView") {
+            let of = pointer(text[2]).unwrap();
+            let given = number(text, "arrayLayerCount: Some");
+            let view = View {
+                of,
+                first_layer: number(text, "baseArrayLayer:").unwrap_or(0),
+                n_layers: given.unwrap_or(self.textures[&of].size[2]),
+            };
+            self.views.insert(id, view);
+        } else if line.starts_with("CreateTexture(") {
+            let side = |key| number(text, key).unwrap();
+            let format = text.iter().find(|line| line.trim_start().starts_with("format:"));
+            let format = format.unwrap().split('"').nth(1).unwrap();
+            let texture = Texture {
+                size: [side("width:"), side("height:"), side("depthOrArrayLayers:")],
+                texel_bytes: texel_bytes(format) * side("sample_count:"),
+            };
+            self.textures.insert(id, texture);
+        } else if line.starts_with("CreateBuffer(") {
+            self.buffers.insert(id, number(text, "size:").unwrap());
+        } else if line.starts_with("CreateBindGroupLayout(") {
+            self.layouts.insert(id, kinds(text));
+        } else if line.starts_with("CreateBindGroup(") {
+            let layout = text.iter().find(|line| line.trim_start().starts_with("layout:"));
+            let bound = text.iter().filter(|line| !line.contains("layout:"));
+            let bound = bound.skip(1).filter_map(|line| pointer(line)).collect();
+            self.groups.insert(id, (pointer(layout.unwrap()).unwrap(), bound));
+        }
+    }
+
+    fn view(&self, id: u64) -> (Texture, View) {
+        let view = self.views[&id];
+        (self.textures[&view.of], view)
+    }
+
+    /// Bytes of one sample of all of a view's texels.
+    fn view_bytes(&self, id: u64) -> u64 {
+        let (texture, view) = self.view(id);
+        texture.size[0] * texture.size[1] * view.n_layers * texture.texel_bytes
+    }
+
+    fn pass(&self, text: &[&str], passes: &mut BTreeMap<String, Given>) {
+        let label = text
+            .iter()
+            .find_map(|line| line.trim().strip_prefix("label: Some(\""));
+        let label = label.unwrap().split('"').next().unwrap();
+        let given = passes.entry(label.to_owned()).or_default();
+        given.n_runs += 1;
+        let is_drawn = text[0].contains("RunRenderPass");
+        let mut read = 0;
+        let mut n_pixels = u64::MAX;
+        if is_drawn {
+            (n_pixels, read) = self.attachments(text, given);
+        }
+        if let Some(scissor) = text.iter().position(|line| line.contains("SetScissor(")) {
+            let side = |key| number(block(text, scissor), key).unwrap();
+            n_pixels = n_pixels.min(side("w:") * side("h:"));
+        }
+        let mut seen = BTreeSet::new();
+        for (index, line) in text.iter().enumerate() {
+            let within = || block(text, index);
+            let of = |key| number(within(), key).unwrap();
+            match line.trim().trim_end_matches('(') {
+                "SetBindGroup" => {
+                    let group = within().iter().find_map(|line| pointer(line)).unwrap();
+                    let (bytes_read, bytes_written) = self.bound(group, n_pixels, &mut seen);
+                    read += bytes_read;
+                    given.bytes_written += bytes_written;
+                }
+                "SetVertexBuffer" => {
+                    let id = within().iter().find_map(|line| pointer(line)).unwrap();
+                    if seen.insert([id, 0, 0]) {
+                        read += self.buffers[&id];
+                    }
+                }
+                name @ ("Draw" | "DrawIndexed") => {
+                    let is_indexed = name == "DrawIndexed";
+                    let n = of(if is_indexed {
+                        "index_count:"
+                    } else {
+                        "vertex_count:"
+                    });
+                    let n_instances = of("instance_count:");
+                    given.n_draws += 1;
+                    given.triangles += n / 3 * n_instances;
+                    given.vertices += n * n_instances;
+                    read += if is_indexed { 4 * n } else { 0 };
+                }
+                dispatch if dispatch.starts_with("DispatchWorkgroups") => given.n_draws += 1,
+                _ => {}
+            }
+        }
+        if is_drawn {
+            *given.bytes_read.get_or_insert(0) += read;
+        }
+    }
+
+    /// Pixels of a pass and bytes that its attachments load; those that they store are added.
+    fn attachments(&self, text: &[&str], given: &mut Given) -> (u64, u64) {
+        let (mut n_pixels, mut read, mut current) = (None, 0, None);
+        let first = text
+            .iter()
+            .position(|line| line.contains("color_attachments"))
+            .unwrap();
+        for line in &text[first..] {
+            let line = line.trim();
+            if line.starts_with("view:") {
+                let id = pointer(line).unwrap();
+                let [width, height, _] = self.view(id).0.size;
+                n_pixels.get_or_insert(width * height);
+                current = Some(id);
+            } else if line.starts_with("resolve_target: Some") {
+                given.bytes_written += self.view_bytes(pointer(line).unwrap());
+            } else if line == "load_op: load," || line == "load: load," {
+                read += self.view_bytes(current.unwrap());
+            } else if line == "store_op: store," || line == "store: store," {
+                given.bytes_written += self.view_bytes(current.unwrap());
+            }
+        }
+        (n_pixels.unwrap(), read)
+    }
+
+    /// Bytes that a group has a pass read and write, but for what it has seen.
+    fn bound(&self, group: u64, n_pixels: u64, seen: &mut BTreeSet<[u64; 3]>) -> (u64, u64) {
+        let (layout, bound) = &self.groups[&group];
+        let (mut read, mut written) = (0, 0);
+        for (index, (kind, id)) in self.layouts[layout].iter().zip(bound).enumerate() {
+            match *kind {
+                Kind::Uniform { n_bytes, is_dynamic } => {
+                    let key = if is_dynamic {
+                        [group, index as u64, 1]
+                    } else {
+                        [*id, 0, 0]
+                    };
+                    read += if seen.insert(key) { n_bytes } else { 0 };
+                }
+                Kind::Storage { is_written } => {
+                    if seen.insert([*id, 0, 0]) {
+                        read += self.buffers[id];
+                        written += if is_written { self.buffers[id] } else { 0 };
+                    }
+                }
+                Kind::Other => {
+                    let Some(view) = self.views.get(id) else {
+                        continue;
+                    };
+                    if seen.insert([view.of, view.first_layer, view.n_layers]) {
+                        let texture = self.textures[&view.of];
+                        let n_texels = (texture.size[0] * texture.size[1]).min(n_pixels);
+                        read += n_texels * view.n_layers * texture.texel_bytes;
+                    }
+                }
+            }
+        }
+        (read, written)
+    }
+}
+
+fn kinds(text: &[&str]) -> Vec<Kind> {
+    let entries = text
+        .iter()
+        .enumerate()
+        .filter(|(_, line)| line.trim_start().starts_with("ty: "));
+    let mut kinds = Vec::new();
+    for (index, line) in entries {
+        match line.trim() {
+            "ty: Buffer(" => {}
+            "ty: Uniform," => kinds.push(Kind::Uniform {
+                is_dynamic: text[index + 1].contains("true"),
+                n_bytes: after(text[index + 2], "Some(").unwrap(),
+            }),
+            "ty: Storage(" => kinds.push(Kind::Storage {
+                is_written: text[index + 1].contains("false"),
+            }),
+            _ => kinds.push(Kind::Other),
+        }
+    }
+    kinds
+}
