@@ -14,6 +14,7 @@
 //!
 //! [`android_main`]: https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
 
+pub mod arcore;
 pub mod convert;
 
 #[cfg(target_os = "android")]
@@ -28,7 +29,7 @@ mod stage;
 #[cfg(target_os = "android")]
 // SAFETY: the only definition of this symbol, with the signature that the glue declares.
 #[unsafe(no_mangle)]
-fn android_main(app: winit::platform::android::activity::AndroidApp) {
+fn android_main(app: android_activity::AndroidApp) {
     if let Err(error) = lifecycle::run(&app) {
         eprintln!("app-android: closing the activity: {error}");
     }
