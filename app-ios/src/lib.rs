@@ -13,6 +13,7 @@
 //! needs Apple's SDK; `README.md` beside this crate tells how a Mac makes an app of it.
 //! On other systems only `convert` is compiled.
 
+pub mod arkit;
 pub mod convert;
 
 #[cfg(target_os = "ios")]
