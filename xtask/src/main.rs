@@ -78,6 +78,14 @@ enum Command {
     Fmt,
     /// Check everything that must hold before a change is taken
     Test,
+    /// Package both shells and hold their sizes against the budgets
+    Size {
+        /// Take the sizes anew, within the budgets
+        #[arg(long)]
+        record: bool,
+    },
+    /// Write the table of what the shells call of their platforms
+    Calls,
     /// The iPhone shell
     #[command(subcommand)]
     Ios(IosCommand),
@@ -156,6 +164,16 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,
+        Command::Size { record } => {
+            for phone in [&IOS, &ANDROID] {
+                phone::run(&toolchain, phone, Action::Package(None))?;
+            }
+            phone::size::hold(&toolchain.root, record)?;
+        }
+        Command::Calls => {
+            let table = phone::calls::table(&toolchain.root)?;
+            std::fs::write(toolchain.root.join("xtask/doc/calls.md"), table)?;
+        }
         Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
         Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,
     }

@@ -9,6 +9,9 @@ pub mod session;
 pub mod status;
 pub mod tracker;
 
+#[cfg(target_os = "android")]
+pub mod library;
+
 mod owned;
 
 #[cfg(test)]

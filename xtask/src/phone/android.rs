@@ -35,6 +35,8 @@ const TOOLS: [Tool; 2] = [
 ];
 /// Debian's unwinder for the phone's processor, which stands in for the NDK's.
 const UNWINDER: &str = "libunwind-19-dev";
+/// Names of functions stay out of the library. An argument of the last link alone, so that nothing else is built anew.
+const STRIP: &str = "-Wl,--strip-all";
 /// What that unwinder takes from glibc, in words of Android's library.
 const SHIM: &str = r"
 extern int *__errno(void);
@@ -51,13 +53,14 @@ pub(super) fn package(toolchain: &Toolchain, arcore: Option<&Arcore>) -> Result<
     fs::create_dir_all(&folder)?;
     let imports = Imports::read(&shell.join("imports.txt"), true)?;
     let (library, linked) = if ndk::ndk().is_some() {
-        command::run(strip(&mut ANDROID.build(toolchain, &[])?))?;
+        command::run(&mut ANDROID.build(toolchain, &[STRIP.to_owned()])?)?;
         (built(toolchain), "by the NDK")
     } else {
         let library = link_without_ndk(toolchain, &folder, &imports)?;
         (library, "against stand-ins, without the NDK: not for a phone")
     };
     let file = fs::read(&library).with_context(|| library.display().to_string())?;
+    fs::write(folder.join("libapp_android.so"), &file)?;
     let read = Library::read(&file).with_context(|| library.display().to_string())?;
     check(&read)?;
     if ndk::ndk().is_none() {
@@ -78,10 +81,6 @@ pub(super) fn package(toolchain: &Toolchain, arcore: Option<&Arcore>) -> Result<
 /// Names of the list that are there at the start; others are looked up while the app runs.
 fn is_linked(library: &str) -> bool {
     Path::new(library).extension().is_some_and(|end| end == "so")
-}
-
-fn strip(build: &mut Command) -> &mut Command {
-    build.env("CARGO_PROFILE_RELEASE_STRIP", "symbols")
 }
 
 fn built(toolchain: &Toolchain) -> PathBuf {
@@ -134,10 +133,10 @@ fn link_without_ndk(toolchain: &Toolchain, folder: &Path, imports: &Imports) -> 
     let page = format!("-Wl,-z,max-page-size={PAGE}");
     let mut args: Vec<String> = target_args().into();
     args.extend([search, shim, page]);
-    args.extend(["-Wl,--no-undefined", "-Wl,-soname,libapp_android.so"].map(str::to_owned));
+    args.extend(["-Wl,--no-undefined", "-Wl,-soname,libapp_android.so", STRIP].map(str::to_owned));
     let mut build = ANDROID.build(toolchain, &args)?;
     build.env("CARGO_TARGET_AARCH64_LINUX_ANDROID_LINKER", CLANG);
-    command::run(strip(&mut build))?;
+    command::run(&mut build)?;
     Ok(built(toolchain))
 }
 

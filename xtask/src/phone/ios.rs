@@ -226,6 +226,31 @@ mod tests {
         assert!(project.contains(&format!("name: {NAME}\n")));
     }
 
+    /// Names that Apple asks reasons for, and under which heading.
+    const REASONS: [(&str, &str); 10] = [
+        ("_fstat", "FileTimestamp"),
+        ("_stat", "FileTimestamp"),
+        ("_lstat", "FileTimestamp"),
+        ("_fstatat", "FileTimestamp"),
+        ("_getattrlist", "FileTimestamp"),
+        ("_mach_absolute_time", "SystemBootTime"),
+        ("_statfs", "DiskSpace"),
+        ("_statvfs", "DiskSpace"),
+        ("_fstatfs", "DiskSpace"),
+        ("_fstatvfs", "DiskSpace"),
+    ];
+
+    #[test]
+    fn the_privacy_manifest_has_a_reason_for_every_import_that_needs_one() {
+        let (manifest, imports) = (shell("PrivacyInfo.xcprivacy"), shell("imports.txt"));
+        let is_imported = |name: &str| imports.lines().any(|line| line.ends_with(&format!(" {name}")));
+        for heading in ["FileTimestamp", "SystemBootTime", "DiskSpace"] {
+            let needs = REASONS.iter().any(|(name, of)| *of == heading && is_imported(name));
+            let states = manifest.contains(&format!("NSPrivacyAccessedAPICategory{heading}<"));
+            assert_eq!(needs, states, "{heading}");
+        }
+    }
+
     #[test]
     fn an_executable_without_arkit_or_for_another_version_is_refused() {
         let good = || Executable {

@@ -2,17 +2,19 @@
 
 mod android;
 mod apk;
+pub(crate) mod calls;
 mod elf;
 mod imports;
 mod ios;
 mod macho;
 mod ndk;
+pub(crate) mod size;
 mod tools;
 mod zip;
 
 use std::process::Command;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use crate::command;
 use crate::toolchain::Toolchain;
@@ -68,7 +70,7 @@ impl Phone {
         let mut build = toolchain.cargo("rustc");
         build.args(["--locked", "--release", "--lib", "--package", self.package]);
         build.args(["--target", self.target]);
-        if self.is_android() && linker_args.is_empty() {
+        if self.is_android() && ndk::ndk().is_some() {
             build.envs(ndk::ndk_tools()?);
         }
         build.arg("--");
@@ -86,6 +88,9 @@ pub(crate) fn run(toolchain: &Toolchain, phone: &Phone, action: Action) -> Resul
     toolchain.ensure_target(phone.target)?;
     match action {
         Action::Check => command::run(&mut phone.check(toolchain)),
+        Action::Build if phone.is_android() && ndk::ndk().is_none() => {
+            bail!("no NDK found; set ANDROID_NDK_HOME to its folder. `cargo xtask android package` links without one")
+        }
         Action::Build => command::run(&mut phone.build(toolchain, &[])?),
         Action::Package(arcore) if phone.is_android() => android::package(toolchain, arcore.as_ref()),
         Action::Package(_) => ios::package(toolchain),
