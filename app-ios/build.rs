@@ -10,7 +10,10 @@ fn main() {
     println!("cargo::rustc-check-cfg=cfg(has_emulator)");
     let folders: Vec<_> = env::split_paths(&env::var_os("PATH").unwrap_or_default()).collect();
     let has = |program: &str| {
-        let found = folders.iter().map(|folder| folder.join(program)).find(|path| path.is_file());
+        let found = folders
+            .iter()
+            .map(|folder| folder.join(program))
+            .find(|path| path.is_file());
         // A file that is not there yet makes this run again.
         let path = found.clone().unwrap_or_else(|| program.into());
         println!("cargo::rerun-if-changed={}", path.display());

@@ -25,7 +25,14 @@ fn matrices_arrive_through_the_shim_and_not_without() {
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     run(&rustc, |rustc| {
         rustc
-            .args(["--edition", "2024", "--target", TARGET, "--crate-type", "staticlib"])
+            .args([
+                "--edition",
+                "2024",
+                "--target",
+                TARGET,
+                "--crate-type",
+                "staticlib",
+            ])
             .args(["-C", "opt-level=2", "-C", "panic=abort", "-o"])
             .arg(&library)
             .arg(sources.join("probe.rs"))

@@ -9,10 +9,7 @@ use crate::command;
 
 /// Installs `packages` as root, asks first where `sudo` is needed, and otherwise says which line to run.
 pub(crate) fn install(reason: &str, packages: &[&str]) -> Result<()> {
-    let line = format!(
-        "apt-get update && apt-get install --yes {}",
-        packages.join(" ")
-    );
+    let line = format!("apt-get update && apt-get install --yes {}", packages.join(" "));
     let is_root = command::output("id", &["-u"]).is_some_and(|id| id.trim() == "0");
     if is_root {
         install_as(&[], packages)

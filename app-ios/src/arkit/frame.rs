@@ -1,6 +1,8 @@
 //! An ARKit frame in plain numbers, and what becomes of it.
 
-use app_core::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarImage, PlaneError, Planes, YcbcrEncoding};
+use app_core::camera_frame::{
+    CameraImage, CodeRange, LumaCoefficients, PlanarImage, PlaneError, Planes, YcbcrEncoding,
+};
 use app_core::scene::LightEstimate;
 use glam::{DMat3, DMat4, DVec2};
 
@@ -144,7 +146,10 @@ impl TrackedFrame {
             },
         );
         let sensor_px_from_camera_rdf = convert::sensor_px_from_camera_rdf(raw.intrinsics);
-        let [fx, fy] = [sensor_px_from_camera_rdf.x_axis.x, sensor_px_from_camera_rdf.y_axis.y];
+        let [fx, fy] = [
+            sensor_px_from_camera_rdf.x_axis.x,
+            sensor_px_from_camera_rdf.y_axis.y,
+        ];
         if !(fx > 0.0 && fy > 0.0 && sensor_px_from_camera_rdf.is_finite()) {
             return Err(FrameError::Camera(fx, fy));
         }
@@ -176,8 +181,14 @@ fn time_ns(seconds: f64) -> Result<i64, FrameError> {
 }
 
 fn found_plane(raw: &RawSurface) -> Option<FoundPlane> {
-    let is_finite = raw.boundary.iter().all(|corner| corner[0].is_finite() && corner[2].is_finite());
-    let outline_m = raw.boundary.iter().map(|corner| DVec2::new(corner[0].into(), corner[2].into()));
+    let is_finite = raw
+        .boundary
+        .iter()
+        .all(|corner| corner[0].is_finite() && corner[2].is_finite());
+    let outline_m = raw
+        .boundary
+        .iter()
+        .map(|corner| DVec2::new(corner[0].into(), corner[2].into()));
     Some(FoundPlane {
         id: u128::from_be_bytes(raw.id),
         is_upright: match raw.alignment {
@@ -225,7 +236,11 @@ mod tests {
                 plane(&[1, 2, 3, 4, 0, 0, 5, 6, 7, 8, 0, 0], 6),
                 plane(&[90, 200, 91, 201, 0, 0], 6),
             ],
-            intrinsics: [[500.0, 0.0, 0.0, 7.0], [0.0, 510.0, 0.0, 7.0], [1.5, 0.5, 1.0, 7.0]],
+            intrinsics: [
+                [500.0, 0.0, 0.0, 7.0],
+                [0.0, 510.0, 0.0, 7.0],
+                [1.5, 0.5, 1.0, 7.0],
+            ],
             transform: UPRIGHT,
             tracking: [2, 0],
             exposure: [0.01, 0.0],
@@ -251,9 +266,15 @@ mod tests {
         assert_eq!(image.encoding().range, CodeRange::Full);
         let pose = frame.world_from_camera.expect("a pose");
         assert_eq!(pose.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
-        assert_eq!(frame.sensor_px_from_camera_rdf * DVec3::Z, DVec3::new(2.0, 1.0, 1.0));
+        assert_eq!(
+            frame.sensor_px_from_camera_rdf * DVec3::Z,
+            DVec3::new(2.0, 1.0, 1.0)
+        );
         let light = frame.light.expect("light");
-        assert_eq!((light.ambient_intensity, light.color_temperature_k), (Some(1000.0), Some(6500.0)));
+        assert_eq!(
+            (light.ambient_intensity, light.color_temperature_k),
+            (Some(1000.0), Some(6500.0))
+        );
         assert_eq!((frame.lost, frame.exposure_s), (None, Some(0.01)));
         assert_eq!(frame.planes[0].outline_m, [DVec2::new(0.5, -0.25)]);
         assert!(!frame.planes[0].is_upright);
@@ -264,7 +285,10 @@ mod tests {
         for tracking in [[0, 0], [1, 0], [1, 1], [1, 2], [1, 3], [1, 4], [1, 9], [7, 0]] {
             let frame = TrackedFrame::new(&RawFrame { tracking, ..raw() }).expect("a frame");
             assert_eq!(frame.world_from_camera, None);
-            assert!(frame.lost.is_some_and(|message| message.ends_with('.')), "{tracking:?}");
+            assert!(
+                frame.lost.is_some_and(|message| message.ends_with('.')),
+                "{tracking:?}"
+            );
         }
     }
 
@@ -276,13 +300,55 @@ mod tests {
             row_stride: 0,
         };
         let wrong = [
-            ("format", RawFrame { pixel_format: 0, ..raw() }),
-            ("1 planes", RawFrame { planes: vec![none], ..raw() }),
-            ("luma: ", RawFrame { planes: vec![none; 2], ..raw() }),
-            ("px; 1 to 8192", RawFrame { size_px: [usize::MAX, 2], ..raw() }),
-            ("focal length", RawFrame { intrinsics: no_focal_length, ..raw() }),
-            ("time", RawFrame { timestamp: f64::NAN, ..raw() }),
-            ("time", RawFrame { timestamp: -1.0, ..raw() }),
+            (
+                "format",
+                RawFrame {
+                    pixel_format: 0,
+                    ..raw()
+                },
+            ),
+            (
+                "1 planes",
+                RawFrame {
+                    planes: vec![none],
+                    ..raw()
+                },
+            ),
+            (
+                "luma: ",
+                RawFrame {
+                    planes: vec![none; 2],
+                    ..raw()
+                },
+            ),
+            (
+                "px; 1 to 8192",
+                RawFrame {
+                    size_px: [usize::MAX, 2],
+                    ..raw()
+                },
+            ),
+            (
+                "focal length",
+                RawFrame {
+                    intrinsics: no_focal_length,
+                    ..raw()
+                },
+            ),
+            (
+                "time",
+                RawFrame {
+                    timestamp: f64::NAN,
+                    ..raw()
+                },
+            ),
+            (
+                "time",
+                RawFrame {
+                    timestamp: -1.0,
+                    ..raw()
+                },
+            ),
         ];
         for (message, raw) in wrong {
             let error = TrackedFrame::new(&raw).expect_err(message).to_string();
@@ -294,9 +360,18 @@ mod tests {
     fn planes_that_make_no_sense_are_left_out() {
         let good = &raw().surfaces[0];
         let wrong = [
-            RawSurface { alignment: 7, ..good.clone() },
-            RawSurface { transform: [[0.0; 4]; 4], ..good.clone() },
-            RawSurface { boundary: vec![[f32::NAN; 4]], ..good.clone() },
+            RawSurface {
+                alignment: 7,
+                ..good.clone()
+            },
+            RawSurface {
+                transform: [[0.0; 4]; 4],
+                ..good.clone()
+            },
+            RawSurface {
+                boundary: vec![[f32::NAN; 4]],
+                ..good.clone()
+            },
         ];
         assert!(found_plane(good).is_some());
         for wrong in wrong {

@@ -60,10 +60,18 @@ impl Drop for Locked<'_> {
 pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Option<T> {
     // SAFETY: properties of a frame that was delivered, which never change.
     let (camera, buffer, timestamp, light, anchors) = unsafe {
-        (frame.camera(), frame.capturedImage(), frame.timestamp(), frame.lightEstimate(), frame.anchors())
+        (
+            frame.camera(),
+            frame.capturedImage(),
+            frame.timestamp(),
+            frame.lightEstimate(),
+            frame.anchors(),
+        )
     };
     let locked = Locked::new(&buffer)?;
-    let surfaces = anchors.iter().filter_map(|anchor| anchor.downcast::<ARPlaneAnchor>().ok());
+    let surfaces = anchors
+        .iter()
+        .filter_map(|anchor| anchor.downcast::<ARPlaneAnchor>().ok());
     // SAFETY: properties of the frame's camera; both matrices are SIMD matrices of the shapes asked for.
     let (intrinsics, transform, tracking, exposure) = unsafe {
         (

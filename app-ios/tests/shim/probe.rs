@@ -2,7 +2,10 @@
 
 #![no_std]
 #![allow(missing_docs, reason = "called from mock.c alone")]
-#![allow(clashing_extern_declarations, reason = "the control declares what the shim is there for")]
+#![allow(
+    clashing_extern_declarations,
+    reason = "the control declares what the shim is there for"
+)]
 
 #[path = "../../src/arkit/shim.rs"]
 mod shim;
@@ -19,7 +22,11 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// # Safety
 /// As the shim's.
 #[unsafe(no_mangle)]
-unsafe extern "C" fn ask_for_four_without(object: *const c_void, selector: *const c_void, to: *mut shim::Columns4) {
+unsafe extern "C" fn ask_for_four_without(
+    object: *const c_void,
+    selector: *const c_void,
+    to: *mut shim::Columns4,
+) {
     unsafe extern "C" {
         #[link_name = "objc_msgSend"]
         fn send(object: *const c_void, selector: *const c_void) -> shim::Columns4;

@@ -123,7 +123,12 @@ fn link_without_ndk(toolchain: &Toolchain, folder: &Path, imports: &Imports) -> 
     }
     let (source, shim) = (stubs.join("shim.c"), stubs.join("shim.o"));
     fs::write(&source, SHIM)?;
-    command::run(clang().args(["-w", "-fPIC", "-O1", "-c", "-o"]).arg(&shim).arg(&source))?;
+    command::run(
+        clang()
+            .args(["-w", "-fPIC", "-O1", "-c", "-o"])
+            .arg(&shim)
+            .arg(&source),
+    )?;
     fs::copy(unwinder(folder)?, stubs.join("libunwind.a"))?;
     // Android's threads are part of its C library.
     fs::write(stubs.join("libpthread.a"), "!<arch>\n")?;

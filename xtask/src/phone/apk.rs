@@ -13,7 +13,7 @@ use super::zip::{self, Entry};
 use crate::command;
 
 /// Tools of a package, where Android's own are missing.
-const TOOLS: [Tool; 3] = [
+const TOOLS: [Tool; 4] = [
     Tool {
         program: "aapt2",
         package: "aapt",
@@ -21,6 +21,10 @@ const TOOLS: [Tool; 3] = [
     Tool {
         program: "apksigner",
         package: "apksigner",
+    },
+    Tool {
+        program: "unzip",
+        package: "unzip",
     },
     Tool {
         program: "keytool",
@@ -63,12 +67,14 @@ struct Unpacked {
 /// Makes, signs and verifies a package around the shell's `library`, and says what it is.
 pub(super) fn make(shell: &Path, folder: &Path, library: Vec<u8>, arcore: Option<&Arcore>) -> Result<()> {
     let tools = Tools::find()?;
-    let arcore = arcore
-        .map(|arcore| arcore.unpack(folder, &tools))
-        .transpose()?;
+    let arcore = arcore.map(|arcore| arcore.unpack(folder, &tools)).transpose()?;
     let manifest = fs::read_to_string(shell.join("AndroidManifest.xml"))?;
     let has_code = arcore.as_ref().is_some_and(|arcore| arcore.classes.is_some());
-    let manifest = manifest_for(&manifest, arcore.as_ref().map(|arcore| arcore.manifest.as_str()), has_code)?;
+    let manifest = manifest_for(
+        &manifest,
+        arcore.as_ref().map(|arcore| arcore.manifest.as_str()),
+        has_code,
+    )?;
     let mut entries = resources(&tools, shell, folder, &manifest)?;
     entries.push(entry("lib/arm64-v8a/libapp_android.so", library));
     if let Some(arcore) = arcore {
@@ -175,7 +181,9 @@ fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool) -> Result<Stri
         } else {
             inside.to_owned()
         };
-        let at = manifest.find(before).with_context(|| format!("no {before} in the manifest"))?;
+        let at = manifest
+            .find(before)
+            .with_context(|| format!("no {before} in the manifest"))?;
         manifest.insert_str(at, &inside);
     }
     Ok(manifest)
@@ -197,14 +205,20 @@ fn resources(tools: &Tools, shell: &Path, folder: &Path, manifest: &str) -> Resu
     );
     fs::write(&text, manifest)?;
     let _ = fs::remove_dir_all(&linked);
+    fs::create_dir_all(&linked)?;
     let mut compile = Command::new(&tools.aapt2);
     compile.arg("compile").arg("--dir").arg(shell.join("res"));
     command::run(compile.arg("-o").arg(&compiled))?;
     let mut link = Command::new(&tools.aapt2);
-    link.args(["link", "--output-to-dir", "--version-name", env!("CARGO_PKG_VERSION")]);
-    link.args(["--version-code", &version_code(env!("CARGO_PKG_VERSION"))?.to_string()]);
+    link.args(["link", "--version-name", env!("CARGO_PKG_VERSION")]);
+    link.args([
+        "--version-code",
+        &version_code(env!("CARGO_PKG_VERSION"))?.to_string(),
+    ]);
     link.arg("-I").arg(&tools.framework).arg("--manifest").arg(&text);
-    command::run(link.arg("-o").arg(&linked).arg(&compiled))?;
+    let base = folder.join("base.zip");
+    command::run(link.arg("-o").arg(&base).arg(&compiled))?;
+    command::run(Command::new("unzip").arg("-q").arg(&base).arg("-d").arg(&linked))?;
     let mut entries = Vec::new();
     let mut folders = vec![linked.clone()];
     while let Some(folder) = folders.pop() {
@@ -237,14 +251,31 @@ fn sign(tools: &Tools, folder: &Path, apk: &Path) -> Result<()> {
     let keystore = folder.join("debug.keystore");
     if !keystore.is_file() {
         let mut make = Command::new("keytool");
-        make.args(["-genkeypair", "-alias", "debug", "-dname", "CN=Debug", "-keyalg", "RSA"]);
+        make.args([
+            "-genkeypair",
+            "-alias",
+            "debug",
+            "-dname",
+            "CN=Debug",
+            "-keyalg",
+            "RSA",
+        ]);
         make.args(["-keysize", "2048", "-validity", "10000", "-storetype", "PKCS12"]);
         make.args(["-storepass", KEYSTORE_PASSWORD, "-keystore"]);
         command::run(make.arg(&keystore))?;
     }
     let level = ndk::ANDROID_API.to_string();
     let mut sign = Command::new(&tools.apksigner);
-    sign.args(["sign", "--min-sdk-version", &level, "--ks"]).arg(&keystore);
+    // Every phone of that level takes the later schemes, which cover the whole file.
+    sign.args([
+        "sign",
+        "--v1-signing-enabled",
+        "false",
+        "--min-sdk-version",
+        &level,
+        "--ks",
+    ]);
+    sign.arg(&keystore);
     sign.args(["--ks-pass", &format!("pass:{KEYSTORE_PASSWORD}")]);
     command::run(sign.arg(apk))?;
     let mut verify = Command::new(&tools.apksigner);
@@ -255,7 +286,11 @@ fn sign(tools: &Tools, folder: &Path, apk: &Path) -> Result<()> {
 fn report(apk: &Path, has_code: bool) -> Result<()> {
     let archive = fs::read(apk)?;
     let found = zip::read(&archive)?;
-    println!("{}: {} bytes, signed with a key of this machine", apk.display(), archive.len());
+    println!(
+        "{}: {} bytes, signed with a key of this machine",
+        apk.display(),
+        archive.len()
+    );
     for found in &found {
         println!("  {:>9} bytes at {:>8}  {}", found.n_bytes, found.at, found.name);
         if !found.is_aligned() || (found.name.starts_with(LIBRARIES) && !found.is_stored) {
@@ -268,7 +303,9 @@ fn report(apk: &Path, has_code: bool) -> Result<()> {
         println!("This is a check and no app to hand on:");
     }
     if !has_code {
-        println!("  without ARCore's classes, which need its archive (--arcore, --sha256) and the SDK's d8, no session can begin");
+        println!(
+            "  without ARCore's classes, which need its archive (--arcore, --sha256) and the SDK's d8, no session can begin"
+        );
     }
     if ndk::ndk().is_none() {
         println!("  linked without the NDK: no phone has run such a library");
@@ -280,8 +317,10 @@ fn report(apk: &Path, has_code: bool) -> Result<()> {
 mod tests {
     use super::*;
 
-    const OURS: &str = r#"<manifest><application android:hasCode="true"><activity/></application></manifest>"#;
-    const ARCORE: &str = r#"<manifest><queries><package/></queries><application ><meta-data/></application></manifest>"#;
+    const OURS: &str =
+        r#"<manifest><application android:hasCode="true"><activity/></application></manifest>"#;
+    const ARCORE: &str =
+        r#"<manifest><queries><package/></queries><application ><meta-data/></application></manifest>"#;
 
     #[test]
     fn a_manifest_is_joined_with_that_of_arcore() {
@@ -294,7 +333,10 @@ mod tests {
     fn without_classes_a_manifest_has_no_code() {
         let alone = manifest_for(OURS, None, false).expect("a manifest");
         assert_eq!(alone, OURS.replace("true", "false"));
-        assert!(manifest_for(&alone, None, false).is_err(), "says nothing to replace");
+        assert!(
+            manifest_for(&alone, None, false).is_err(),
+            "says nothing to replace"
+        );
     }
 
     #[test]

@@ -17,7 +17,7 @@ Made by `cargo xtask calls`; a test compares it with the sources. Nothing here h
 - **linked**: the name is resolved when the app is linked, against the list of imports.
 - **emulated**: its calling convention ran in an emulator of the phone's processor, with a C function in its place.
 - **faked**: the code around it runs in desktop tests, with a function of the same signature in its place.
-- **untried**: compiled for the phone, and nothing more.
+- **untried**: compiled for the phone, and nothing more. A class stands for all messages to it that no other row names.
 ";
 
 /// A file of the shells whose calls are looked for, by how they stand there.
@@ -76,10 +76,24 @@ pub(crate) fn table(root: &Path) -> Result<String> {
     calls.linked(&Imports::read(&ios.join("imports.txt"), false)?);
     for source in sources(&ios)? {
         for selector in inside(&source.text, "selector(sel!(") {
-            calls.add("emulated", "messages through the shim for SIMD matrices", selector);
+            calls.add(
+                "emulated",
+                "messages through the shim for SIMD matrices",
+                selector,
+            );
         }
         for name in taken_from(&source.text, "objc2_") {
-            calls.add("untried", &format!("classes and functions in {}", source.path), &name);
+            calls.add(
+                "untried",
+                &format!("classes and functions in {}", source.path),
+                &name,
+            );
+        }
+        for message in source.text.split("msg_send![").skip(1) {
+            let message = message.split(']').next().unwrap_or_default();
+            let selector = message.split_once(", ").map_or(message, |(_, selector)| selector);
+            let selector = selector.split(':').next().unwrap_or_default();
+            calls.add("untried", &format!("messages by name in {}", source.path), selector);
         }
         for callback in inside(&source.text, "#[unsafe(method(") {
             calls.add("untried", &format!("callbacks in {}", source.path), callback);
@@ -92,7 +106,11 @@ pub(crate) fn table(root: &Path) -> Result<String> {
     for source in sources(&android)? {
         if source.path.ends_with("arcore/ffi.rs") {
             for name in inside(&source.text, "    fn Ar") {
-                calls.add("faked", "libarcore_sdk_c.so, looked up while the app runs", &format!("Ar{name}"));
+                calls.add(
+                    "faked",
+                    "libarcore_sdk_c.so, looked up while the app runs",
+                    &format!("Ar{name}"),
+                );
             }
         }
         for package in ["android_activity", "ndk", "jni"] {
@@ -119,8 +137,11 @@ impl Calls {
 
     fn linked(&mut self, imports: &Imports) {
         for (library, names) in imports.libraries() {
+            // What is no library is a value that is handed on while the app runs.
+            let is_library = library.starts_with('/') || library.ends_with(".so");
+            let mark = if is_library { "linked" } else { "untried" };
             for name in names {
-                self.add("linked", library, name);
+                self.add(mark, library, name);
             }
         }
     }
@@ -146,14 +167,21 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let committed = fs::read_to_string(root.join("xtask/doc/calls.md")).expect("the table");
         let made = table(&root).expect("a table");
-        assert!(committed == made, "run `cargo xtask calls` and look at what changed");
+        assert!(
+            committed == made,
+            "run `cargo xtask calls` and look at what changed"
+        );
     }
 
     #[test]
     fn calls_are_found_where_they_stand() {
-        let names = taken_from("use objc2_foo::{Bar, baz::Qux};\nuse other::No;\nuse objc2_x::FooGet;\n", "objc2_");
+        let names = taken_from(
+            "use objc2_foo::{Bar, baz::Qux};\nuse other::No;\nuse objc2_x::FooGet;\n",
+            "objc2_",
+        );
         assert_eq!(names, ["Bar", "Qux", "FooGet"]);
-        let selectors: Vec<&str> = inside("columns4(p, selector(sel!(transform))).0", "selector(sel!(").collect();
+        let selectors: Vec<&str> =
+            inside("columns4(p, selector(sel!(transform))).0", "selector(sel!(").collect();
         assert_eq!(selectors, ["transform"]);
     }
 }

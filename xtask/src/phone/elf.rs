@@ -136,7 +136,9 @@ fn number(file: &[u8], at: u64, n_bytes: usize) -> Result<u64> {
 }
 
 fn text(file: &[u8], at: u64) -> Result<String> {
-    let rest = file.get(usize::try_from(at)?..).context("a name outside of the file")?;
+    let rest = file
+        .get(usize::try_from(at)?..)
+        .context("a name outside of the file")?;
     let name = rest.split(|byte| *byte == 0).next().unwrap_or_default();
     Ok(String::from_utf8_lossy(name).into_owned())
 }

@@ -37,7 +37,6 @@ const TOOLS: [Tool; 2] = [
 ];
 /// Loaded although no name of it is imported: its classes are looked up while the app runs.
 const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
-const FRAMEWORKS: &str = "/System/Library/Frameworks/";
 
 /// Makes the app as far as this machine can.
 pub(super) fn package(toolchain: &Toolchain) -> Result<()> {
@@ -115,9 +114,16 @@ fn link(toolchain: &Toolchain, shell: &Path, folder: &Path, imports: &Imports) -
     let mut link = Command::new(LINKER);
     link.args(["-arch", "arm64", "-platform_version", "ios", &oldest, SDK]);
     // Without what nobody calls, without names for a debugger, with the signature that arm64 asks for at least.
-    link.args(["-dead_strip", "-S", "-x", "-adhoc_codesign", "-syslibroot"]).arg(&sdk);
+    link.args(["-dead_strip", "-S", "-x", "-adhoc_codesign", "-syslibroot"])
+        .arg(&sdk);
     link.arg("-o").arg(&program).arg(&object);
-    link.arg(toolchain.root.join("target").join(IOS.target).join("release/libapp_ios.a"));
+    link.arg(
+        toolchain
+            .root
+            .join("target")
+            .join(IOS.target)
+            .join("release/libapp_ios.a"),
+    );
     // By their paths, so that each is loaded whether or not a name of it is imported.
     command::run(link.args(libraries))?;
     Ok(program)
@@ -185,7 +191,10 @@ fn properties(text: &str) -> Result<String> {
         text.replace(variable, value)
     });
     match filled.split_once("$(") {
-        Some((_, rest)) => bail!("Info.plist: nothing is known of $({}", rest.lines().next().unwrap_or_default()),
+        Some((_, rest)) => bail!(
+            "Info.plist: nothing is known of $({}",
+            rest.lines().next().unwrap_or_default()
+        ),
         None => Ok(filled),
     }
 }
@@ -196,8 +205,12 @@ mod tests {
 
     use super::*;
 
+    const FRAMEWORKS: &str = "/System/Library/Frameworks/";
+
     fn shell(name: &str) -> String {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../app-ios").join(name);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../app-ios")
+            .join(name);
         fs::read_to_string(path).expect("a file of the shell")
     }
 
@@ -216,10 +229,15 @@ mod tests {
         for (library, _) in imports.libraries() {
             if let Some(name) = library.strip_prefix(FRAMEWORKS) {
                 let framework = name.split('/').next().expect("a folder");
-                assert!(project.contains(&format!("- sdk: {framework}\n")), "no {framework}");
+                assert!(
+                    project.contains(&format!("- sdk: {framework}\n")),
+                    "no {framework}"
+                );
             }
         }
-        let frameworks = imports.libraries().filter(|(path, _)| path.starts_with(FRAMEWORKS));
+        let frameworks = imports
+            .libraries()
+            .filter(|(path, _)| path.starts_with(FRAMEWORKS));
         assert_eq!(project.matches("- sdk: ").count(), frameworks.count());
         assert!(project.contains(&format!("iOS: \"{}.{}\"", OLDEST[0], OLDEST[1])));
         assert!(project.contains(&format!("MARKETING_VERSION: \"{}\"", env!("CARGO_PKG_VERSION"))));
@@ -245,7 +263,9 @@ mod tests {
         let (manifest, imports) = (shell("PrivacyInfo.xcprivacy"), shell("imports.txt"));
         let is_imported = |name: &str| imports.lines().any(|line| line.ends_with(&format!(" {name}")));
         for heading in ["FileTimestamp", "SystemBootTime", "DiskSpace"] {
-            let needs = REASONS.iter().any(|(name, of)| *of == heading && is_imported(name));
+            let needs = REASONS
+                .iter()
+                .any(|(name, of)| *of == heading && is_imported(name));
             let states = manifest.contains(&format!("NSPrivacyAccessedAPICategory{heading}<"));
             assert_eq!(needs, states, "{heading}");
         }

@@ -140,7 +140,10 @@ mod tests {
         let executable = Executable::read(&small()).expect("an executable");
         assert_eq!((executable.processor, executable.kind), (ARM64, EXECUTABLE));
         assert_eq!(executable.platform, Some((IOS, [16, 2])));
-        assert_eq!(executable.loads, BTreeSet::from(["/usr/lib/libA.dylib".to_owned()]));
+        assert_eq!(
+            executable.loads,
+            BTreeSet::from(["/usr/lib/libA.dylib".to_owned()])
+        );
         assert_eq!(executable.imports, BTreeSet::from(["_used".to_owned()]));
     }
 

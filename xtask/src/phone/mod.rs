@@ -89,7 +89,9 @@ pub(crate) fn run(toolchain: &Toolchain, phone: &Phone, action: Action) -> Resul
     match action {
         Action::Check => command::run(&mut phone.check(toolchain)),
         Action::Build if phone.is_android() && ndk::ndk().is_none() => {
-            bail!("no NDK found; set ANDROID_NDK_HOME to its folder. `cargo xtask android package` links without one")
+            bail!(
+                "no NDK found; set ANDROID_NDK_HOME to its folder. `cargo xtask android package` links without one"
+            )
         }
         Action::Build => command::run(&mut phone.build(toolchain, &[])?),
         Action::Package(arcore) if phone.is_android() => android::package(toolchain, arcore.as_ref()),

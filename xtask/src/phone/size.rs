@@ -40,14 +40,24 @@ fn parse(list: &str) -> Result<Vec<Entry>> {
 
 /// A line for each entry, and whether all are within their budgets.
 fn table(entries: &[(Entry, u64)]) -> (String, bool) {
-    let mut text = format!("{:<24} {:>10} {:>10} {:>8} {:>10}\n", "", "bytes", "recorded", "change", "budget");
+    let mut text = format!(
+        "{:<24} {:>10} {:>10} {:>8} {:>10}\n",
+        "", "bytes", "recorded", "change", "budget"
+    );
     for (entry, bytes) in entries {
         #[allow(clippy::cast_precision_loss, reason = "a percentage of some megabytes")]
         let change = 100.0 * (*bytes as f64 / entry.recorded.max(1) as f64 - 1.0);
         let verdict = if *bytes > entry.budget { "  TOO LARGE" } else { "" };
-        let Entry { name, recorded, budget } = entry;
+        let Entry {
+            name,
+            recorded,
+            budget,
+        } = entry;
         // Writing to a string does not fail.
-        let _ = writeln!(text, "{name:<24} {bytes:>10} {recorded:>10} {change:>+7.1}% {budget:>10}{verdict}");
+        let _ = writeln!(
+            text,
+            "{name:<24} {bytes:>10} {recorded:>10} {change:>+7.1}% {budget:>10}{verdict}"
+        );
     }
     (text, entries.iter().all(|(entry, bytes)| *bytes <= entry.budget))
 }
@@ -94,7 +104,10 @@ mod tests {
         };
         let (text, is_within) = table(&[(small.clone(), 110), (large.clone(), 1101)]);
         assert!(!is_within);
-        assert!(text.contains("+10.0%") && text.matches("TOO LARGE").count() == 1, "{text}");
+        assert!(
+            text.contains("+10.0%") && text.matches("TOO LARGE").count() == 1,
+            "{text}"
+        );
         assert!(table(&[(small.clone(), 120)]).1);
         assert!(parse("small 100").is_err());
         assert!(parse("small 100 many").is_err());

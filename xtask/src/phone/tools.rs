@@ -14,9 +14,7 @@ pub(super) struct Tool {
 /// Makes sure that all of `tools` are there.
 pub(super) fn ensure(tools: &[Tool]) -> Result<()> {
     let packages = || {
-        let missing = tools
-            .iter()
-            .filter(|tool| command::find(tool.program).is_none());
+        let missing = tools.iter().filter(|tool| command::find(tool.program).is_none());
         let mut packages: Vec<&str> = missing.map(|tool| tool.package).collect();
         packages.dedup();
         packages

@@ -248,6 +248,9 @@ mod tests {
         assert!(read(&[]).is_err());
         assert!(read(&[0; 100]).is_err());
         let archive = write(&[entry("a", 1)]).expect("an archive");
-        assert!(read(&archive[20..]).is_err(), "entries that are not where the directory says");
+        assert!(
+            read(&archive[20..]).is_err(),
+            "entries that are not where the directory says"
+        );
     }
 }
