@@ -93,7 +93,11 @@ pub(crate) fn table(root: &Path) -> Result<String> {
             let message = message.split(']').next().unwrap_or_default();
             let selector = message.split_once(", ").map_or(message, |(_, selector)| selector);
             let selector = selector.split(':').next().unwrap_or_default();
-            calls.add("untried", &format!("messages by name in {}", source.path), selector);
+            calls.add(
+                "untried",
+                &format!("messages by name in {}", source.path),
+                selector,
+            );
         }
         for callback in inside(&source.text, "#[unsafe(method(") {
             calls.add("untried", &format!("callbacks in {}", source.path), callback);

@@ -7,18 +7,18 @@ use std::collections::BTreeSet;
 use anyhow::{Context, Result, bail};
 
 /// Machine of a 64-bit ARM library.
-pub(crate) const AARCH64: u16 = 183;
+pub(crate) const AARCH64: u64 = 183;
 
-const LOADED: u32 = 1;
-const DYNAMIC: u32 = 2;
+const LOADED: u64 = 1;
+const DYNAMIC: u64 = 2;
 const NEEDED: u64 = 1;
 const STRINGS: u64 = 5;
-const SYMBOL_TABLE: u32 = 11;
+const SYMBOL_TABLE: u64 = 11;
 
 /// A shared library.
 #[derive(Debug)]
 pub(crate) struct Library {
-    pub(crate) machine: u16,
+    pub(crate) machine: u64,
     /// Alignment of each segment that is mapped, bytes.
     pub(crate) alignments: Vec<u64>,
     /// Libraries that it needs.
@@ -31,7 +31,7 @@ pub(crate) struct Library {
 
 /// A segment, as far as it is looked at.
 struct Segment {
-    kind: u32,
+    kind: u64,
     offset: u64,
     address: u64,
     n_bytes: u64,
@@ -49,7 +49,7 @@ impl Library {
         let loaded = segments.iter().filter(|segment| segment.kind == LOADED);
         let (imports, exports) = symbols(file)?;
         Ok(Self {
-            machine: number(file, 18, 2)? as u16,
+            machine: number(file, 18, 2)?,
             alignments: loaded.map(|segment| segment.alignment).collect(),
             needed: needed(file, &segments)?,
             imports,
@@ -64,7 +64,7 @@ fn segments(file: &[u8]) -> Result<Vec<Segment>> {
         let at = table + index * size;
         let field = |offset, n_bytes| number(file, at + offset, n_bytes);
         Ok(Segment {
-            kind: field(0, 4)? as u32,
+            kind: field(0, 4)?,
             offset: field(8, 8)?,
             address: field(16, 8)?,
             n_bytes: field(32, 8)?,
@@ -103,7 +103,7 @@ fn symbols(file: &[u8]) -> Result<(BTreeSet<String>, BTreeSet<String>)> {
     let (table, size, count) = (number(file, 40, 8)?, number(file, 58, 2)?, number(file, 60, 2)?);
     let (mut imports, mut exports) = (BTreeSet::new(), BTreeSet::new());
     for section in (0..count).map(|index| table + index * size) {
-        if number(file, section + 4, 4)? as u32 != SYMBOL_TABLE {
+        if number(file, section + 4, 4)? != SYMBOL_TABLE {
             continue;
         }
         let (offset, n_bytes) = (number(file, section + 24, 8)?, number(file, section + 32, 8)?);
