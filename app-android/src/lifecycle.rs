@@ -1,13 +1,12 @@
 //! The activity's event loop: which life cycle event does what to the stage.
 //!
-//! The loop polls the glue that winit re-exports instead of running winit's own event loop. The latter does not pass
-//! `onDestroy` on, while the Java thread waits in it for `android_main` to return (winit issue 4303), refuses to be
-//! created a second time in one process (3325), and hides `onPause` and `onResume`, which an ARCore session must
-//! follow.
+//! The loop polls the activity's glue itself. winit's event loop does not pass `onDestroy` on, while the Java thread
+//! waits in it for `android_main` to return (winit issue 4303), refuses to be created a second time in one process
+//! (3325), and hides `onPause` and `onResume`, which an ARCore session must follow.
 
 use std::time::Duration;
 
-use winit::platform::android::activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
+use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
 
 use crate::stage::{Stage, StageError};
 

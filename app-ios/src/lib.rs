@@ -6,13 +6,15 @@
 //!
 //! What works: the core is created on the view's layer, follows its size, loses its surface in the background while
 //! device and pipelines stay, and presents a frame per display refresh.
-//! What is not here yet: ARKit. No camera image, pose, plane or light reaches the core, so the screen shows what the
-//! core presents before its first camera frame.
+//! `arkit` reads ARKit's frames into plain structs, and makes frames of ours of them.
+//! What is not here yet: a session of ARKit that delivers those. No camera image, pose, plane or light reaches the core, so
+//! the screen shows what the core presents before its first camera frame.
 //!
 //! The crate is a static library with one C function, `app_ios_main`. It builds on any system, because only linking
 //! needs Apple's SDK; `README.md` beside this crate tells how a Mac makes an app of it.
-//! On other systems only `convert` is compiled.
+//! On other systems only `convert` and what of `arkit` is free of Apple's are compiled.
 
+pub mod arkit;
 pub mod convert;
 
 #[cfg(target_os = "ios")]

@@ -2,6 +2,7 @@
 //! and names what is missing.
 
 mod command;
+mod debian;
 mod format;
 mod harness;
 mod phone;
@@ -10,11 +11,12 @@ mod toolchain;
 mod vulkan;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::phone::{ANDROID, Action, IOS};
+use crate::phone::{ANDROID, Action, Arcore, IOS};
 use crate::toolchain::Toolchain;
 
 /// The project's commands
@@ -104,30 +106,68 @@ enum Command {
     Fmt,
     /// Check everything that must hold before a change is taken
     Test,
+    /// Package both shells and hold their sizes against the budgets
+    Size {
+        /// Take the sizes anew, within the budgets
+        #[arg(long)]
+        record: bool,
+    },
+    /// Write the table of what the shells call of their platforms
+    Calls,
     /// The iPhone shell
     #[command(subcommand)]
-    Ios(PhoneCommand),
+    Ios(IosCommand),
     /// The Android shell
     #[command(subcommand)]
-    Android(PhoneCommand),
+    Android(AndroidCommand),
 }
 
 #[derive(Clone, Copy, Subcommand)]
-enum PhoneCommand {
+enum IosCommand {
     /// Type check and lint for the phone
     Check,
     /// Build the library
     Build,
-    /// Make an app of it, or say what is missing
+    /// Make an app: by Xcode on a Mac, elsewhere one that shows that it links
     Package,
 }
 
-impl From<PhoneCommand> for Action {
-    fn from(command: PhoneCommand) -> Self {
+#[derive(Subcommand)]
+enum AndroidCommand {
+    /// Type check and lint for the phone
+    Check,
+    /// Build the library with the NDK
+    Build,
+    /// Make a package: with NDK, SDK and ARCore one to install, else one that shows that it links
+    Package {
+        /// ARCore's archive, com.google.ar:core, an .aar
+        #[arg(long, requires = "sha256")]
+        arcore: Option<PathBuf>,
+        /// What its SHA-256 must be, in hexadecimal
+        #[arg(long, requires = "arcore")]
+        sha256: Option<String>,
+    },
+}
+
+impl From<IosCommand> for Action {
+    fn from(command: IosCommand) -> Self {
         match command {
-            PhoneCommand::Check => Self::Check,
-            PhoneCommand::Build => Self::Build,
-            PhoneCommand::Package => Self::Package,
+            IosCommand::Check => Self::Check,
+            IosCommand::Build => Self::Build,
+            IosCommand::Package => Self::Package(None),
+        }
+    }
+}
+
+impl From<AndroidCommand> for Action {
+    fn from(command: AndroidCommand) -> Self {
+        match command {
+            AndroidCommand::Check => Self::Check,
+            AndroidCommand::Build => Self::Build,
+            AndroidCommand::Package { arcore, sha256 } => {
+                let arcore = arcore.zip(sha256);
+                Self::Package(arcore.map(|(archive, sha256)| Arcore { archive, sha256 }))
+            }
         }
     }
 }
@@ -156,6 +196,16 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,
+        Command::Size { record } => {
+            for phone in [&IOS, &ANDROID] {
+                phone::run(&toolchain, phone, Action::Package(None))?;
+            }
+            phone::size::hold(&toolchain.root, record)?;
+        }
+        Command::Calls => {
+            let table = phone::calls::table(&toolchain.root)?;
+            std::fs::write(toolchain.root.join("xtask/doc/calls.md"), table)?;
+        }
         Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
         Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,
     }

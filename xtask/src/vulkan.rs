@@ -2,13 +2,12 @@
 
 use std::env;
 use std::fs;
-use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Result, bail};
 
 use crate::command;
+use crate::debian;
 
 /// A software driver and the loader, by the package names of Debian and Ubuntu.
 const APT_PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
@@ -34,18 +33,7 @@ pub(crate) fn ensure() -> Result<()> {
             line.map_or("Mesa's lavapipe and the Vulkan loader", |(_, line)| line)
         );
     }
-    let line = format!(
-        "apt-get update && apt-get install --yes {}",
-        APT_PACKAGES.join(" ")
-    );
-    let is_root = command::output("id", &["-u"]).is_some_and(|id| id.trim() == "0");
-    if is_root {
-        install(&[])?;
-    } else if command::find("sudo").is_some() && agreed(&line) {
-        install(&["sudo"])?;
-    } else {
-        bail!("no Vulkan driver; run this as root, then the command again: {line}");
-    }
+    debian::install("no Vulkan driver", &APT_PACKAGES)?;
     if !is_there() {
         bail!(
             "{} are installed, but no Vulkan driver is found",
@@ -53,40 +41,6 @@ pub(crate) fn ensure() -> Result<()> {
         );
     }
     Ok(())
-}
-
-fn install(prefix: &[&str]) -> Result<()> {
-    println!("Installing {}.", APT_PACKAGES.join(" and "));
-    let apt_get = |args: &[&str]| {
-        let words = [
-            prefix,
-            &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"],
-            args,
-        ]
-        .concat();
-        command::run(Command::new(words[0]).args(&words[1..]))
-    };
-    apt_get(&["update", "--quiet"])?;
-    apt_get(
-        &[
-            ["install", "--quiet", "--yes", "--no-install-recommends"].as_slice(),
-            &APT_PACKAGES,
-        ]
-        .concat(),
-    )
-}
-
-/// Asks whether `line` may be run as root. Where no one can answer, no one agreed.
-fn agreed(line: &str) -> bool {
-    if !io::stdin().is_terminal() {
-        return false;
-    }
-    print!("Run `{line}` with sudo? [y/N] ");
-    let mut answer = String::new();
-    let asked = io::stdout()
-        .flush()
-        .and_then(|()| io::stdin().read_line(&mut answer));
-    asked.is_ok() && matches!(answer.trim(), "y" | "Y" | "yes")
 }
 
 /// Whether there are both a loader and a driver for it.

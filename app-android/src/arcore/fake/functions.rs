@@ -1,0 +1,433 @@
+//! The fake's functions in C.
+
+#![expect(
+    clippy::undocumented_unsafe_blocks,
+    reason = "all write into places that the caller owns, as the table's signatures say"
+)]
+
+use std::ffi::c_void;
+
+use super::super::ffi::*;
+use super::{World, world};
+
+macro_rules! give_back {
+    ($($name:ident($kind:literal, $type:ty);)*) => {$(
+        unsafe extern "C" fn $name(object: *mut $type) {
+            world(|world| world.give_back($kind, object));
+        }
+    )*};
+}
+
+give_back! {
+    session_destroy("session", ArSession);
+    filter_destroy("filter", ArCameraConfigFilter);
+    modes_destroy("modes", ArCameraConfigList);
+    mode_destroy("mode", ArCameraConfig);
+    config_destroy("config", ArConfig);
+    frame_destroy("frame", ArFrame);
+    camera_release("camera", ArCamera);
+    intrinsics_destroy("intrinsics", ArCameraIntrinsics);
+    pose_destroy("pose", ArPose);
+    image_release("image", ArImage);
+    light_destroy("light", ArLightEstimate);
+    list_destroy("list", ArTrackableList);
+    trackable_release("plane", ArTrackable);
+}
+
+macro_rules! create {
+    ($($name:ident($kind:literal, $type:ty);)*) => {$(
+        unsafe extern "C" fn $name(session: *const ArSession, place: *mut *mut $type) {
+            world(|world| {
+                world.used("session", session);
+                unsafe { *place = world.make($kind, 0) };
+            });
+        }
+    )*};
+}
+
+create! {
+    filter_create("filter", ArCameraConfigFilter);
+    modes_create("modes", ArCameraConfigList);
+    mode_create("mode", ArCameraConfig);
+    config_create("config", ArConfig);
+    frame_create("frame", ArFrame);
+    intrinsics_create("intrinsics", ArCameraIntrinsics);
+    light_create("light", ArLightEstimate);
+    list_create("list", ArTrackableList);
+}
+
+/// Functions that write what an object holds into places.
+macro_rules! get {
+    ($($name:ident($kind:literal, $object:ty, $($place:ident: $type:ty),+) $write:expr;)*) => {$(
+        unsafe extern "C" fn $name(session: *const ArSession, object: *const $object, $($place: *mut $type),+) {
+            world(|world| {
+                world.used("session", session);
+                world.used($kind, object);
+                let write: fn(&World, $(&mut $type),+) = $write;
+                unsafe { write(world, $(&mut *$place),+) };
+            });
+        }
+    )*};
+}
+
+get! {
+    frame_time("frame", ArFrame, time: i64) |world, time| *time = world.time_ns;
+    camera_state("camera", ArCamera, state: i32) |world, state| *state = world.tracking.0;
+    camera_reason("camera", ArCamera, reason: i32) |world, reason| *reason = world.tracking.1;
+    focal_length("intrinsics", ArCameraIntrinsics, x: f32, y: f32) |world, x, y| [*x, *y] = [world.intrinsics[0], world.intrinsics[1]];
+    principal_point("intrinsics", ArCameraIntrinsics, x: f32, y: f32) |world, x, y| [*x, *y] = [world.intrinsics[2], world.intrinsics[3]];
+    dimensions("intrinsics", ArCameraIntrinsics, x: i32, y: i32) |world, x, y| [*x, *y] = world.size_px;
+    image_width("image", ArImage, width: i32) |world, width| *width = world.size_px[0];
+    image_height("image", ArImage, height: i32) |world, height| *height = world.size_px[1];
+    image_format("image", ArImage, format: i32) |world, format| *format = world.format;
+    image_planes("image", ArImage, n: i32) |world, n| *n = i32::try_from(world.image.len()).unwrap();
+    light_state("light", ArLightEstimate, state: i32) |world, state| *state = world.light.0;
+    modes_size("modes", ArCameraConfigList, n: i32) |world, n| *n = i32::try_from(world.modes.len()).unwrap();
+    list_size("list", ArTrackableList, n: i32) |world, n| *n = i32::try_from(world.planes.len()).unwrap();
+}
+
+/// Functions of one component of an image.
+macro_rules! of_plane {
+    ($($name:ident($($place:ident: $type:ty),+) $write:expr;)*) => {$(
+        unsafe extern "C" fn $name(session: *const ArSession, image: *const ArImage, index: i32, $($place: *mut $type),+) {
+            world(|world| {
+                world.used("session", session);
+                world.used("image", image);
+                let write: fn(&(Vec<u8>, i32, i32), $(&mut $type),+) = $write;
+                unsafe { write(&world.image[usize::try_from(index).unwrap()], $(&mut *$place),+) };
+            });
+        }
+    )*};
+}
+
+of_plane! {
+    plane_data(data: *const u8, n: i32) |plane, data, n| {
+        (*data, *n) = (plane.0.as_ptr(), i32::try_from(plane.0.len()).unwrap());
+    };
+    plane_row_stride(stride: i32) |plane, stride| *stride = plane.1;
+    plane_pixel_stride(stride: i32) |plane, stride| *stride = plane.2;
+}
+
+/// Functions that only say that they were called, and maybe fail.
+macro_rules! act {
+    ($($name:ident($called:literal, $($argument:ty),*);)*) => {$(
+        unsafe extern "C" fn $name(session: *mut ArSession, $(_: $argument),*) -> i32 {
+            world(|world| {
+                world.used("session", session);
+                world.call($called);
+                world.status($called)
+            })
+        }
+    )*};
+}
+
+act! {
+    session_resume("resume",);
+    session_pause("pause",);
+    session_update("update", *mut ArFrame);
+}
+
+/// Functions that set one number of a configuration.
+macro_rules! set {
+    ($($name:ident($called:literal);)*) => {$(
+        unsafe extern "C" fn $name(_: *const ArSession, config: *mut ArConfig, number: i32) {
+            world(|world| {
+                world.used("config", config);
+                world.call(&format!("{}={number}", $called));
+            });
+        }
+    )*};
+}
+
+set! {
+    set_update("update");
+    set_planes("planes");
+    set_light("light");
+    set_texture("texture");
+}
+
+unsafe extern "C" fn check_availability(env: *mut c_void, activity: *mut c_void, answer: *mut i32) {
+    assert!(!env.is_null() && !activity.is_null());
+    let next = world(|world| {
+        world.call("availability");
+        let is_last = world.availability.len() == 1;
+        if is_last {
+            world.availability[0]
+        } else {
+            world.availability.remove(0)
+        }
+    });
+    unsafe { *answer = next };
+}
+
+unsafe extern "C" fn request_install(_: *mut c_void, _: *mut c_void, asked: i32, outcome: *mut i32) -> i32 {
+    let (status, installed) = world(|world| {
+        world.call(&format!("install={asked}"));
+        world.install
+    });
+    unsafe { *outcome = installed };
+    status
+}
+
+unsafe extern "C" fn session_create(_: *mut c_void, _: *mut c_void, place: *mut *mut ArSession) -> i32 {
+    world(|world| {
+        world.call("create");
+        let status = world.status("create");
+        if status == 0 {
+            unsafe { *place = world.make("session", 0) };
+        }
+        status
+    })
+}
+
+unsafe extern "C" fn session_configure(session: *mut ArSession, config: *const ArConfig) -> i32 {
+    world(|world| {
+        world.used("session", session);
+        world.used("config", config);
+        world.call("configure");
+        // As a phone without light estimation has it: once refused, the next one is taken.
+        world.fails.remove("configure").unwrap_or(0)
+    })
+}
+
+unsafe extern "C" fn set_display(_: *mut ArSession, rotation: i32, width: i32, height: i32) {
+    world(|world| world.call(&format!("display={rotation},{width},{height}")));
+}
+
+unsafe extern "C" fn supported_modes(
+    _: *const ArSession,
+    filter: *const ArCameraConfigFilter,
+    list: *mut ArCameraConfigList,
+) {
+    world(|world| {
+        world.used("filter", filter);
+        world.used("modes", list);
+    });
+}
+
+unsafe extern "C" fn modes_item(
+    _: *const ArSession,
+    _: *const ArCameraConfigList,
+    index: i32,
+    mode: *mut ArCameraConfig,
+) {
+    world(|world| {
+        let entry = world.alive.get_mut(&mode.addr()).expect("a mode");
+        entry.1 = usize::try_from(index).unwrap();
+    });
+}
+
+unsafe extern "C" fn mode_size(
+    _: *const ArSession,
+    mode: *const ArCameraConfig,
+    width: *mut i32,
+    height: *mut i32,
+) {
+    let index = world(|world| world.used("mode", mode));
+    unsafe { [*width, *height] = world(|world| [world.modes[index][0], world.modes[index][1]]) };
+}
+
+unsafe extern "C" fn mode_hz(
+    _: *const ArSession,
+    mode: *const ArCameraConfig,
+    least: *mut i32,
+    most: *mut i32,
+) {
+    let index = world(|world| world.used("mode", mode));
+    unsafe { [*least, *most] = [15, world(|world| world.modes[index][2])] };
+}
+
+unsafe extern "C" fn set_mode(_: *const ArSession, mode: *const ArCameraConfig) -> i32 {
+    world(|world| {
+        let index = world.used("mode", mode);
+        world.call(&format!("mode={index}"));
+        world.status("mode")
+    })
+}
+
+unsafe extern "C" fn acquire_camera(_: *const ArSession, frame: *const ArFrame, place: *mut *mut ArCamera) {
+    world(|world| {
+        world.used("frame", frame);
+        unsafe { *place = world.make("camera", 0) };
+    });
+}
+
+unsafe extern "C" fn acquire_image(_: *mut ArSession, frame: *mut ArFrame, place: *mut *mut ArImage) -> i32 {
+    world(|world| {
+        world.used("frame", frame.cast_const());
+        let status = world.status("image");
+        if status == 0 {
+            unsafe { *place = world.make("image", 0) };
+        }
+        status
+    })
+}
+
+unsafe extern "C" fn camera_pose(_: *const ArSession, _: *const ArCamera, pose: *mut ArPose) {
+    world(|world| world.alive.get_mut(&pose.addr()).expect("a pose").1 = 0);
+}
+
+unsafe extern "C" fn camera_intrinsics(
+    _: *const ArSession,
+    camera: *const ArCamera,
+    place: *mut ArCameraIntrinsics,
+) {
+    world(|world| {
+        world.used("camera", camera);
+        world.used("intrinsics", place);
+    });
+}
+
+unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32, place: *mut *mut ArPose) {
+    assert!(raw.is_null());
+    unsafe { *place = world(|world| world.make("pose", 0)) };
+}
+
+/// A pose stands for the camera's, or for that of the plane before its number.
+unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
+    let raw = world(|world| match world.used("pose", pose) {
+        0 => world.pose,
+        plane => world.planes[plane - 1].pose,
+    });
+    unsafe { numbers.cast::<[f32; 7]>().write(raw) };
+}
+
+unsafe extern "C" fn frame_light(_: *const ArSession, frame: *const ArFrame, light: *mut ArLightEstimate) {
+    world(|world| {
+        world.used("frame", frame);
+        world.used("light", light);
+    });
+}
+
+unsafe extern "C" fn light_direction(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+    unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.1)) };
+}
+
+unsafe extern "C" fn light_intensity(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+    unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.2)) };
+}
+
+unsafe extern "C" fn light_harmonics(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+    unsafe { place.cast::<[f32; 27]>().write(world(|world| world.light.3)) };
+}
+
+unsafe extern "C" fn all_trackables(_: *const ArSession, kind: i32, list: *mut ArTrackableList) {
+    assert_eq!(kind, 0x4152_0101);
+    world(|world| world.used("list", list));
+}
+
+unsafe extern "C" fn list_item(
+    _: *const ArSession,
+    _: *const ArTrackableList,
+    index: i32,
+    place: *mut *mut ArTrackable,
+) {
+    unsafe { *place = world(|world| world.make("plane", usize::try_from(index).unwrap())) };
+}
+
+unsafe extern "C" fn trackable_state(_: *const ArSession, plane: *const ArTrackable, state: *mut i32) {
+    unsafe { *state = world(|world| world.plane(plane.cast()).state) };
+}
+
+unsafe extern "C" fn plane_kind(_: *const ArSession, plane: *const ArPlane, kind: *mut i32) {
+    unsafe { *kind = world(|world| world.plane(plane).kind) };
+}
+
+unsafe extern "C" fn plane_pose(_: *const ArSession, plane: *const ArPlane, pose: *mut ArPose) {
+    world(|world| {
+        let index = world.used("plane", plane);
+        world.alive.get_mut(&pose.addr()).expect("a pose").1 = 1 + index;
+    });
+}
+
+unsafe extern "C" fn polygon_size(_: *const ArSession, plane: *const ArPlane, n: *mut i32) {
+    unsafe { *n = i32::try_from(world(|world| world.plane(plane).outline.len())).unwrap() };
+}
+
+unsafe extern "C" fn polygon(_: *const ArSession, plane: *const ArPlane, numbers: *mut f32) {
+    let outline = world(|world| world.plane(plane).outline);
+    unsafe { numbers.copy_from_nonoverlapping(outline.as_ptr(), outline.len()) };
+}
+
+unsafe extern "C" fn subsumed_by(_: *const ArSession, plane: *const ArPlane, place: *mut *mut ArPlane) {
+    let by = world(|world| world.plane(plane).merged_into);
+    unsafe { *place = by.map_or(std::ptr::null_mut(), |by| world(|world| world.make("plane", by))) };
+}
+
+/// The fake's functions.
+pub(in super::super) fn functions() -> Functions {
+    Functions {
+        ArCoreApk_checkAvailability: check_availability,
+        ArCoreApk_requestInstall: request_install,
+        ArSession_create: session_create,
+        ArSession_destroy: session_destroy,
+        ArSession_configure: session_configure,
+        ArSession_resume: session_resume,
+        ArSession_pause: session_pause,
+        ArSession_update: session_update,
+        ArSession_setDisplayGeometry: set_display,
+        ArSession_getSupportedCameraConfigsWithFilter: supported_modes,
+        ArSession_setCameraConfig: set_mode,
+        ArSession_getAllTrackables: all_trackables,
+        ArCameraConfigFilter_create: filter_create,
+        ArCameraConfigFilter_destroy: filter_destroy,
+        ArCameraConfigList_create: modes_create,
+        ArCameraConfigList_destroy: modes_destroy,
+        ArCameraConfigList_getSize: modes_size,
+        ArCameraConfigList_getItem: modes_item,
+        ArCameraConfig_create: mode_create,
+        ArCameraConfig_destroy: mode_destroy,
+        ArCameraConfig_getImageDimensions: mode_size,
+        ArCameraConfig_getFpsRange: mode_hz,
+        ArConfig_create: config_create,
+        ArConfig_destroy: config_destroy,
+        ArConfig_setUpdateMode: set_update,
+        ArConfig_setPlaneFindingMode: set_planes,
+        ArConfig_setLightEstimationMode: set_light,
+        ArConfig_setTextureUpdateMode: set_texture,
+        ArFrame_create: frame_create,
+        ArFrame_destroy: frame_destroy,
+        ArFrame_getTimestamp: frame_time,
+        ArFrame_acquireCamera: acquire_camera,
+        ArFrame_acquireCameraImage: acquire_image,
+        ArFrame_getLightEstimate: frame_light,
+        ArCamera_release: camera_release,
+        ArCamera_getPose: camera_pose,
+        ArCamera_getTrackingState: camera_state,
+        ArCamera_getTrackingFailureReason: camera_reason,
+        ArCamera_getImageIntrinsics: camera_intrinsics,
+        ArCameraIntrinsics_create: intrinsics_create,
+        ArCameraIntrinsics_destroy: intrinsics_destroy,
+        ArCameraIntrinsics_getFocalLength: focal_length,
+        ArCameraIntrinsics_getPrincipalPoint: principal_point,
+        ArCameraIntrinsics_getImageDimensions: dimensions,
+        ArPose_create: pose_create,
+        ArPose_destroy: pose_destroy,
+        ArPose_getPoseRaw: pose_raw,
+        ArImage_release: image_release,
+        ArImage_getWidth: image_width,
+        ArImage_getHeight: image_height,
+        ArImage_getFormat: image_format,
+        ArImage_getNumberOfPlanes: image_planes,
+        ArImage_getPlaneData: plane_data,
+        ArImage_getPlanePixelStride: plane_pixel_stride,
+        ArImage_getPlaneRowStride: plane_row_stride,
+        ArLightEstimate_create: light_create,
+        ArLightEstimate_destroy: light_destroy,
+        ArLightEstimate_getState: light_state,
+        ArLightEstimate_getEnvironmentalHdrMainLightDirection: light_direction,
+        ArLightEstimate_getEnvironmentalHdrMainLightIntensity: light_intensity,
+        ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics: light_harmonics,
+        ArTrackableList_create: list_create,
+        ArTrackableList_destroy: list_destroy,
+        ArTrackableList_getSize: list_size,
+        ArTrackableList_acquireItem: list_item,
+        ArTrackable_release: trackable_release,
+        ArTrackable_getTrackingState: trackable_state,
+        ArPlane_getType: plane_kind,
+        ArPlane_getCenterPose: plane_pose,
+        ArPlane_getPolygonSize: polygon_size,
+        ArPlane_getPolygon: polygon,
+        ArPlane_acquireSubsumedBy: subsumed_by,
+    }
+}

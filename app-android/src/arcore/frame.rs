@@ -1,0 +1,330 @@
+//! What one frame of ARCore holds, copied into plain values of ours.
+
+use app_core::camera_frame::{
+    CameraImage, CodeRange, LumaCoefficients, PlanarImage, Plane, PlaneError, Planes, YcbcrEncoding,
+};
+use app_core::scene::LightEstimate;
+use glam::{DMat3, DMat4, DVec2, DVec3};
+
+use super::ffi::{ArCamera, ArImage, ArPlane, ArPose, ArTrackable};
+use super::owned::Owned;
+use super::session::Session;
+use super::status::{DEADLINE_EXCEEDED, Failure, NOT_YET_AVAILABLE, RESOURCE_EXHAUSTED, lost};
+use crate::convert;
+
+/// `AR_TRACKING_STATE_TRACKING`.
+const TRACKING: i32 = 0;
+/// `AR_TRACKING_STATE_STOPPED`: never to come back.
+const STOPPED: i32 = 2;
+/// `AR_IMAGE_FORMAT_YUV_420_888`.
+const YUV_420: i32 = 0x23;
+/// `AR_LIGHT_ESTIMATE_STATE_VALID`.
+const VALID: i32 = 1;
+/// `AR_TRACKABLE_PLANE`.
+const PLANES: i32 = 0x4152_0101;
+/// What Android's pictures for the processor are by default; ARCore does not tell.
+const ENCODING: YcbcrEncoding = YcbcrEncoding {
+    coefficients: LumaCoefficients::Bt601,
+    range: CodeRange::Full,
+};
+/// Corners of a plane beyond which its outline is none: ARCore's have a few dozen.
+const MAX_CORNERS: usize = 4096;
+
+/// A camera frame with what is known of it.
+#[derive(Debug)]
+pub struct TrackedFrame {
+    /// On the camera's own clock.
+    pub time_ns: i64,
+    /// Copied, so that the camera has its buffer back.
+    pub image: CameraImage,
+    /// Of this very frame.
+    pub sensor_px_from_camera_rdf: DMat3,
+    /// None unless the phone knows where it is.
+    pub world_from_camera: Option<DMat4>,
+    /// What to tell while it does not.
+    pub lost: Option<&'static str>,
+    /// As far as the phone estimates it.
+    pub light: Option<LightEstimate>,
+    /// Those that are being tracked.
+    pub planes: Vec<FoundPlane>,
+}
+
+/// How a plane lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lie {
+    /// As a table.
+    Up,
+    /// As a ceiling.
+    Down,
+    /// As a wall.
+    Upright,
+}
+
+/// A plane that was found, which grows and moves as more is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundPlane {
+    /// Its address in ARCore, the same for the whole session.
+    pub id: usize,
+    /// The plane that took it in.
+    pub merged_into: Option<usize>,
+    /// How it lies.
+    pub lie: Lie,
+    /// +Y is its normal.
+    pub world_from_plane: DMat4,
+    /// Convex, in x and z of the plane, metres.
+    pub outline_m: Vec<DVec2>,
+}
+
+/// Why a frame could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameError {
+    /// ARCore says why.
+    #[error(transparent)]
+    Failed(#[from] Failure),
+    /// No picture of luma and chroma.
+    #[error("the camera's picture has format {0:#x}, not YUV_420_888")]
+    Format(i32),
+    /// Fewer planes, or more.
+    #[error("the camera's picture has {0} planes, not 3")]
+    Count(i32),
+    /// Planes that do not hold their picture.
+    #[error(transparent)]
+    Planes(#[from] PlaneError),
+    /// Numbers that no camera has.
+    #[error("the camera's focal length is {0:?} px, its picture {1:?} px")]
+    Camera([f32; 2], [i32; 2]),
+}
+
+impl Session {
+    /// When the frame of the last update was taken; 0 before there is one.
+    pub(super) fn time_ns(&self) -> i64 {
+        let mut time_ns = 0;
+        // SAFETY: session and frame live, and the time is a place of ours.
+        unsafe { (self.api.ArFrame_getTimestamp)(self.raw(), self.frame.as_ptr(), &raw mut time_ns) };
+        time_ns
+    }
+
+    /// The frame of the last update; none where its picture is not there, as at the start and under load.
+    pub(super) fn read(&self) -> Result<Option<TrackedFrame>, FrameError> {
+        let time_ns = self.time_ns();
+        let Some(image) = self.image()? else {
+            return Ok(None);
+        };
+        let api = &self.api;
+        // SAFETY: session and frame live; a camera that was acquired is ours to release.
+        let camera: Option<Owned<ArCamera>> = unsafe {
+            Owned::new(
+                |place| (api.ArFrame_acquireCamera)(self.raw(), self.frame.as_ptr(), place),
+                api.ArCamera_release,
+            )
+        };
+        let camera = camera.ok_or(Failure(-2))?;
+        let (mut state, mut reason) = (STOPPED, 0);
+        // SAFETY: session, camera and pose live, and the numbers are places of ours.
+        unsafe {
+            (api.ArCamera_getTrackingState)(self.raw(), camera.as_ptr(), &raw mut state);
+            (api.ArCamera_getTrackingFailureReason)(self.raw(), camera.as_ptr(), &raw mut reason);
+            (api.ArCamera_getPose)(self.raw(), camera.as_ptr(), self.pose.as_ptr());
+        }
+        let is_tracking = state == TRACKING;
+        let pose = is_tracking.then(|| convert::world_from_camera(self.pose_raw(&self.pose)));
+        Ok(Some(TrackedFrame {
+            time_ns,
+            sensor_px_from_camera_rdf: self.intrinsics(&camera, image.size_px())?,
+            image,
+            world_from_camera: pose.flatten(),
+            lost: (!is_tracking).then(|| lost(reason)),
+            light: self.light(),
+            planes: if is_tracking { self.planes() } else { Vec::new() },
+        }))
+    }
+
+    fn pose_raw(&self, pose: &Owned<ArPose>) -> [f32; 7] {
+        let mut numbers = [0.0; 7];
+        // SAFETY: session and pose live, and seven numbers are what the function writes.
+        unsafe { (self.api.ArPose_getPoseRaw)(self.raw(), pose.as_ptr(), numbers.as_mut_ptr()) };
+        numbers
+    }
+
+    fn intrinsics(&self, camera: &Owned<ArCamera>, size_px: [u32; 2]) -> Result<DMat3, FrameError> {
+        let ([mut fx, mut fy], [mut cx, mut cy], [mut width, mut height]) = ([0.0; 2], [0.0; 2], [0; 2]);
+        let (api, raw, intrinsics) = (&self.api, self.raw(), self.intrinsics.as_ptr());
+        // SAFETY: session, camera and intrinsics live, and the numbers are places of ours.
+        unsafe {
+            (api.ArCamera_getImageIntrinsics)(raw, camera.as_ptr(), intrinsics);
+            (api.ArCameraIntrinsics_getFocalLength)(raw, intrinsics, &raw mut fx, &raw mut fy);
+            (api.ArCameraIntrinsics_getPrincipalPoint)(raw, intrinsics, &raw mut cx, &raw mut cy);
+            (api.ArCameraIntrinsics_getImageDimensions)(raw, intrinsics, &raw mut width, &raw mut height);
+        }
+        let is_of_picture = size_px.map(i64::from) == [width, height].map(i64::from);
+        let is_camera = fx > 0.0 && fy > 0.0 && [fx, fy, cx, cy].iter().all(|number| number.is_finite());
+        if !is_of_picture || !is_camera {
+            return Err(FrameError::Camera([fx, fy], [width, height]));
+        }
+        Ok(convert::sensor_px_from_camera_rdf([fx, fy], [cx, cy]))
+    }
+
+    fn image(&self) -> Result<Option<CameraImage>, FrameError> {
+        let api = &self.api;
+        let mut status = 0;
+        // SAFETY: session and frame live; an image that was acquired is ours to release.
+        let image: Option<Owned<ArImage>> = unsafe {
+            Owned::new(
+                |place| {
+                    status = (api.ArFrame_acquireCameraImage)(self.raw(), self.frame.as_ptr(), place);
+                },
+                api.ArImage_release,
+            )
+        };
+        match Failure::check(status) {
+            Err(Failure(NOT_YET_AVAILABLE | RESOURCE_EXHAUSTED | DEADLINE_EXCEEDED)) => return Ok(None),
+            result => result?,
+        }
+        let image = image.ok_or(Failure(-2))?;
+        let ([mut width, mut height], mut format, mut n_planes) = ([0; 2], 0, 0);
+        // SAFETY: session and image live, and the numbers are places of ours.
+        unsafe {
+            (api.ArImage_getWidth)(self.raw(), image.as_ptr(), &raw mut width);
+            (api.ArImage_getHeight)(self.raw(), image.as_ptr(), &raw mut height);
+            (api.ArImage_getFormat)(self.raw(), image.as_ptr(), &raw mut format);
+            (api.ArImage_getNumberOfPlanes)(self.raw(), image.as_ptr(), &raw mut n_planes);
+        }
+        if format != YUV_420 {
+            return Err(FrameError::Format(format));
+        }
+        if n_planes != 3 {
+            return Err(FrameError::Count(n_planes));
+        }
+        let [luma, blue, red] = [0, 1, 2].map(|index| self.plane(&image, index));
+        let planes = Planes {
+            // A negative side is refused with those that are too long.
+            size_px: [width, height].map(|side| u32::try_from(side).unwrap_or(0)),
+            luma,
+            blue,
+            red,
+            encoding: ENCODING,
+        };
+        Ok(Some(PlanarImage::new(&planes)?.into()))
+    }
+
+    /// One component, for as long as the image is held. What makes no sense becomes a plane of nothing.
+    fn plane<'a>(&self, image: &'a Owned<ArImage>, index: i32) -> Plane<'a> {
+        let (mut data, mut n_bytes, mut row_stride, mut pixel_stride) = (std::ptr::null(), 0, 0, 0);
+        let (api, raw, image) = (&self.api, self.raw(), image.as_ptr());
+        // SAFETY: session and image live, the image has three planes, and all are places of ours.
+        unsafe {
+            (api.ArImage_getPlaneData)(raw, image, index, &raw mut data, &raw mut n_bytes);
+            (api.ArImage_getPlaneRowStride)(raw, image, index, &raw mut row_stride);
+            (api.ArImage_getPlanePixelStride)(raw, image, index, &raw mut pixel_stride);
+        }
+        let [n_bytes, row_stride, pixel_stride] =
+            [n_bytes, row_stride, pixel_stride].map(|number| usize::try_from(number).unwrap_or(0));
+        let bytes = if data.is_null() {
+            &[]
+        } else {
+            // SAFETY: ARCore says that so many bytes are there, and they are until the image is released.
+            unsafe { std::slice::from_raw_parts(data, n_bytes) }
+        };
+        Plane {
+            bytes,
+            row_stride,
+            pixel_stride,
+        }
+    }
+
+    fn light(&self) -> Option<LightEstimate> {
+        if !self.has_light() {
+            return None;
+        }
+        let (api, raw, light) = (&self.api, self.raw(), self.light.as_ptr());
+        let (mut state, mut direction, mut intensity, mut harmonics) = (0, [0.0; 3], [0.0; 3], [0.0; 27]);
+        // SAFETY: session, frame and estimate live, and the arrays have the lengths that the functions' names state.
+        unsafe {
+            (api.ArFrame_getLightEstimate)(raw, self.frame.as_ptr(), light);
+            (api.ArLightEstimate_getState)(raw, light, &raw mut state);
+            (api.ArLightEstimate_getEnvironmentalHdrMainLightDirection)(raw, light, direction.as_mut_ptr());
+            (api.ArLightEstimate_getEnvironmentalHdrMainLightIntensity)(raw, light, intensity.as_mut_ptr());
+            (api.ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics)(
+                raw,
+                light,
+                harmonics.as_mut_ptr(),
+            );
+        }
+        let is_finite = direction
+            .iter()
+            .chain(&intensity)
+            .chain(&harmonics)
+            .all(|number: &f32| number.is_finite());
+        (state == VALID && is_finite).then(|| LightEstimate {
+            direction_to_light_in_world: DVec3::from(direction.map(f64::from)).try_normalize(),
+            intensity: Some(intensity.map(f64::from)),
+            spherical_harmonics: Some(harmonics.map(f64::from)),
+            ..LightEstimate::default()
+        })
+    }
+
+    fn planes(&self) -> Vec<FoundPlane> {
+        let (api, raw, list) = (&self.api, self.raw(), self.trackables.as_ptr());
+        let mut n_planes = 0;
+        // SAFETY: session and list live, and the count is a place of ours.
+        unsafe {
+            (api.ArSession_getAllTrackables)(raw, PLANES, list);
+            (api.ArTrackableList_getSize)(raw, list, &raw mut n_planes);
+        }
+        let planes = (0..n_planes).filter_map(|index| {
+            // SAFETY: the index is below the list's size, and what was acquired is ours to release.
+            let trackable: Owned<ArTrackable> = unsafe {
+                Owned::new(
+                    |place| (api.ArTrackableList_acquireItem)(raw, list, index, place),
+                    api.ArTrackable_release,
+                )
+            }?;
+            self.found_plane(&trackable)
+        });
+        planes.collect()
+    }
+
+    /// A plane that is being tracked; one that ARCore took into another has that one's shape.
+    fn found_plane(&self, trackable: &Owned<ArTrackable>) -> Option<FoundPlane> {
+        let (api, raw) = (&self.api, self.raw());
+        // The list was asked for planes alone, which are trackables in C by a cast.
+        let plane: *const ArPlane = trackable.as_ptr().cast_const().cast();
+        let (mut state, mut kind, mut n_numbers) = (STOPPED, -1, 0);
+        // SAFETY: session, plane and pose live, and the numbers are places of ours; a plane that took this one in is a
+        // trackable that was acquired, and so ours to release.
+        let merged_into: Option<Owned<ArTrackable>> = unsafe {
+            (api.ArTrackable_getTrackingState)(raw, trackable.as_ptr(), &raw mut state);
+            (api.ArPlane_getType)(raw, plane, &raw mut kind);
+            (api.ArPlane_getCenterPose)(raw, plane, self.pose.as_ptr());
+            (api.ArPlane_getPolygonSize)(raw, plane, &raw mut n_numbers);
+            Owned::new(
+                |place| (api.ArPlane_acquireSubsumedBy)(raw, plane, std::ptr::from_mut(place).cast()),
+                api.ArTrackable_release,
+            )
+        };
+        let lie = match kind {
+            0 => Lie::Up,
+            1 => Lie::Down,
+            2 => Lie::Upright,
+            _ => return None,
+        };
+        let n_numbers = usize::try_from(n_numbers).unwrap_or(0);
+        if state != TRACKING || n_numbers > 2 * MAX_CORNERS {
+            return None;
+        }
+        let mut numbers = vec![0.0_f32; n_numbers];
+        // SAFETY: session and plane live, and the array is as long as the function asks for.
+        unsafe { (api.ArPlane_getPolygon)(raw, plane, numbers.as_mut_ptr()) };
+        let corners = numbers
+            .chunks_exact(2)
+            .map(|corner| DVec2::new(corner[0].into(), corner[1].into()));
+        Some(FoundPlane {
+            id: trackable.as_ptr().addr(),
+            merged_into: merged_into.map(|plane| plane.as_ptr().addr()),
+            lie,
+            // A pose is one in the same numbers, whatever it is of.
+            world_from_plane: convert::world_from_camera(self.pose_raw(&self.pose))?,
+            outline_m: corners.collect(),
+        })
+    }
+}

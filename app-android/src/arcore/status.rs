@@ -1,0 +1,152 @@
+//! What ARCore answers, in words for the person who holds the phone.
+
+use super::ffi::{ArAvailability, ArStatus, ArTrackingFailureReason};
+
+/// `AR_SUCCESS`.
+pub const SUCCESS: ArStatus = 0;
+/// `AR_ERROR_UNSUPPORTED_CONFIGURATION`.
+pub const UNSUPPORTED_CONFIGURATION: ArStatus = -8;
+/// `AR_ERROR_CAMERA_PERMISSION_NOT_GRANTED`.
+pub const PERMISSION_NOT_GRANTED: ArStatus = -9;
+/// `AR_ERROR_DEADLINE_EXCEEDED`.
+pub const DEADLINE_EXCEEDED: ArStatus = -10;
+/// `AR_ERROR_RESOURCE_EXHAUSTED`.
+pub const RESOURCE_EXHAUSTED: ArStatus = -11;
+/// `AR_ERROR_NOT_YET_AVAILABLE`.
+pub const NOT_YET_AVAILABLE: ArStatus = -12;
+
+/// What can be done about a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// Come back to the app, and it tries again.
+    Return,
+    /// Allow the camera in the phone's settings.
+    AllowCamera,
+    /// Install or update Google Play Services for AR.
+    Install,
+    /// Update this app.
+    UpdateApp,
+    /// Nothing, on this phone.
+    None,
+    /// An error of this app: its log is to be sent.
+    Report,
+}
+
+/// Every `ArStatus` but success: its number, its name in C, what to tell, and what can be done.
+#[rustfmt::skip]
+pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
+    (-1, "AR_ERROR_INVALID_ARGUMENT", "The app asked ARCore for something that makes no sense.", Remedy::Report),
+    (-2, "AR_ERROR_FATAL", "ARCore failed and cannot go on.", Remedy::Return),
+    (-3, "AR_ERROR_SESSION_PAUSED", "Tracking is paused.", Remedy::Return),
+    (-4, "AR_ERROR_SESSION_NOT_PAUSED", "The app changed tracking while it was running.", Remedy::Report),
+    (-5, "AR_ERROR_NOT_TRACKING", "The phone does not know where it is. Move it slowly over the table.", Remedy::Return),
+    (-6, "AR_ERROR_TEXTURE_NOT_SET", "The app asked for the camera's picture in a way that it cannot be given.", Remedy::Report),
+    (-7, "AR_ERROR_MISSING_GL_CONTEXT", "ARCore asks for OpenGL, which this app does not use.", Remedy::Report),
+    (UNSUPPORTED_CONFIGURATION, "AR_ERROR_UNSUPPORTED_CONFIGURATION", "This phone's ARCore lacks what the app needs.", Remedy::None),
+    (PERMISSION_NOT_GRANTED, "AR_ERROR_CAMERA_PERMISSION_NOT_GRANTED", "The app may not use the camera.", Remedy::AllowCamera),
+    (DEADLINE_EXCEEDED, "AR_ERROR_DEADLINE_EXCEEDED", "A picture of the camera came too late.", Remedy::Return),
+    (RESOURCE_EXHAUSTED, "AR_ERROR_RESOURCE_EXHAUSTED", "The camera has no room for another picture.", Remedy::Return),
+    (NOT_YET_AVAILABLE, "AR_ERROR_NOT_YET_AVAILABLE", "The camera is starting.", Remedy::Return),
+    (-13, "AR_ERROR_CAMERA_NOT_AVAILABLE", "Another app uses the camera. Close it.", Remedy::Return),
+    (-14, "AR_ERROR_CLOUD_ANCHORS_NOT_CONFIGURED", "ARCore expects anchors in the cloud, which this app does not use.", Remedy::Report),
+    (-15, "AR_ERROR_INTERNET_PERMISSION_NOT_GRANTED", "ARCore expects the internet, which this app does not use.", Remedy::Report),
+    (-16, "AR_ERROR_ANCHOR_NOT_SUPPORTED_FOR_HOSTING", "ARCore cannot share this anchor, which this app does not ask for.", Remedy::Report),
+    (-17, "AR_ERROR_IMAGE_INSUFFICIENT_QUALITY", "The card's picture has too little in it to be found.", Remedy::Report),
+    (-18, "AR_ERROR_DATA_INVALID_FORMAT", "ARCore cannot read the data that the app gave it.", Remedy::Report),
+    (-19, "AR_ERROR_DATA_UNSUPPORTED_VERSION", "ARCore is too old for the data that the app gave it.", Remedy::Install),
+    (-20, "AR_ERROR_ILLEGAL_STATE", "The app called ARCore at a wrong moment.", Remedy::Report),
+    (-21, "AR_ERROR_FINE_LOCATION_PERMISSION_NOT_GRANTED", "ARCore expects the phone's location, which this app does not use.", Remedy::Report),
+    (-22, "AR_ERROR_GOOGLE_PLAY_SERVICES_LOCATION_LIBRARY_NOT_LINKED", "ARCore expects a library for locations, which this app does not use.", Remedy::Report),
+    (-23, "AR_ERROR_RECORDING_FAILED", "ARCore's recording failed.", Remedy::Report),
+    (-24, "AR_ERROR_PLAYBACK_FAILED", "ARCore's playback failed.", Remedy::Report),
+    (-25, "AR_ERROR_SESSION_UNSUPPORTED", "ARCore's session cannot do what the app asked for.", Remedy::Report),
+    (-26, "AR_ERROR_METADATA_NOT_FOUND", "The camera does not tell how its picture was taken.", Remedy::Report),
+    (-100, "AR_UNAVAILABLE_ARCORE_NOT_INSTALLED", "Google Play Services for AR is not installed.", Remedy::Install),
+    (-101, "AR_UNAVAILABLE_DEVICE_NOT_COMPATIBLE", "This phone cannot run ARCore.", Remedy::None),
+    (-103, "AR_UNAVAILABLE_APK_TOO_OLD", "Google Play Services for AR is too old.", Remedy::Install),
+    (-104, "AR_UNAVAILABLE_SDK_TOO_OLD", "This app is too old for the phone's Google Play Services for AR.", Remedy::UpdateApp),
+    (-105, "AR_UNAVAILABLE_USER_DECLINED_INSTALLATION", "Without Google Play Services for AR the app cannot see the table.", Remedy::Install),
+];
+
+/// An answer of ARCore other than success.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failure(pub ArStatus);
+
+impl Failure {
+    /// Success, or the failure.
+    pub(super) fn check(status: ArStatus) -> Result<(), Self> {
+        if status == SUCCESS {
+            Ok(())
+        } else {
+            Err(Self(status))
+        }
+    }
+
+    fn entry(self) -> Option<&'static (ArStatus, &'static str, &'static str, Remedy)> {
+        STATUSES.iter().find(|entry| entry.0 == self.0)
+    }
+
+    /// What can be done about it.
+    #[must_use]
+    pub fn remedy(self) -> Remedy {
+        self.entry().map_or(Remedy::Report, |entry| entry.3)
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.entry() {
+            Some((number, name, message, _)) => write!(f, "{message} ({name}, {number})"),
+            None => write!(
+                f,
+                "ARCore failed in a way that this app does not know ({}).",
+                self.0
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// Whether ARCore is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Availability {
+    /// It can be used.
+    Installed,
+    /// It, or a newer one, has to be installed.
+    ToInstall,
+    /// It is being looked for: to be asked again.
+    Checking,
+    /// Nobody knows, as without a network: an install is offered.
+    Unknown,
+    /// Never on this phone.
+    NotCapable,
+}
+
+/// What `ArCoreApk_checkAvailability` says. A number that is not known counts as not known.
+#[must_use]
+pub fn availability(number: ArAvailability) -> Availability {
+    match number {
+        1 => Availability::Checking,
+        100 => Availability::NotCapable,
+        201 | 202 => Availability::ToInstall,
+        203 => Availability::Installed,
+        _ => Availability::Unknown,
+    }
+}
+
+/// What to tell while the camera is not tracked, by `ArTrackingFailureReason`.
+#[must_use]
+pub fn lost(reason: ArTrackingFailureReason) -> &'static str {
+    match reason {
+        0 => "Move the phone slowly over the table.",
+        1 => "The phone has lost its place. Look at the table again.",
+        2 => {
+            "It is too dark. Switch a lamp on, and look whether the camera is switched off in the quick settings."
+        }
+        3 => "Move the phone more slowly.",
+        4 => "There is too little to see. Show more of the table and what stands on it.",
+        5 => "Another app uses the camera. Close it.",
+        _ => "The phone does not know where it is.",
+    }
+}

@@ -1,0 +1,8 @@
+//! Camera frames of ARKit: read into plain numbers in one file, and all after it the same on a desktop.
+
+pub mod frame;
+
+#[cfg(target_os = "ios")]
+pub mod read;
+#[cfg(target_arch = "aarch64")]
+pub mod shim;

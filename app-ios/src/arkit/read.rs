@@ -1,0 +1,138 @@
+//! Reads an `ARFrame` into plain numbers. The only file of this shell that asks ARKit for anything of a frame.
+
+use std::ffi::c_void;
+
+use objc2::rc::Retained;
+use objc2::runtime::Sel;
+use objc2::{Message, msg_send, sel};
+use objc2_ar_kit::{ARFrame, ARPlaneAnchor, ARPlaneGeometry};
+use objc2_core_video::{
+    CVPixelBuffer, CVPixelBufferGetBaseAddressOfPlane, CVPixelBufferGetBytesPerRowOfPlane,
+    CVPixelBufferGetHeight, CVPixelBufferGetHeightOfPlane, CVPixelBufferGetPixelFormatType,
+    CVPixelBufferGetPlaneCount, CVPixelBufferGetWidth, CVPixelBufferLockBaseAddress, CVPixelBufferLockFlags,
+    CVPixelBufferUnlockBaseAddress,
+};
+
+use super::frame::{RawFrame, RawPlane, RawSurface};
+use super::shim;
+
+/// Corners of a plane beyond which its boundary is none: ARKit's have a few dozen.
+const MAX_CORNERS: usize = 4096;
+
+/// A pixel buffer whose bytes may be read, until it is dropped.
+struct Locked<'a>(&'a CVPixelBuffer);
+
+impl<'a> Locked<'a> {
+    /// None where the buffer cannot be locked.
+    fn new(buffer: &'a CVPixelBuffer) -> Option<Self> {
+        // SAFETY: the buffer lives, and is unlocked with the same flag when this is dropped.
+        let status = unsafe { CVPixelBufferLockBaseAddress(buffer, CVPixelBufferLockFlags::ReadOnly) };
+        (status == 0).then_some(Self(buffer))
+    }
+
+    fn planes(&self) -> Vec<RawPlane<'_>> {
+        let n_planes = CVPixelBufferGetPlaneCount(self.0);
+        (0..n_planes).map(|index| self.plane(index)).collect()
+    }
+
+    fn plane(&self, index: usize) -> RawPlane<'_> {
+        let row_stride = CVPixelBufferGetBytesPerRowOfPlane(self.0, index);
+        let n_bytes = row_stride * CVPixelBufferGetHeightOfPlane(self.0, index);
+        let first = CVPixelBufferGetBaseAddressOfPlane(self.0, index).cast::<u8>();
+        let bytes = if first.is_null() {
+            &[]
+        } else {
+            // SAFETY: the buffer is locked for as long as `self` lives, and has so many rows of so many bytes.
+            unsafe { std::slice::from_raw_parts(first, n_bytes) }
+        };
+        RawPlane { bytes, row_stride }
+    }
+}
+
+impl Drop for Locked<'_> {
+    fn drop(&mut self) {
+        // SAFETY: it was locked with this flag.
+        unsafe { CVPixelBufferUnlockBaseAddress(self.0, CVPixelBufferLockFlags::ReadOnly) };
+    }
+}
+
+/// Lets `take` see what `frame` holds; the pixels may be read until it returns. None where the pixels cannot be.
+pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Option<T> {
+    // SAFETY: properties of a frame that was delivered, which never change.
+    let (camera, buffer, timestamp, light, anchors) = unsafe {
+        (
+            frame.camera(),
+            frame.capturedImage(),
+            frame.timestamp(),
+            frame.lightEstimate(),
+            frame.anchors(),
+        )
+    };
+    let locked = Locked::new(&buffer)?;
+    let surfaces = anchors
+        .iter()
+        .filter_map(|anchor| anchor.downcast::<ARPlaneAnchor>().ok());
+    // SAFETY: properties of the frame's camera; both matrices are SIMD matrices of the shapes asked for.
+    let (intrinsics, transform, tracking, exposure) = unsafe {
+        (
+            shim::columns3(pointer(&*camera), selector(sel!(intrinsics))).0,
+            shim::columns4(pointer(&*camera), selector(sel!(transform))).0,
+            [camera.trackingState().0, camera.trackingStateReason().0],
+            [camera.exposureDuration(), f64::from(camera.exposureOffset())],
+        )
+    };
+    let raw = RawFrame {
+        timestamp,
+        pixel_format: CVPixelBufferGetPixelFormatType(&buffer),
+        size_px: [CVPixelBufferGetWidth(&buffer), CVPixelBufferGetHeight(&buffer)],
+        planes: locked.planes(),
+        intrinsics,
+        transform,
+        tracking,
+        exposure,
+        // SAFETY: properties of an estimate that never changes.
+        light: light.map(|light| unsafe { [light.ambientIntensity(), light.ambientColorTemperature()] }),
+        surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
+    };
+    Some(take(&raw))
+}
+
+fn surface(anchor: &ARPlaneAnchor) -> RawSurface {
+    // SAFETY: properties of an anchor, which never change; the transform is a SIMD matrix of four columns.
+    let (identifier, alignment, transform, geometry) = unsafe {
+        (
+            anchor.identifier(),
+            anchor.alignment().0,
+            shim::columns4(pointer(anchor), selector(sel!(transform))).0,
+            anchor.geometry(),
+        )
+    };
+    RawSurface {
+        id: identifier.as_bytes(),
+        alignment,
+        transform,
+        boundary: boundary(&geometry),
+    }
+}
+
+fn boundary(geometry: &Retained<ARPlaneGeometry>) -> Vec<[f32; 4]> {
+    // SAFETY: properties of a geometry that never changes. The corners are `simd_float3`s, which take 16 bytes each and
+    // belong to the geometry, which outlives the copy.
+    unsafe {
+        let n_corners = geometry.boundaryVertexCount();
+        let corners: *const c_void = msg_send![&**geometry, boundaryVertices];
+        if corners.is_null() || n_corners > MAX_CORNERS {
+            return Vec::new();
+        }
+        std::slice::from_raw_parts(corners.cast::<[f32; 4]>(), n_corners).to_vec()
+    }
+}
+
+fn pointer<T: Message>(object: &T) -> *const c_void {
+    std::ptr::from_ref(object).cast()
+}
+
+fn selector(selector: Sel) -> *const c_void {
+    // SAFETY: a selector is one pointer, by objc2's own layout.
+    unsafe { std::mem::transmute::<Sel, *const c_void>(selector) }
+}

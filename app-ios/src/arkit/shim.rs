@@ -1,0 +1,102 @@
+//! Messages that return SIMD matrices, which ARKit's classes have and no binding of theirs.
+//!
+//! On 64-bit ARM a `simd_float4x4` comes back in the registers v0 to v3 and a `simd_float3x3` in v0 to v2, as homogeneous
+//! vector aggregates (AAPCS64, 6.9). Rust takes every struct of that size through the pointer in x8, which such a method
+//! never writes to; with Rust 1.100 that changes for structs of vectors. The functions here are the same under both: they
+//! are called as if they returned plain arrays, which go through x8 before and after, send the message on with all of its
+//! arguments in their registers, and store what comes back. Arguments on the stack are not supported.
+//!
+//! The file depends on nothing of Apple's, so that a test runs it in an emulator with a C function as `objc_msgSend`.
+
+use core::arch::naked_asm;
+use core::ffi::c_void;
+
+/// Columns of a `simd_float4x4`.
+#[repr(C, align(16))]
+#[derive(Clone, Copy)]
+pub struct Columns4(pub [[f32; 4]; 4]);
+
+/// Columns of a `simd_float3x3`, each with a fourth lane that holds nothing in particular.
+#[repr(C, align(16))]
+#[derive(Clone, Copy)]
+pub struct Columns3(pub [[f32; 4]; 3]);
+
+unsafe extern "C" {
+    fn objc_msgSend();
+}
+
+/// Sends the message `selector` without arguments to `object`, for a `simd_float4x4`.
+///
+/// # Safety
+/// `object` is one that answers `selector`, which takes nothing and returns a `simd_float4x4`.
+pub unsafe fn columns4(object: *const c_void, selector: *const c_void) -> Columns4 {
+    // SAFETY: the shim passes both on in x0 and x1, and fills all 64 bytes that x8 points to.
+    let send = unsafe {
+        core::mem::transmute::<
+            unsafe extern "C-unwind" fn(),
+            unsafe extern "C-unwind" fn(*const c_void, *const c_void) -> Columns4,
+        >(send_for_four)
+    };
+    // SAFETY: as this function demands.
+    unsafe { send(object, selector) }
+}
+
+/// Sends the message `selector` without arguments to `object`, for a `simd_float3x3`.
+///
+/// # Safety
+/// `object` is one that answers `selector`, which takes nothing and returns a `simd_float3x3`.
+pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Columns3 {
+    // SAFETY: the shim passes both on in x0 and x1, and fills all 48 bytes that x8 points to.
+    let send = unsafe {
+        core::mem::transmute::<
+            unsafe extern "C-unwind" fn(),
+            unsafe extern "C-unwind" fn(*const c_void, *const c_void) -> Columns3,
+        >(send_for_three)
+    };
+    // SAFETY: as this function demands.
+    unsafe { send(object, selector) }
+}
+
+/// A message whose answer is in v0 to v3. Only called with another signature, one that returns through x8.
+#[unsafe(naked)]
+unsafe extern "C-unwind" fn send_for_four() {
+    naked_asm!(
+        ".cfi_startproc",
+        "stp x29, x30, [sp, #-32]!",
+        ".cfi_def_cfa_offset 32",
+        ".cfi_offset x29, -32",
+        ".cfi_offset x30, -24",
+        "mov x29, sp",
+        "str x8, [sp, #16]",
+        "bl {send}",
+        "ldr x8, [sp, #16]",
+        "stp q0, q1, [x8]",
+        "stp q2, q3, [x8, #32]",
+        "ldp x29, x30, [sp], #32",
+        "ret",
+        ".cfi_endproc",
+        send = sym objc_msgSend,
+    )
+}
+
+/// A message whose answer is in v0 to v2. Only called with another signature, one that returns through x8.
+#[unsafe(naked)]
+unsafe extern "C-unwind" fn send_for_three() {
+    naked_asm!(
+        ".cfi_startproc",
+        "stp x29, x30, [sp, #-32]!",
+        ".cfi_def_cfa_offset 32",
+        ".cfi_offset x29, -32",
+        ".cfi_offset x30, -24",
+        "mov x29, sp",
+        "str x8, [sp, #16]",
+        "bl {send}",
+        "ldr x8, [sp, #16]",
+        "stp q0, q1, [x8]",
+        "str q2, [x8, #32]",
+        "ldp x29, x30, [sp], #32",
+        "ret",
+        ".cfi_endproc",
+        send = sym objc_msgSend,
+    )
+}

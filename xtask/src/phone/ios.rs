@@ -1,0 +1,311 @@
+//! The iPhone app: made by Xcode on a Mac; elsewhere linked against stand-ins for Apple's libraries and packed.
+//!
+//! The stand-ins are text stubs with the names of `app-ios/imports.txt` and nothing else, so that the link proves that
+//! the shell asks for no more. Nothing of Apple's is needed, and what comes out is not an app that a phone takes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+
+use super::IOS;
+use super::imports::{Imports, text_stub};
+use super::macho::{self, Executable};
+use super::tools::{self, Tool};
+use super::zip::{self, Entry};
+use crate::command;
+use crate::toolchain::Toolchain;
+
+const NAME: &str = "ShadowRetargeting";
+const BUNDLE: &str = "org.example.ShadowRetargeting";
+/// Oldest iOS; the project for Xcode says the same.
+const OLDEST: [u32; 2] = [16, 0];
+/// Whose stand-ins the link stands for.
+const SDK: &str = "18.0";
+const CLANG: &str = "clang-19";
+const LINKER: &str = "ld64.lld-19";
+const TOOLS: [Tool; 2] = [
+    Tool {
+        program: CLANG,
+        package: "clang-19",
+    },
+    Tool {
+        program: LINKER,
+        package: "lld-19",
+    },
+];
+/// Loaded although no name of it is imported: its classes are looked up while the app runs.
+const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
+
+/// Makes the app as far as this machine can.
+pub(super) fn package(toolchain: &Toolchain) -> Result<()> {
+    let shell = toolchain.root.join(IOS.package);
+    if cfg!(target_os = "macos") {
+        by_xcode(toolchain, &shell)
+    } else {
+        by_stand_ins(toolchain, &shell)
+    }
+}
+
+fn by_xcode(toolchain: &Toolchain, shell: &Path) -> Result<()> {
+    for (program, from) in [
+        ("xcodebuild", "Xcode, from the App Store"),
+        ("xcodegen", "brew install xcodegen"),
+    ] {
+        if command::find(program).is_none() {
+            bail!("{program} is missing ({from})");
+        }
+    }
+    command::run(&mut IOS.build(toolchain, &[])?)?;
+    command::run(Command::new("xcodegen").arg("generate").current_dir(shell))?;
+    let project = shell.join(format!("{NAME}.xcodeproj"));
+    let mut build = Command::new("xcodebuild");
+    build.arg("-project").arg(&project);
+    build.args(["-scheme", NAME, "-sdk", "iphoneos", "-configuration", "Release"]);
+    command::run(build.args(["CODE_SIGNING_ALLOWED=NO", "build"]))?;
+    println!(
+        "Built without a signature. To run it, open {}, choose a signing team and a phone, and run.",
+        project.display()
+    );
+    Ok(())
+}
+
+fn by_stand_ins(toolchain: &Toolchain, shell: &Path) -> Result<()> {
+    tools::ensure(&TOOLS)?;
+    let folder = toolchain.root.join("target/phone/ios");
+    fs::create_dir_all(&folder)?;
+    let imports = Imports::read(&shell.join("imports.txt"), false)?;
+    command::run(&mut IOS.build(toolchain, &[])?)?;
+    let program = link(toolchain, shell, &folder, &imports)?;
+    let file = fs::read(&program)?;
+    let executable = Executable::read(&file).with_context(|| program.display().to_string())?;
+    check(&executable, &imports)?;
+    println!(
+        "{}: {} bytes, arm64, iOS {}.{} or later\n  imports: {} of {} libraries, ARKit among them",
+        program.display(),
+        file.len(),
+        OLDEST[0],
+        OLDEST[1],
+        executable.imports.len(),
+        executable.loads.len()
+    );
+    pack(shell, &folder, file)
+}
+
+/// Links `main.c` and the library against stand-ins.
+fn link(toolchain: &Toolchain, shell: &Path, folder: &Path, imports: &Imports) -> Result<PathBuf> {
+    let sdk = folder.join("sdk");
+    let _ = fs::remove_dir_all(&sdk);
+    let mut libraries = Vec::new();
+    for (path, names) in imports.libraries() {
+        let stub = sdk.join(path.trim_start_matches('/')).with_extension("tbd");
+        fs::create_dir_all(stub.parent().context("a library in no folder")?)?;
+        fs::write(&stub, text_stub(path, &names))?;
+        libraries.push(stub);
+    }
+    let object = folder.join("main.o");
+    let oldest = format!("{}.{}", OLDEST[0], OLDEST[1]);
+    let mut compile = Command::new(CLANG);
+    compile.args(["-target", &format!("arm64-apple-ios{oldest}"), "-O2", "-c"]);
+    command::run(compile.arg(shell.join("main.c")).arg("-o").arg(&object))?;
+
+    let program = folder.join(NAME);
+    let mut link = Command::new(LINKER);
+    link.args(["-arch", "arm64", "-platform_version", "ios", &oldest, SDK]);
+    // Without what nobody calls, without names for a debugger, with the signature that arm64 asks for at least.
+    link.args(["-dead_strip", "-S", "-x", "-adhoc_codesign", "-syslibroot"])
+        .arg(&sdk);
+    link.arg("-o").arg(&program).arg(&object);
+    link.arg(
+        toolchain
+            .root
+            .join("target")
+            .join(IOS.target)
+            .join("release/libapp_ios.a"),
+    );
+    // By their paths, so that each is loaded whether or not a name of it is imported.
+    command::run(link.args(libraries))?;
+    Ok(program)
+}
+
+fn check(executable: &Executable, imports: &Imports) -> Result<()> {
+    if (executable.processor, executable.kind) != (macho::ARM64, macho::EXECUTABLE) {
+        bail!("not an executable for arm64");
+    }
+    if executable.platform != Some((macho::IOS, OLDEST)) {
+        bail!("made for {:?}, not for iOS {OLDEST:?}", executable.platform);
+    }
+    if !executable.loads.contains(ARKIT) {
+        bail!("ARKit is not loaded: none of its classes would be found");
+    }
+    imports.compare(&executable.imports, |_| true)
+}
+
+/// Packs the app as an archive of one.
+fn pack(shell: &Path, folder: &Path, program: Vec<u8>) -> Result<()> {
+    let app = format!("Payload/{NAME}.app");
+    let entry = |name: &str, bytes: Vec<u8>| Entry {
+        name: format!("{app}/{name}"),
+        is_program: name == NAME,
+        bytes,
+    };
+    let properties = properties(&fs::read_to_string(shell.join("Info.plist"))?)?;
+    let mut entries = vec![
+        entry(NAME, program),
+        entry("Info.plist", properties.into_bytes()),
+        entry("PkgInfo", b"APPL????".to_vec()),
+        entry(
+            "PrivacyInfo.xcprivacy",
+            fs::read(shell.join("PrivacyInfo.xcprivacy"))?,
+        ),
+    ];
+    for size in ["60x60@2x", "60x60@3x"] {
+        let name = format!("AppIcon{size}.png");
+        entries.push(entry(&name, fs::read(shell.join("icon").join(&name))?));
+    }
+    let ipa = folder.join(format!("{NAME}.ipa"));
+    let archive = zip::write(&entries)?;
+    fs::write(&ipa, &archive)?;
+    println!("{}: {} bytes", ipa.display(), archive.len());
+    for found in zip::read(&archive)? {
+        println!("  {:>9} bytes  {}", found.n_bytes, found.name);
+    }
+    println!(
+        "This is a check and no app to hand on:\n  linked without Apple's SDK, and without a signature that a phone takes"
+    );
+    Ok(())
+}
+
+/// The property list with the variables that Xcode would have put in.
+fn properties(text: &str) -> Result<String> {
+    let filled = [
+        ("$(EXECUTABLE_NAME)", NAME),
+        ("$(PRODUCT_NAME)", NAME),
+        ("$(PRODUCT_BUNDLE_IDENTIFIER)", BUNDLE),
+        ("$(MARKETING_VERSION)", env!("CARGO_PKG_VERSION")),
+        ("$(CURRENT_PROJECT_VERSION)", "1"),
+    ]
+    .iter()
+    .fold(text.to_owned(), |text, (variable, value)| {
+        text.replace(variable, value)
+    });
+    match filled.split_once("$(") {
+        Some((_, rest)) => bail!(
+            "Info.plist: nothing is known of $({}",
+            rest.lines().next().unwrap_or_default()
+        ),
+        None => Ok(filled),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    const FRAMEWORKS: &str = "/System/Library/Frameworks/";
+
+    fn shell(name: &str) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../app-ios")
+            .join(name);
+        fs::read_to_string(path).expect("a file of the shell")
+    }
+
+    #[test]
+    fn every_variable_of_the_property_list_is_known() {
+        let filled = properties(&shell("Info.plist")).expect("a property list");
+        assert!(filled.contains(&format!("<string>{BUNDLE}</string>")));
+        assert!(properties("$(PRODUCT_NAME) $(OTHER)").is_err());
+    }
+
+    #[test]
+    fn the_project_for_xcode_has_the_same_libraries_name_and_version() {
+        let project = shell("project.yml");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../app-ios/imports.txt");
+        let imports = Imports::read(&path, false).expect("a list");
+        for (library, _) in imports.libraries() {
+            if let Some(name) = library.strip_prefix(FRAMEWORKS) {
+                let framework = name.split('/').next().expect("a folder");
+                assert!(
+                    project.contains(&format!("- sdk: {framework}\n")),
+                    "no {framework}"
+                );
+            }
+        }
+        let frameworks = imports
+            .libraries()
+            .filter(|(path, _)| path.starts_with(FRAMEWORKS));
+        assert_eq!(project.matches("- sdk: ").count(), frameworks.count());
+        assert!(project.contains(&format!("iOS: \"{}.{}\"", OLDEST[0], OLDEST[1])));
+        assert!(project.contains(&format!("MARKETING_VERSION: \"{}\"", env!("CARGO_PKG_VERSION"))));
+        assert!(project.contains(&format!("name: {NAME}\n")));
+    }
+
+    /// Names that Apple asks reasons for, and under which heading.
+    const REASONS: [(&str, &str); 10] = [
+        ("_fstat", "FileTimestamp"),
+        ("_stat", "FileTimestamp"),
+        ("_lstat", "FileTimestamp"),
+        ("_fstatat", "FileTimestamp"),
+        ("_getattrlist", "FileTimestamp"),
+        ("_mach_absolute_time", "SystemBootTime"),
+        ("_statfs", "DiskSpace"),
+        ("_statvfs", "DiskSpace"),
+        ("_fstatfs", "DiskSpace"),
+        ("_fstatvfs", "DiskSpace"),
+    ];
+
+    #[test]
+    fn the_privacy_manifest_has_a_reason_for_every_import_that_needs_one() {
+        let (manifest, imports) = (shell("PrivacyInfo.xcprivacy"), shell("imports.txt"));
+        let is_imported = |name: &str| imports.lines().any(|line| line.ends_with(&format!(" {name}")));
+        for heading in ["FileTimestamp", "SystemBootTime", "DiskSpace"] {
+            let needs = REASONS
+                .iter()
+                .any(|(name, of)| *of == heading && is_imported(name));
+            let states = manifest.contains(&format!("NSPrivacyAccessedAPICategory{heading}<"));
+            assert_eq!(needs, states, "{heading}");
+        }
+    }
+
+    #[test]
+    fn an_executable_without_arkit_or_for_another_version_is_refused() {
+        let good = || Executable {
+            processor: macho::ARM64,
+            kind: macho::EXECUTABLE,
+            platform: Some((macho::IOS, OLDEST)),
+            loads: BTreeSet::from([ARKIT.to_owned()]),
+            imports: BTreeSet::new(),
+        };
+        let none = Imports::default();
+        assert!(check(&good(), &none).is_ok());
+        let wrong = [
+            Executable {
+                processor: 7,
+                ..good()
+            },
+            Executable {
+                platform: Some((macho::IOS, [17, 0])),
+                ..good()
+            },
+            Executable {
+                platform: Some((1, OLDEST)),
+                ..good()
+            },
+            Executable {
+                loads: BTreeSet::new(),
+                ..good()
+            },
+            Executable {
+                imports: BTreeSet::from(["_system".to_owned()]),
+                ..good()
+            },
+        ];
+        for wrong in wrong {
+            assert!(check(&wrong, &none).is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The two shells: checked, built and packaged on any machine, each as far as that machine goes.
+
+mod android;
+mod apk;
+pub(crate) mod calls;
+mod elf;
+mod imports;
+mod ios;
+mod macho;
+mod ndk;
+pub(crate) mod size;
+mod tools;
+mod zip;
+
+use std::process::Command;
+
+use anyhow::{Result, bail};
+
+use crate::command;
+use crate::toolchain::Toolchain;
+
+pub(crate) use apk::Arcore;
+
+/// A shell.
+pub(crate) struct Phone {
+    /// Its package in the workspace.
+    package: &'static str,
+    /// Its compilation target.
+    pub(crate) target: &'static str,
+}
+
+/// The iPhone shell.
+pub(crate) const IOS: Phone = Phone {
+    package: "app-ios",
+    target: "aarch64-apple-ios",
+};
+/// The Android shell.
+pub(crate) const ANDROID: Phone = Phone {
+    package: "app-android",
+    target: "aarch64-linux-android",
+};
+
+/// What to do with a shell.
+pub(crate) enum Action {
+    Check,
+    Build,
+    /// With ARCore's archive, where Android's own tools are.
+    Package(Option<Arcore>),
+}
+
+impl Phone {
+    /// Type check and lints.
+    pub(crate) fn check(&self, toolchain: &Toolchain) -> Command {
+        let mut clippy = toolchain.cargo("clippy");
+        clippy.args([
+            "--locked",
+            "--package",
+            self.package,
+            "--target",
+            self.target,
+            "--",
+            "-D",
+            "warnings",
+        ]);
+        clippy
+    }
+
+    /// The library, with `args` for the linker, or for whoever makes an archive in its place.
+    fn build(&self, toolchain: &Toolchain, linker_args: &[String]) -> Result<Command> {
+        let mut build = toolchain.cargo("rustc");
+        build.args(["--locked", "--release", "--lib", "--package", self.package]);
+        build.args(["--target", self.target]);
+        if self.is_android() && ndk::ndk().is_some() {
+            build.envs(ndk::ndk_tools()?);
+        }
+        build.arg("--");
+        build.args(linker_args.iter().map(|arg| format!("-Clink-arg={arg}")));
+        Ok(build)
+    }
+
+    fn is_android(&self) -> bool {
+        self.target == ANDROID.target
+    }
+}
+
+/// Checks, builds or packages a shell.
+pub(crate) fn run(toolchain: &Toolchain, phone: &Phone, action: Action) -> Result<()> {
+    toolchain.ensure_target(phone.target)?;
+    match action {
+        Action::Check => command::run(&mut phone.check(toolchain)),
+        Action::Build if phone.is_android() && ndk::ndk().is_none() => {
+            bail!(
+                "no NDK found; set ANDROID_NDK_HOME to its folder. `cargo xtask android package` links without one"
+            )
+        }
+        Action::Build => command::run(&mut phone.build(toolchain, &[])?),
+        Action::Package(arcore) if phone.is_android() => android::package(toolchain, arcore.as_ref()),
+        Action::Package(_) => ios::package(toolchain),
+    }
+}
