@@ -112,16 +112,76 @@ pub enum Warning {
     WorldScaleNotTold,
 }
 
+impl Warning {
+    /// What it says, where there is no number in it.
+    fn words(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NoLight => "no light is known: the camera frame passes through",
+            Self::NoPlate => "there is no plate, which this preset needs: the camera frame passes through",
+            Self::PlateEstimated => {
+                "there is no plate: the place behind toy and shadow is estimated from the frame"
+            }
+            Self::CameraBelowReceiver => {
+                "the camera is not above the receiver: the camera frame passes through"
+            }
+            Self::NothingToSample => {
+                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples"
+            }
+            Self::OutOfPicture => "the toy and its shadow are out of the picture",
+            Self::ToyOutOfPicture => {
+                "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose"
+            }
+            Self::FocalLengthNotTold => {
+                "the focal length was asked for, but toy and shadow do not tell it: that given is taken"
+            }
+            Self::WorldScaleNotTold => {
+                "the scale of the world was asked for, but toy and shadow do not tell it: that given is taken"
+            }
+            _ => return None,
+        })
+    }
+
+    /// What it says of a view, before anything is drawn; nothing of all else.
+    fn fmt_of_view(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TurnedDown {
+                what,
+                triangles,
+                covered_px,
+            } => too_much(
+                f,
+                (*triangles, *covered_px),
+                format_args!(": {}", listed(what, ", ")),
+            ),
+            Self::TooCostly {
+                triangles,
+                covered_px,
+            } => {
+                let what =
+                    " with every setting turned down: the camera frame passes through; take a simpler toy";
+                too_much(f, (*triangles, *covered_px), format_args!("{what}"))
+            }
+            Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
+            Self::LightsChanged { unexplained } => write!(
+                f,
+                "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
+                100.0 * unexplained
+            ),
+            Self::Misaligned { outline_px } => write!(
+                f,
+                "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(words) = self.words() {
+            return f.write_str(words);
+        }
         match self {
-            Self::NoLight => f.write_str("no light is known: the camera frame passes through"),
-            Self::NoPlate => {
-                f.write_str("there is no plate, which this preset needs: the camera frame passes through")
-            }
-            Self::PlateEstimated => {
-                f.write_str("there is no plate: the place behind toy and shadow is estimated from the frame")
-            }
             Self::PlatePartial { fraction } => write!(
                 f,
                 "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
@@ -163,59 +223,40 @@ impl fmt::Display for Warning {
                 "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
                 lights_in_words(lights)
             ),
-            Self::NothingToSample => f.write_str(
-                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples",
-            ),
             Self::ShadowsUnseen { unseen } => write!(
                 f,
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
             ),
-            Self::TurnedDown {
-                what,
-                triangles,
-                covered_px,
-            } => write!(
-                f,
-                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much: {}",
-                listed(what, ", ")
-            ),
-            Self::TooCostly {
-                triangles,
-                covered_px,
-            } => write!(
-                f,
-                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much with every setting turned down: the camera frame passes through; take a simpler toy"
-            ),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
-            Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
-            Self::ToyOutOfPicture => f.write_str(
-                "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose",
-            ),
-            Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
-            Self::LightsChanged { unexplained } => write!(
-                f,
-                "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
-                100.0 * unexplained
-            ),
-            Self::FocalLengthNotTold => not_told(f, "focal length"),
-            Self::WorldScaleNotTold => not_told(f, "scale of the world"),
-            Self::CameraBelowReceiver => {
-                f.write_str("the camera is not above the receiver: the camera frame passes through")
-            }
-            Self::Misaligned { outline_px } => write!(
-                f,
-                "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
-            ),
+            Self::TurnedDown { .. }
+            | Self::TooCostly { .. }
+            | Self::LightNotFound { .. }
+            | Self::LightsChanged { .. }
+            | Self::Misaligned { .. } => self.fmt_of_view(f),
+            // Said above.
+            Self::NoLight
+            | Self::NoPlate
+            | Self::PlateEstimated
+            | Self::CameraBelowReceiver
+            | Self::NothingToSample
+            | Self::OutOfPicture
+            | Self::ToyOutOfPicture
+            | Self::FocalLengthNotTold
+            | Self::WorldScaleNotTold => Ok(()),
         }
     }
 }
 
-fn not_told(f: &mut fmt::Formatter<'_>, what: &str) -> fmt::Result {
+fn too_much(
+    f: &mut fmt::Formatter<'_>,
+    (triangles, covered_px): (u64, f64),
+    and: fmt::Arguments<'_>,
+) -> fmt::Result {
     write!(
         f,
-        "the {what} was asked for, but toy and shadow do not tell it: that given is taken"
+        "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much{and}"
     )
 }
 
