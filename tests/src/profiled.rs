@@ -50,7 +50,9 @@ pub enum ProfileError {
 pub fn task(name: &str) -> Option<&'static str> {
     let index = match name {
         "align" | "placement" => 0,
-        "masks" | "eligible" | "census" | "gbuffer" | "validity" | "withhold" | "moved_mask" | "coverage" => 1,
+        "masks" | "eligible" | "census" | "gbuffer" | "validity" | "withhold" | "moved_mask" | "coverage" => {
+            1
+        }
         "toy" | "appearance" | "tint" | "tint_fill" | "self_shadow" => 2,
         "warp" | "occlusion" => 3,
         // What is sampled of the real shadow: by a search there, by a fit and a residual here.
@@ -135,7 +137,9 @@ pub fn tables(profile: &Profile) -> String {
     for kind in ["pose", "picture", "view", "scene"] {
         let frames = frames_of(profile, kind);
         if !frames.is_empty() {
-            let heads = [kind, "ms", "%", "paper ms", "paper %"].map(str::to_owned).to_vec();
+            let heads = [kind, "ms", "%", "paper ms", "paper %"]
+                .map(str::to_owned)
+                .to_vec();
             text.push_str(&format!("\nnew {kind}, mean of {} frames\n", frames.len()));
             text.push_str(&aligned(&task_rows(profile, &frames, heads)));
         }
@@ -145,8 +149,14 @@ pub fn tables(profile: &Profile) -> String {
 
 /// Beginning and end of each frame of a kind, in microseconds.
 fn frames_of(profile: &Profile, kind: &str) -> Vec<(f64, f64)> {
-    let all: Vec<_> = profile.scopes(PROCESSOR).filter(|event| event.name == FRAME).collect();
-    let of_kind = all.iter().enumerate().filter(|(_, event)| event.args.kind.as_deref() == Some(kind));
+    let all: Vec<_> = profile
+        .scopes(PROCESSOR)
+        .filter(|event| event.name == FRAME)
+        .collect();
+    let of_kind = all
+        .iter()
+        .enumerate()
+        .filter(|(_, event)| event.args.kind.as_deref() == Some(kind));
     // What belongs to a frame begins before the next one does.
     let end = |index: usize| all.get(index + 1).map_or(f64::INFINITY, |next| next.ts);
     of_kind.map(|(index, event)| (event.ts, end(index))).collect()
@@ -179,18 +189,34 @@ fn task_rows(profile: &Profile, frames: &[(f64, f64)], heads: Vec<String>) -> Ve
     rows.extend(TASKS.iter().map(|(name, ms)| row(name, of_task(name), *ms)));
     rows.push(row("Total", total, published));
     let blank = |name: String, ms: f64| {
-        vec![name, format!("{ms:.2}"), String::new(), String::new(), String::new()]
+        vec![
+            name,
+            format!("{ms:.2}"),
+            String::new(),
+            String::new(),
+            String::new(),
+        ]
     };
     for tid in [PROCESSOR, DEVICE] {
         let mut names: Vec<&str> = Vec::new();
-        for event in profile.scopes(tid).filter(|event| event.name != FRAME && is_within(event.ts)) {
+        for event in profile
+            .scopes(tid)
+            .filter(|event| event.name != FRAME && is_within(event.ts))
+        {
             if !names.contains(&event.name.as_str()) {
                 names.push(&event.name);
             }
         }
-        let place = if tid == PROCESSOR { "on the processor" } else { "on the device" };
+        let place = if tid == PROCESSOR {
+            "on the processor"
+        } else {
+            "on the device"
+        };
         rows.extend(names.iter().map(|name| {
-            blank(format!("{place}: {name}"), mean_ms(&[tid], &|scope| scope == *name))
+            blank(
+                format!("{place}: {name}"),
+                mean_ms(&[tid], &|scope| scope == *name),
+            )
         }));
     }
     rows
