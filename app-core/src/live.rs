@@ -12,6 +12,7 @@ use crate::app::{App, Device, ShellCommand, ShellEvent, Show};
 use crate::camera_frame::Display;
 use crate::core::{Core, CoreError, WarmUp};
 use crate::frame::Warning;
+use crate::governor::{BALANCED_FRONT, Governor, Measured};
 use crate::gpu::context::Gpu;
 use crate::gpu::texture::Texture;
 use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
@@ -32,6 +33,10 @@ pub struct Live {
     version: Option<u64>,
     display: Display,
     warnings: Vec<Warning>,
+    /// Where frames a second are to be held.
+    governor: Option<Governor>,
+    /// Of the latest picture.
+    time_s: f64,
 }
 
 impl Live {
@@ -48,6 +53,16 @@ impl Live {
             version: None,
             display: Display::default(),
             warnings: Vec::new(),
+            governor: None,
+            time_s: 0.0,
+        }
+    }
+
+    /// Holds so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
+    /// stay as they are.
+    pub fn hold(&mut self, frames_per_second: u32) {
+        if self.preset == Preset::Balanced {
+            self.governor = Some(Governor::new(BALANCED_FRONT, frames_per_second));
         }
     }
 
@@ -172,6 +187,7 @@ impl Live {
         for wish in wishes {
             commands.extend(self.app.event(ShellEvent::Wish(wish)));
         }
+        self.govern(time_s)?;
         self.make_picture()?;
         Ok((commands, painting))
     }
@@ -186,6 +202,25 @@ impl Live {
         }
         self.warm_up = None;
         Ok(self.app.event(ShellEvent::Device(Device::Ready)))
+    }
+
+    /// Turns settings down or up by how long pictures take while the toy moves.
+    fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
+        let interval_ms = 1e3 * (time_s - self.time_s);
+        self.time_s = time_s;
+        let is_moving = self.version.is_some() && matches!(self.app.show(), Show::Toy { .. });
+        let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
+            return Ok(());
+        };
+        let turned = governor.take(&Measured {
+            gpu_ms: None,
+            interval_ms,
+            heat: self.app.thermal(),
+        });
+        if turned.is_some() {
+            self.core.turn_down(governor.turned_down())?;
+        }
+        Ok(())
     }
 
     fn make_picture(&mut self) -> Result<(), CoreError> {
@@ -205,6 +240,9 @@ impl Live {
                 if self.version != Some(version) {
                     self.core.set_scene(scene.clone(), self.preset)?;
                     self.version = Some(version);
+                    if let Some(governor) = &self.governor {
+                        self.core.turn_down(governor.turned_down())?;
+                    }
                 }
                 self.warnings = self.core.frame(&input)?.warnings;
             }
@@ -214,6 +252,10 @@ impl Live {
 
     fn profile(&self) -> String {
         let mut lines = format!("{} {:?}", self.preset, self.app.thermal());
+        for step in self.governor.iter().flat_map(Governor::turned_down) {
+            lines.push('\n');
+            lines.push_str(step.what);
+        }
         for warning in &self.warnings {
             lines.push('\n');
             lines.push_str(&warning.to_string());

@@ -9,6 +9,8 @@ use super::step::Step;
 use crate::camera_frame::CameraFrame;
 use crate::toy::{ClipId, Toy};
 
+pub use crate::governor::Heat as Thermal;
+
 /// Whether the camera may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Permission {
@@ -49,20 +51,6 @@ pub enum Device {
     Lost,
     /// It has no graphics that suffice.
     Unsupported,
-}
-
-/// How hot the device is, in the four levels of the platforms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Thermal {
-    /// Nothing to be done.
-    #[default]
-    Nominal,
-    /// Warm.
-    Fair,
-    /// Work must become less.
-    Serious,
-    /// Work must end.
-    Critical,
 }
 
 /// What became of something that was to be saved.

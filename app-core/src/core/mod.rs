@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::camera_frame::{CameraImage, Display};
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
+use crate::governor::Step;
 use crate::gpu::context::{AdapterChoice, Gpu};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
@@ -188,6 +189,17 @@ impl Core {
             .gpu
             .guarded(|| Stage::new(&self.gpu, scene, preset, &toy_in_object))??;
         self.stage = Some(stage);
+        Ok(())
+    }
+
+    /// Turns settings of the model down from the next frame on, or up again: those that a
+    /// [`Governor`](crate::governor::Governor) has [turned down](crate::governor::Governor::turned_down). What was learned of the
+    /// place stays; the next frame learns as from a new view. Until another scene is set; the baseline has no such settings.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    pub fn turn_down(&mut self, steps: &[Step]) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.turn_down(steps);
         Ok(())
     }
 

@@ -14,9 +14,9 @@
 //! - **Heat** narrows what a frame may take at once, and widens it only after [`COOL_FRAMES`] frames; there is no step up
 //!   above [`Heat::Fair`].
 //!
-//! From a sudden load of twice the time it is back within its time after [`SETTLE_FRAMES`] + [`WINDOW`] frames if the steps bring
-//! what is expected, and after twice that if they bring half; without device times after a window of late frames for each
-//! step. Back at its best it is after [`UP_FRAMES`] and a window for each step.
+//! From a sudden load of twice the time it is back within 40 frames, whether steps bring half or one and a half times of
+//! what is expected; without device times after a window of late frames for each step or two. Back at its best it is after
+//! [`UP_FRAMES`] and a window for each step. Simulations hold all of that.
 
 mod front;
 mod window;

@@ -8,11 +8,10 @@ use wgpu::{
     BindingType, BufferBindingType, SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension,
 };
 
-use super::buffer::Buffer;
 use super::device::Device;
 use super::meter::Meter;
+use super::resource::{Buffer, TextureView};
 use super::samplers::Sampler;
-use super::texture::TextureView;
 use super::uniforms::Uniforms;
 use super::work::Bound;
 
@@ -61,6 +60,14 @@ impl Slot {
     /// A uniform that is written for each use.
     pub(crate) const fn per_use<T>() -> Self {
         Self::PerUse(size_of::<T>())
+    }
+
+    /// Bytes of a buffer of `n_bytes` that a shader sees through the slot.
+    fn seen_bytes(self, n_bytes: u64) -> u64 {
+        match self {
+            Self::Uniform(size) | Self::PerUse(size) => size as u64,
+            _ => n_bytes,
+        }
     }
 
     fn layout_entry(self, binding: u32) -> wgpu::BindGroupLayoutEntry {

@@ -3,17 +3,9 @@
 use wgpu::BufferUsages;
 
 use super::context::Gpu;
-use super::meter::{Held, Meter};
-use super::work::Id;
+use super::meter::Meter;
 
-/// A buffer; where nothing is drawn, only counted, no more than its size.
-#[derive(Debug)]
-pub(crate) struct Buffer {
-    pub(super) raw: Option<wgpu::Buffer>,
-    pub(super) id: Id,
-    pub(super) n_bytes: u64,
-    _held: Held,
-}
+pub(crate) use super::resource::Buffer;
 
 impl Gpu {
     /// A buffer filled with `contents`, which can be written to.

@@ -11,6 +11,7 @@ pub(crate) mod pass_run;
 pub(crate) mod pipeline;
 pub(crate) mod readback;
 pub(crate) mod recorder;
+pub(crate) mod resource;
 pub(crate) mod samplers;
 pub(crate) mod shader;
 pub(crate) mod shape;

@@ -7,7 +7,8 @@ use super::context::Gpu;
 use super::meter::{Held, Meter};
 use super::samplers::Sampler;
 use super::shape::Shape;
-use super::work::Id;
+
+pub(crate) use super::resource::TextureView;
 
 /// A texture with its whole view; where nothing is drawn, only counted, no more than its shape.
 #[derive(Debug)]
@@ -15,15 +16,6 @@ pub(crate) struct Texture {
     raw: Option<wgpu::Texture>,
     pub(crate) view: TextureView,
     _held: Held,
-}
-
-/// A view of a texture, or of some of its layers.
-#[derive(Debug)]
-pub(crate) struct TextureView {
-    pub(super) raw: Option<wgpu::TextureView>,
-    /// The texture's, of which those with several layers have one each.
-    pub(super) id: Id,
-    pub(super) shape: Shape,
 }
 
 impl Texture {

@@ -3,7 +3,6 @@
 use std::iter::Sum;
 use std::ops::AddAssign;
 
-use super::bindings::Slot;
 use super::shape::Shape;
 
 /// Work of a pass, over all of its runs. Only a recorder makes one that is not empty, from descriptors.
@@ -185,15 +184,5 @@ impl<'a> Tally<'a> {
             self.counted.push(id);
         }
         is_new
-    }
-}
-
-impl Slot {
-    /// Bytes of a buffer of `n_bytes` that a shader sees through the slot.
-    pub(super) fn seen_bytes(self, n_bytes: u64) -> u64 {
-        match self {
-            Self::Uniform(size) | Self::PerUse(size) => size as u64,
-            _ => n_bytes,
-        }
     }
 }

@@ -112,14 +112,15 @@ impl Model {
         }
     }
 
-    /// Follows the camera to another view; textures are kept if they suffice.
-    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
-        if plan.region.size_px == self.region.rect().size_px && self.captured.serves(&plan) {
+    /// Follows the camera to another view, or settings that are turned down or up; textures are kept if they suffice.
+    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<Vec4>>) {
+        let is_alike = plan.has_sizes_of(&self.region.plan);
+        if is_alike && self.captured.serves(&plan) {
             self.captured.light.injected = None;
             self.drawn.light.injected = None;
         } else {
             gpu.release_groups();
-            self.lighting = Lighting::new(gpu, &plan, self.lighting.points());
+            self.lighting = Lighting::new(gpu, &plan, light_points);
             self.captured = CaptureTargets::new(gpu, &plan);
             self.drawn = FrameTargets::new(gpu, &plan);
         }

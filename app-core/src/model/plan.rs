@@ -100,6 +100,16 @@ impl Plan {
 }
 
 impl Plan {
+    /// Whether its maps are of the sizes and formats of another's, and its lights of as many points.
+    #[must_use]
+    pub fn has_sizes_of(&self, other: &Self) -> bool {
+        let sizes = |plan: &Self| {
+            let counts = [plan.n_lights, plan.n_light_points, plan.n_ambient_directions];
+            (plan.region.size_px, plan.ambient_px, counts)
+        };
+        sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
+    }
+
     /// Pixels of the region at most `reach_px` from those that show the physical toy: their corner, counted from the
     /// region's, and their size.
     #[must_use]

@@ -62,7 +62,9 @@ pub(crate) struct Stage {
     /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
-    /// Settings that are turned down since the scene would cost too much.
+    /// Settings that the caller turns down.
+    asked_down: Vec<Step>,
+    /// Those that are turned down since the scene would cost too much.
     turned_down: Vec<Step>,
     /// What there is to say of that.
     cost_warning: Option<Warning>,
@@ -96,6 +98,8 @@ struct MethodState {
     is_first_view: bool,
     /// Visibilities were injected after it was learned.
     is_visibility_outdated: bool,
+    /// Settings were turned down or up after it was learned.
+    are_settings_outdated: bool,
     /// The object or the lights moved after it was learned.
     is_placement_outdated: bool,
 }
@@ -149,6 +153,7 @@ impl Stage {
             scene,
             is_shadow_withheld: false,
             turned_down: Vec::new(),
+            asked_down: Vec::new(),
             cost_warning: None,
             reach: None,
             cached_footprint: None,

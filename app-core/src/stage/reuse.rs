@@ -16,6 +16,7 @@ use crate::frame::warning::Warning;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::light_points::light_points;
 use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::governor::Step;
 use crate::gpu::context::Gpu;
 use crate::model::Model;
 use crate::model::plan::Plan;
@@ -84,11 +85,12 @@ impl Stage {
             && state.method.region().contains(&footprint.least_region);
         // What was injected belongs to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
+        let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
         if !has_grids {
             Reuse::Nothing
         } else if mem::take(&mut state.is_placement_outdated) {
             Reuse::Targets
-        } else if !is_within {
+        } else if !is_within || are_settings_outdated {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region
@@ -120,6 +122,7 @@ impl Stage {
             light_indices: self.lights.indices.clone(),
             is_first_view: true,
             is_visibility_outdated: false,
+            are_settings_outdated: false,
             is_placement_outdated: false,
         });
     }
@@ -134,7 +137,9 @@ impl Stage {
             (Settings::Model(settings), Method::Model(model)) => {
                 let facts = self.facts(footprint, region);
                 let plan = Plan::new(&facts, &self.settings(settings));
-                model.follow(gpu, plan, &globals(&footprint.view, &region, &self.layout()));
+                let globals = globals(&footprint.view, &region, &self.layout());
+                let light_points = self.light_points(&plan);
+                model.follow(gpu, plan, &globals, light_points);
             }
             (Settings::Baseline(settings), Method::Baseline(baseline)) => {
                 let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
@@ -177,8 +182,19 @@ impl Stage {
             is_shadow_withheld: self.is_shadow_withheld,
             ..preset
         };
-        self.turned_down.iter().for_each(|step| step.apply(&mut settings));
+        let steps = self.turned_down.iter().chain(&self.asked_down);
+        steps.for_each(|step| step.apply(&mut settings));
         settings
+    }
+
+    /// Turns settings down from the next frame on, or up again; what was learned stays.
+    pub(crate) fn turn_down(&mut self, steps: &[Step]) {
+        if self.asked_down != steps {
+            self.asked_down = steps.to_vec();
+            if let Some(state) = &mut self.state {
+                state.are_settings_outdated = true;
+            }
+        }
     }
 
     pub(super) fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {

@@ -45,6 +45,9 @@ struct Args {
     /// Physical pixels a point of the tour's screen
     #[arg(long, value_name = "N", default_value_t = 1.5, requires = "tour")]
     scale: f64,
+    /// Hold so many frames a second by turning settings down
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=240))]
+    hold: Option<u32>,
     /// How large letters are
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     text_scale: f64,
@@ -75,6 +78,7 @@ fn run(args: Args) -> Result<()> {
                 size_points: args.size,
                 faults: args.fault,
                 text_scale: args.text_scale,
+                hold: args.hold,
                 out,
                 seconds: args.seconds,
             },
@@ -84,7 +88,8 @@ fn run(args: Args) -> Result<()> {
         &wgpu::Instance::default(),
         &AdapterChoice::Fastest,
     ))?;
-    let live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
+    let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
+    args.hold.into_iter().for_each(|hold| live.hold(hold));
     let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
     #[allow(
         clippy::cast_possible_truncation,

@@ -38,6 +38,8 @@ pub struct Options {
     pub faults: Vec<(Fault, f64)>,
     /// How large letters are; 1 is usual.
     pub text_scale: f64,
+    /// Frames a second that are to be held.
+    pub hold: Option<u32>,
     /// Where photos go.
     pub out: std::path::PathBuf,
     /// Close by itself after so many seconds.
@@ -92,7 +94,8 @@ impl Shell {
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
         let core = self.core_on(&window)?;
-        let live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
+        let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
+        self.options.hold.into_iter().for_each(|hold| live.hold(hold));
         let mut desk = Desk::new(live, feed, self.options.out.clone(), Jobs::Thread);
         desk.tell(ShellEvent::Foreground(true));
         desk.tell(ShellEvent::Surface(Some(window.inner_size().into())));

@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use app_core::Core;
-use app_core::frame::{FrameInput, FrameReport, Warning};
+use app_core::frame::{Change, FrameInput, FrameReport, Warning};
+use app_core::governor::{BALANCED_FRONT, Knob, Step};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
 use app_core::toy::Toy;
@@ -190,6 +191,33 @@ fn a_planted_budget_is_broken() {
         (View, 3_231_000, 8.5),
     ];
     assert_held(1, Preset::Balanced, planted, 85.0);
+}
+
+#[test]
+fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
+    let (scene, input) = scene_of(ball(100, 51), 1);
+    let mut core = Core::counting();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    core.frame(&input).unwrap();
+    let mut triangles = |steps: &[Step]| -> (Option<Change>, u64) {
+        core.turn_down(steps).unwrap();
+        let first = core.frame(&input).unwrap().change;
+        let steady = core.frame(&input).unwrap();
+        assert_eq!(steady.change, Some(Change::Pose), "it settles at once");
+        (first, steady.ran.iter().map(|run| run.work.triangles()).sum())
+    };
+    let (_, full) = triangles(&[]);
+    let mut before = full;
+    for n_steps in 1..=BALANCED_FRONT.len() {
+        let step = BALANCED_FRONT[n_steps - 1];
+        let (first, now) = triangles(&BALANCED_FRONT[..n_steps]);
+        let is_fewer = !matches!(step.knob, Knob::AmbientDivisor | Knob::FramesPerSecond);
+        assert_eq!(now < before, is_fewer, "{}: {before}, {now}", step.what);
+        assert_eq!(first, Some(Change::View), "{}: nothing is forgotten", step.what);
+        before = now;
+    }
+    assert_eq!(triangles(&[]), (Some(Change::View), full));
+    assert_eq!(triangles(&[]), (Some(Change::Pose), full), "nothing changed");
 }
 
 /// The report of a first frame of a toy, without a device.

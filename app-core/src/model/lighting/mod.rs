@@ -98,11 +98,6 @@ impl Lighting {
         }
     }
 
-    /// The points of each light, receiver by receiver.
-    pub(crate) fn points(&self) -> Vec<Vec<Vec4>> {
-        self.lights.iter().map(|light| light.points.clone()).collect()
-    }
-
     /// Moves the lights: `points` are as many as before.
     pub(crate) fn relocate(&mut self, gpu: &Gpu, points: Vec<Vec<Vec4>>) {
         for (light, points) in self.lights.iter_mut().zip(points) {
