@@ -1,7 +1,5 @@
 //! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use app_core::governor::{
     BALANCED_FRONT, Governor, Heat, Knob, Measured, SETTLE_FRAMES, Turned, UP_FRAMES, WINDOW,
 };

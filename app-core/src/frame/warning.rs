@@ -167,22 +167,7 @@ impl fmt::Display for Warning {
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
             ),
-            Self::TurnedDown {
-                what,
-                triangles,
-                covered_px,
-            } => write!(
-                f,
-                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much: {}",
-                listed(what, ", ")
-            ),
-            Self::TooCostly {
-                triangles,
-                covered_px,
-            } => write!(
-                f,
-                "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much with every setting turned down: the camera frame passes through; take a simpler toy"
-            ),
+            Self::TurnedDown { .. } | Self::TooCostly { .. } => self.fmt_cost(f),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::OutOfPicture => f.write_str("the toy and its shadow are out of the picture"),
@@ -201,6 +186,34 @@ impl fmt::Display for Warning {
             Self::Misaligned { outline_px } => write!(
                 f,
                 "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+            ),
+        }
+    }
+}
+
+impl Warning {
+    /// What is said of cost.
+    fn fmt_cost(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::TurnedDown {
+            triangles,
+            covered_px,
+            ..
+        }
+        | Self::TooCostly {
+            triangles,
+            covered_px,
+        }) = self
+        else {
+            return Ok(());
+        };
+        write!(
+            f,
+            "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much"
+        )?;
+        match self {
+            Self::TurnedDown { what, .. } => write!(f, ": {}", listed(what, ", ")),
+            _ => f.write_str(
+                " with every setting turned down: the camera frame passes through; take a simpler toy",
             ),
         }
     }

@@ -86,7 +86,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     let mut text = aligned(&errors(rows));
     text.push_str("Scores are RMSE in 8-bit codes (SSIM); flicker is that of changes from frame to frame, in the shadow and on the toy; alignment is a mean over all frames.\n\n");
     text.push_str(&aligned(&times(rows)));
-    text.push_str("\n");
+    text.push('\n');
     text.push_str(&aligned(&costs(rows)));
     text.push_str("By the ledger, the same on any device, with showing the picture on a screen of its size: triangles, copies of that screen; most memory of textures and buffers.\n\n");
     text.push_str(

@@ -38,10 +38,8 @@ fn translated(module: &Module, info: &ModuleInfo, entry: usize) -> [Result<(), S
     let to_msl = to_msl
         .map_err(|error| error.to_string())
         .and_then(|(_, written)| {
-            let names = written.entry_point_names.into_iter();
-            names
-                .map(|name| name.map(|_| ()).map_err(|error| error.to_string()))
-                .collect()
+            let mut names = written.entry_point_names.into_iter();
+            names.try_for_each(|name| name.map(|_| ()).map_err(|error| error.to_string()))
         });
     // Vulkan 1.0, which phones of 2016 have.
     let options = spv::Options {
