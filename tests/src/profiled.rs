@@ -170,7 +170,7 @@ fn task_rows(profile: &Profile, frames: &[(f64, f64)], heads: Vec<String>) -> Ve
         let events = threads.iter().flat_map(|tid| profile.scopes(*tid));
         let events = events.filter(|event| event.name != FRAME && is_within(event.ts) && wanted(&event.name));
         // In that order no time is counted twice: stages and passes of a task stand side by side.
-        events.map(|event| event.dur).sum::<f64>() * per_frame
+        events.fold(0.0, |sum, event| sum + event.dur) * per_frame
     };
     let of_task = |name: &str| mean_ms(&[PROCESSOR, DEVICE], &|scope| task(scope) == Some(name));
     let total: f64 = TASKS.iter().map(|(name, _)| of_task(name)).sum();

@@ -31,7 +31,7 @@ fn ball(n_around: u32, n_along: u32) -> Toy {
         }));
     }
     positions.push([0.0, -1.0, 0.0]);
-    let last = positions.len() as u32 - 1;
+    let last = u32::try_from(positions.len()).unwrap() - 1;
     let at = |ring: u32, step: u32| 1 + (ring - 1) * n_around + step % n_around;
     let mut indices = Vec::new();
     for step in 0..n_around {
