@@ -22,7 +22,11 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mu
             style::card().show(ui, |ui| {
                 ui.set_width(width - 32.0);
                 // 16 points of margin within, 12 without, on either side.
-                let scrolled = ScrollArea::vertical().max_height(area.height() - 56.0);
+                let tallest = area.height() - 56.0;
+                // Without the least height a sheet would stay as low as the one before it.
+                let scrolled = ScrollArea::vertical()
+                    .max_height(tallest)
+                    .min_scrolled_height(tallest);
                 scrolled.show(ui, |ui| match app.obstacle() {
                     Some(obstacle) => in_the_way(ui, app, obstacle, wishes),
                     None if app.step() == Step::Play => play::show(ui, app, is_menu_open, wishes),

@@ -130,6 +130,20 @@ fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
 }
 
 #[test]
+fn a_sheet_is_the_same_whichever_came_before() {
+    for (name, screen) in screens() {
+        let mut interface = Interface::default();
+        for app in &apps() {
+            for _ in 0..3 {
+                interface.wishes(app, &screen);
+            }
+            let at = format!("{name}, {:?}, {:?}", app.step(), app.obstacle());
+            assert_eq!(interface.widgets(), widgets(app, &screen), "{at}");
+        }
+    }
+}
+
+#[test]
 fn a_finger_presses_the_button_below_it() {
     let mut app = world::app();
     let _ = app.event(ShellEvent::Foreground(true));
