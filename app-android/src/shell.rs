@@ -207,3 +207,24 @@ impl<P: Phone> Shell<P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use app_core::Core;
+    use app_core::preset::Preset;
+
+    use super::*;
+    use crate::tests::Desk;
+
+    #[test]
+    fn a_thread_that_panics_is_told() {
+        let toy = bundled_toy().expect("the bundled toy");
+        let live = Live::new(Core::counting(), toy, Preset::Balanced);
+        let mut shell = Shell::new(live, Desk::default(), Feed::new(None));
+        shell.on_thread("panics", ShellEvent::Aligned(None), || panic!("planted"));
+        let told = shell.done.1.recv_timeout(Duration::from_secs(60));
+        assert!(matches!(told, Ok(ShellEvent::Aligned(None))), "{told:?}");
+    }
+}
