@@ -3,18 +3,12 @@
 use app_core::camera_frame::Anchor;
 use glam::DMat4;
 
-use super::ffi::{ArAnchor, ArPose};
+use super::ffi::ArPose;
 use super::frame::TRACKING;
 use super::owned::Owned;
-use super::session::Session;
+use super::session::{HeldAnchor, Session};
 use super::status::Failure;
 use crate::convert;
-
-/// An anchor and the number that it was asked for by.
-pub(super) struct HeldAnchor {
-    id: u64,
-    anchor: Owned<ArAnchor>,
-}
 
 impl Session {
     /// Holds a place in place of the one before, which is let go even where this one cannot be held.

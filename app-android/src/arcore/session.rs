@@ -1,9 +1,8 @@
 //! One session of ARCore: its objects, how it is configured, and the calls that may fail.
 
-use super::anchors::HeldAnchor;
 use super::ffi::{
-    ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArCameraIntrinsics, ArConfig, ArFrame,
-    ArLightEstimate, ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
+    ArAnchor, ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArCameraIntrinsics, ArConfig,
+    ArFrame, ArLightEstimate, ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
 };
 use super::owned::Owned;
 use super::status::{Failure, UNSUPPORTED_CONFIGURATION};
@@ -47,6 +46,12 @@ pub fn best_mode(modes: &[CameraMode]) -> Option<usize> {
         (is_small, size, -(mode.hz - MAX_HZ).abs())
     };
     (0..modes.len()).max_by_key(|index| modes.get(*index).map(rank))
+}
+
+/// An anchor and the number that it was asked for by.
+pub(super) struct HeldAnchor {
+    pub(super) id: u64,
+    pub(super) anchor: Owned<ArAnchor>,
 }
 
 /// A session with the objects that each of its frames is read into. They are given back before it, in this order.
