@@ -4,7 +4,8 @@
 //! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
 //! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
 
-use glam::{DMat3, DMat4, DQuat, DVec3};
+use app_core::scene::Intrinsics;
+use glam::{DMat4, DQuat, DVec2, DVec3};
 
 /// How far a unit quaternion in single precision may be from length one (squared), with room for a few roundings.
 const UNIT_TOLERANCE: f64 = 1e-3;
@@ -23,19 +24,51 @@ pub fn world_from_camera(pose_raw: [f32; 7]) -> Option<DMat4> {
         .then(|| DMat4::from_rotation_translation(rotation.normalize(), translation_m))
 }
 
-/// Our `sensor_px_from_camera_rdf` from an `ArCameraIntrinsics`: focal length and principal point in pixels of the
-/// same image stream, `[x, y]` each.
+/// Our intrinsics from an `ArCameraIntrinsics`: focal length and principal point in pixels of the same image stream,
+/// `[x, y]` each. `None` unless both lengths are positive and all is finite.
 ///
 /// ARCore does not state where in a pixel its coordinates are whole. They are taken as given, which is half a pixel
 /// off should ARCore count from pixel centres.
-pub fn sensor_px_from_camera_rdf(focal_length_px: [f32; 2], principal_point_px: [f32; 2]) -> DMat3 {
-    let [fx, fy] = focal_length_px.map(f64::from);
-    let [cx, cy] = principal_point_px.map(f64::from);
-    DMat3::from_cols(
-        DVec3::new(fx, 0.0, 0.0),
-        DVec3::new(0.0, fy, 0.0),
-        DVec3::new(cx, cy, 1.0),
-    )
+pub fn intrinsics(focal_length_px: [f32; 2], principal_point_px: [f32; 2]) -> Option<Intrinsics> {
+    let [fx_px, fy_px] = focal_length_px.map(f64::from);
+    let [cx_px, cy_px] = principal_point_px.map(f64::from);
+    let is_finite = [fx_px, fy_px, cx_px, cy_px]
+        .iter()
+        .all(|number| number.is_finite());
+    (is_finite && fx_px > 0.0 && fy_px > 0.0).then_some(Intrinsics {
+        fx_px,
+        fy_px,
+        cx_px,
+        cy_px,
+    })
+}
+
+/// A plane by its centre pose and its outline, `x` and `z` in turn, in metres about that centre: the rectangle round the
+/// outline, whose own centre becomes the plane's origin. `None` without an outline that is finite and has an area.
+pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, DVec2)> {
+    let corners = outline_m
+        .chunks_exact(2)
+        .map(|corner| DVec2::new(corner[0].into(), corner[1].into()));
+    let (low, high) = corners
+        .clone()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        });
+    let (middle, half_extent_m) = (0.5 * (low + high), 0.5 * (high - low));
+    let is_finite = corners.clone().all(DVec2::is_finite) && half_extent_m.is_finite();
+    (is_finite && half_extent_m.cmpgt(DVec2::ZERO).all()).then(|| {
+        let centre_from_plane = DMat4::from_translation(DVec3::new(middle.x, 0.0, middle.y));
+        (world_from_centre * centre_from_plane, half_extent_m)
+    })
+}
+
+/// The seven numbers of `ArPose_create` of a rigid transform of ours; the inverse of [`world_from_camera`].
+#[allow(clippy::cast_possible_truncation, reason = "ARCore takes single precision")]
+pub fn pose_raw(rigid: &DMat4) -> [f32; 7] {
+    let (_, rotation, translation_m) = rigid.to_scale_rotation_translation();
+    let [qx, qy, qz, qw] = rotation.to_array().map(|number| number as f32);
+    let [tx, ty, tz] = translation_m.to_array().map(|number| number as f32);
+    [qx, qy, qz, qw, tx, ty, tz]
 }
 
 #[cfg(test)]
@@ -70,9 +103,39 @@ mod tests {
 
     #[test]
     fn a_point_to_the_right_and_below_the_axis_lands_right_and_below_the_principal_point() {
-        let sensor_px_from_camera_rdf = sensor_px_from_camera_rdf([500.0, 510.0], [320.0, 240.0]);
-        let point_px = sensor_px_from_camera_rdf * DVec3::new(0.2, 0.1, 2.0) / 2.0;
-        assert_eq!(point_px, DVec3::new(370.0, 265.5, 1.0));
+        let intrinsics = intrinsics([500.0, 510.0], [320.0, 240.0]).expect("a camera");
+        let point_px = intrinsics.pixel_of(DVec3::new(0.2, -0.1, -2.0));
+        assert_eq!(point_px, Some(DVec2::new(370.0, 265.5)));
+    }
+
+    #[test]
+    fn a_plane_is_the_rectangle_round_its_outline() {
+        let turned = world_from_camera([0.0, 1.0, 0.0, 0.0, 0.0, -0.5, 0.0]).expect("half a turn about +Y");
+        let (world_from_plane, half_extent_m) =
+            rectangle(turned, &[0.5, 0.25, -0.25, 0.25, 0.0, -0.75]).expect("a rectangle");
+        assert_eq!(half_extent_m, DVec2::new(0.375, 0.5));
+        let centre = world_from_plane.transform_point3(DVec3::ZERO);
+        assert!(
+            centre.abs_diff_eq(DVec3::new(-0.125, -0.5, 0.25), 1e-12),
+            "{centre}"
+        );
+        for without_area in [
+            &[][..],
+            &[0.0, 0.0, 1.0, 0.0],
+            &[0.0, 0.0, f32::NAN, 1.0, 1.0, 1.0],
+        ] {
+            assert_eq!(rectangle(turned, without_area), None, "{without_area:?}");
+        }
+    }
+
+    #[test]
+    fn a_pose_goes_to_arcore_and_back() {
+        let pose = DMat4::from_rotation_translation(
+            DQuat::from_euler(glam::EulerRot::YXZ, 1.0, -0.5, 0.25),
+            DVec3::new(0.5, -0.25, 2.0),
+        );
+        let back = world_from_camera(pose_raw(&pose)).expect("a rigid pose");
+        assert!(back.abs_diff_eq(pose, 1e-6), "{back}");
     }
 
     #[test]

@@ -1,28 +1,36 @@
-//! The Android shell: a native activity that lends the shared core a window.
+//! The Android shell: a native activity over the app that both phones share, `app_core::live::Live`.
 //!
-//! Data flows one way: Android's life cycle events reach [`android_main`]'s loop in `lifecycle`, which hands
-//! windows to the `stage`, which keeps the one `app_core::Core`.
-//! `convert` holds everything that knows ARCore's axes and pixel rules; the core knows none of them.
-//! `arcore` follows a session of ARCore from its installation to its frames, over a table of its functions.
+//! `shell` tells the app what happens and does what it asks for; `arcore` is its camera, over a table of ARCore's functions;
+//! `convert` holds everything that knows ARCore's axes and pixel rules, `input` what knows Android's fingers and screen.
+//! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
+//! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
+//! `java`, the camera's permission and the system's settings through JNI; the loading of ARCore's library.
 //!
-//! What works: the core is created on the first window, its surface follows the window, device and pipelines outlive
-//! the window, and a frame is presented per display refresh.
-//! What is not here yet: anything that starts `arcore`. It is tested with a fake of ARCore's library, its calls to Java are
-//! missing, and no camera image, pose, plane or light reaches the core, so the screen shows what the core presents before
-//! its first camera frame.
+//! Nothing of this has run on a phone.
+//! What is not here yet: the camera's exposure, which the app then takes to be constant; heat; the person's size of letters;
+//! video, recordings, choosing a toy, and handing files on: photos and the log are written into the app's own folder.
+//! ARCore keeps exposure and frame rate to itself, so neither is held or set.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.
-//! On other systems only `arcore` and `convert` are compiled.
 //!
 //! [`android_main`]: https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
 
 pub mod arcore;
 pub mod convert;
+pub mod input;
+pub mod phone;
+pub mod save;
+pub mod shell;
 
+#[cfg(target_os = "android")]
+mod java;
 #[cfg(target_os = "android")]
 mod lifecycle;
 #[cfg(target_os = "android")]
 mod stage;
+
+#[cfg(test)]
+mod tests;
 
 /// Called by the activity glue on a thread of its own, once per created activity.
 ///

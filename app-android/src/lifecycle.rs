@@ -1,4 +1,4 @@
-//! The activity's event loop: which life cycle event does what to the stage.
+//! The activity's event loop: which life cycle event and which finger does what to the stage.
 //!
 //! The loop polls the activity's glue itself. winit's event loop does not pass `onDestroy` on, while the Java thread
 //! waits in it for `android_main` to return (winit issue 4303), refuses to be created a second time in one process
@@ -6,56 +6,43 @@
 
 use std::time::Duration;
 
+use android_activity::input::{InputEvent, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
 
+use crate::input::{Finger, Motion, touches};
 use crate::stage::{Stage, StageError};
-
-/// What the activity is doing, as far as drawing is concerned.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Activity {
-    /// Between `onResume` and `onPause`.
-    Resumed,
-    /// Not in front: there may be a window, but nothing new is drawn.
-    Paused,
-    /// `onDestroy` waits for the loop to end.
-    Destroyed,
-}
 
 /// Runs until the activity is destroyed.
 ///
 /// # Errors
 /// The first error of the graphics core, which ends the loop: a fresh activity starts with a fresh core.
 pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
-    let mut stage = Stage::new();
-    let mut activity = Activity::Paused;
+    let mut stage = Stage::new(app.clone());
+    let mut is_destroyed = false;
     loop {
-        let draws = activity == Activity::Resumed && stage.has_window();
         // While drawing, the wait for the display inside `present` sets the pace; otherwise sleep until an event.
-        let timeout = draws.then_some(Duration::ZERO);
+        let timeout = stage.draws().then_some(Duration::ZERO);
         let mut outcome = Ok(());
         app.poll_events(timeout, |event| {
             if let PollEvent::Main(event) = event {
-                outcome = handle(event, app, &mut stage, &mut activity);
+                is_destroyed |= matches!(event, MainEvent::Destroy);
+                outcome = handle(&event, app, &mut stage);
             }
         });
         outcome?;
-        if activity == Activity::Destroyed {
+        if is_destroyed {
             return Ok(());
         }
-        decline_input(app);
-        if activity == Activity::Resumed {
+        take_input(app, &mut stage);
+        if stage.draws() {
             stage.present()?;
         }
     }
 }
 
-/// Applies one life cycle event. For `TerminateWindow` the surface is gone before this returns, as Android demands.
-fn handle(
-    event: MainEvent<'_>,
-    app: &AndroidApp,
-    stage: &mut Stage,
-    activity: &mut Activity,
-) -> Result<(), StageError> {
+/// Applies one life cycle event. For `TerminateWindow` the surface is gone before this returns, as Android demands, and for
+/// `Pause` the camera.
+fn handle(event: &MainEvent<'_>, app: &AndroidApp, stage: &mut Stage) -> Result<(), StageError> {
     match event {
         MainEvent::InitWindow { .. } => {
             if let Some(window) = app.native_window() {
@@ -64,17 +51,43 @@ fn handle(
         }
         MainEvent::WindowResized { .. } => stage.resize(),
         MainEvent::TerminateWindow { .. } => stage.detach(),
-        MainEvent::Resume { .. } => *activity = Activity::Resumed,
-        MainEvent::Pause => *activity = Activity::Paused,
-        MainEvent::Destroy => *activity = Activity::Destroyed,
+        MainEvent::Resume { .. } => stage.set_foreground(true),
+        MainEvent::Pause => stage.set_foreground(false),
+        MainEvent::LowMemory => stage.memory_low(),
         _ => {}
     }
     Ok(())
 }
 
-/// Hands every input event back to Android. An app that leaves its queue unread is reported as not responding.
-fn decline_input(app: &AndroidApp) {
-    if let Ok(mut events) = app.input_events_iter() {
-        while events.next(|_| InputStatus::Unhandled) {}
+/// Takes fingers, and hands every other event back to Android. An app that leaves its queue unread is reported as not
+/// responding.
+fn take_input(app: &AndroidApp, stage: &mut Stage) {
+    let Ok(mut events) = app.input_events_iter() else {
+        return;
+    };
+    while events.next(|event| match event {
+        InputEvent::MotionEvent(event) => take_motion(event, stage),
+        _ => InputStatus::Unhandled,
+    }) {}
+}
+
+fn take_motion(event: &MotionEvent<'_>, stage: &mut Stage) -> InputStatus {
+    let motion = match event.action() {
+        MotionAction::Down | MotionAction::PointerDown => Motion::Down(event.pointer_index()),
+        MotionAction::Move => Motion::Moved,
+        MotionAction::Up | MotionAction::PointerUp => Motion::Up(event.pointer_index()),
+        MotionAction::Cancel => Motion::Cancelled,
+        _ => return InputStatus::Unhandled,
+    };
+    let fingers: Vec<Finger> = event
+        .pointers()
+        .map(|finger| Finger {
+            id: finger.pointer_id(),
+            at_px: [finger.x(), finger.y()],
+        })
+        .collect();
+    for touch in touches(motion, &fingers) {
+        stage.touch(touch);
     }
+    InputStatus::Handled
 }

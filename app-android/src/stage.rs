@@ -1,9 +1,22 @@
-//! The core and the window it draws on: created once, then moved from window to window.
+//! The shell and the window it draws on: the app is created with the first window, then moved from window to window.
 
-use app_core::camera_frame::Display;
+use std::time::Instant;
+
+use android_activity::AndroidApp;
+use app_core::app::ShellEvent;
+use app_core::interface::Touch;
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::toy::ToyError;
 use app_core::wgpu::{self, rwh};
 use app_core::{Core, CoreError};
 use ndk::native_window::NativeWindow;
+
+use crate::arcore::feed::Feed;
+use crate::arcore::library;
+use crate::input::screen;
+use crate::java::Activity;
+use crate::shell::{Shell, bundled_toy};
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -11,73 +24,143 @@ pub(crate) enum StageError {
     /// Vulkan refused the window.
     #[error("no surface on the activity's window: {0}")]
     Surface(#[from] wgpu::CreateSurfaceError),
-    /// The core could not start, continue or present.
+    /// The core could not start or continue.
     #[error(transparent)]
     Core(#[from] CoreError),
+    /// The bundled toy is none.
+    #[error(transparent)]
+    Toy(#[from] ToyError),
 }
 
-/// Owns the core and lends it the activity's current window.
+/// Owns the shell and lends it the activity's current window.
 pub(crate) struct Stage {
+    app: AndroidApp,
     instance: wgpu::Instance,
-    core: Option<Core>,
+    start: Instant,
+    shell: Option<Shell<Activity>>,
     window: Option<NativeWindow>,
+    is_foreground: bool,
 }
 
 impl Stage {
-    /// A stage without window and core; the core comes with the first window.
-    pub(crate) fn new() -> Self {
+    /// A stage without window and app; the app comes with the first window.
+    pub(crate) fn new(app: AndroidApp) -> Self {
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(AndroidDisplay));
         Self {
+            app,
             instance: wgpu::Instance::new(descriptor),
-            core: None,
+            start: Instant::now(),
+            shell: None,
             window: None,
+            is_foreground: false,
         }
     }
 
-    /// Whether the core has a window to draw on.
-    pub(crate) fn has_window(&self) -> bool {
-        self.window.is_some()
+    /// Whether pictures are to be drawn.
+    pub(crate) fn draws(&self) -> bool {
+        self.is_foreground && self.window.is_some()
     }
 
-    /// Creates the core on `window`, or lets the existing core continue there. Creating it blocks the loop, and with it
-    /// the next life cycle change, until device and pipelines exist.
+    /// Creates the app on `window`, or lets the existing one continue there. Creating it blocks the loop, and with it
+    /// the next life cycle change, until there is a device; its pipelines are compiled picture by picture.
     pub(crate) fn attach(&mut self, window: NativeWindow) -> Result<(), StageError> {
-        // The surface owns its own reference to the window and so cannot outlive it.
-        let target = wgpu::SurfaceTarget::from_window_without_display(window.clone());
-        let surface = self.instance.create_surface(target)?;
-        match &mut self.core {
-            Some(core) => core.resume(surface, size_px(&window))?,
+        let size = size_px(&window);
+        match &mut self.shell {
+            Some(shell) => {
+                let surface = surface_on(&self.instance, &window)?;
+                shell.live().core_mut().resume(surface, size)?;
+            }
             None => {
-                let core = Core::on_surface(&self.instance, surface, size_px(&window));
-                self.core = Some(pollster::block_on(core)?);
+                let core = core_on(&self.instance, &window)?;
+                let live = Live::new(core, bundled_toy()?, Preset::default());
+                let api = library::load();
+                let api = api.inspect_err(|error| eprintln!("app-android: no ARCore: {error}"));
+                let phone = Activity::new(self.app.clone());
+                let mut shell = Shell::new(live, phone, Feed::new(api.ok()));
+                shell.set_foreground(self.is_foreground);
+                self.shell = Some(shell);
             }
         }
         self.window = Some(window);
+        if let Some(shell) = &mut self.shell {
+            shell.set_surface(Some(size));
+        }
         Ok(())
     }
 
     /// Drops surface and window; the core keeps device, pipelines and what it has learned.
     pub(crate) fn detach(&mut self) {
-        if let Some(core) = &mut self.core {
-            core.suspend();
+        if let Some(shell) = &mut self.shell {
+            shell.live().core_mut().suspend();
+            shell.set_surface(None);
         }
         self.window = None;
     }
 
     /// Follows a change of the window's size.
     pub(crate) fn resize(&mut self) {
-        if let (Some(core), Some(window)) = (&mut self.core, &self.window) {
-            core.resize(size_px(window));
+        if let (Some(shell), Some(window)) = (&mut self.shell, &self.window) {
+            let size = size_px(window);
+            shell.live().core_mut().resize(size);
+            shell.set_surface(Some(size));
         }
     }
 
-    /// Presents one frame, where there is a window.
-    pub(crate) fn present(&mut self) -> Result<(), StageError> {
-        match (&mut self.core, &self.window) {
-            (Some(core), Some(_)) => Ok(core.present(Display::default())?),
-            _ => Ok(()),
+    /// The activity came to the front, or left it.
+    pub(crate) fn set_foreground(&mut self, is_foreground: bool) {
+        self.is_foreground = is_foreground;
+        if let Some(shell) = &mut self.shell {
+            shell.set_foreground(is_foreground);
         }
     }
+
+    /// Memory is short.
+    pub(crate) fn memory_low(&mut self) {
+        if let Some(shell) = &mut self.shell {
+            shell.tell(ShellEvent::MemoryLow);
+        }
+    }
+
+    /// Hands a finger over.
+    pub(crate) fn touch(&mut self, touch: Touch) {
+        if let Some(shell) = &mut self.shell {
+            shell.live().touch(touch);
+        }
+    }
+
+    /// One picture, where there is a window; a core that was lost is brought anew before.
+    pub(crate) fn present(&mut self) -> Result<(), StageError> {
+        let (Some(shell), Some(window)) = (&mut self.shell, &self.window) else {
+            return Ok(());
+        };
+        if shell.take_wants_device() {
+            // A window has one surface at a time.
+            shell.live().core_mut().suspend();
+            let core = core_on(&self.instance, window)?;
+            shell.live().reopen(core);
+        }
+        shell.tick();
+        let content = self.app.content_rect();
+        let content_px = [content.left, content.top, content.right, content.bottom];
+        let screen = screen(size_px(window), self.app.config().density(), content_px);
+        shell.present(&screen, self.start.elapsed().as_secs_f64());
+        Ok(())
+    }
+}
+
+/// The surface owns its own reference to the window and so cannot outlive it.
+fn surface_on(
+    instance: &wgpu::Instance,
+    window: &NativeWindow,
+) -> Result<wgpu::Surface<'static>, StageError> {
+    let target = wgpu::SurfaceTarget::from_window_without_display(window.clone());
+    Ok(instance.create_surface(target)?)
+}
+
+fn core_on(instance: &wgpu::Instance, window: &NativeWindow) -> Result<Core, StageError> {
+    let surface = surface_on(instance, window)?;
+    let core = Core::on_surface(instance, surface, size_px(window));
+    Ok(pollster::block_on(core)?)
 }
 
 /// Width and height, at least one pixel each: the window answers a question at a bad moment with a negative number,

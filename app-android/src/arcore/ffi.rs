@@ -19,7 +19,7 @@ macro_rules! opaque {
 }
 
 opaque! {
-    ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
+    ArAnchor ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
     ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
 }
 
@@ -190,5 +190,10 @@ functions! {
     fn ArPlane_getCenterPose(*const ArSession, *const ArPlane, *mut ArPose);
     fn ArPlane_getPolygonSize(*const ArSession, *const ArPlane, *mut i32);
     fn ArPlane_getPolygon(*const ArSession, *const ArPlane, *mut f32);
-    fn ArPlane_acquireSubsumedBy(*const ArSession, *const ArPlane, *mut *mut ArPlane);
+
+    fn ArSession_acquireNewAnchor(*mut ArSession, *const ArPose, *mut *mut ArAnchor) -> ArStatus;
+    fn ArAnchor_getPose(*const ArSession, *const ArAnchor, *mut ArPose);
+    fn ArAnchor_getTrackingState(*const ArSession, *const ArAnchor, *mut ArTrackingState);
+    fn ArAnchor_detach(*mut ArSession, *mut ArAnchor);
+    fn ArAnchor_release(*mut ArAnchor);
 }

@@ -1,80 +1,33 @@
 //! What one frame of ARCore holds, copied into plain values of ours.
 
 use app_core::camera_frame::{
-    CameraImage, CodeRange, LumaCoefficients, PlanarImage, Plane, PlaneError, Planes, YcbcrEncoding,
+    CameraFrame, CameraImage, CodeRange, Display, LumaCoefficients, PlanarImage, Plane, PlaneError, Planes,
+    Stamp, Tracking, YcbcrEncoding,
 };
-use app_core::scene::LightEstimate;
-use glam::{DMat3, DMat4, DVec2, DVec3};
+use app_core::scene::{Intrinsics, LightEstimate};
+use glam::DVec3;
 
-use super::ffi::{ArCamera, ArImage, ArPlane, ArPose, ArTrackable};
+use super::ffi::{ArCamera, ArImage, ArPose};
 use super::owned::Owned;
 use super::session::Session;
-use super::status::{DEADLINE_EXCEEDED, Failure, NOT_YET_AVAILABLE, RESOURCE_EXHAUSTED, lost};
+use super::status::{
+    DEADLINE_EXCEEDED, Failure, NOT_YET_AVAILABLE, RESOURCE_EXHAUSTED, tracking_without_pose,
+};
 use crate::convert;
 
 /// `AR_TRACKING_STATE_TRACKING`.
-const TRACKING: i32 = 0;
+pub(super) const TRACKING: i32 = 0;
 /// `AR_TRACKING_STATE_STOPPED`: never to come back.
-const STOPPED: i32 = 2;
+pub(super) const STOPPED: i32 = 2;
 /// `AR_IMAGE_FORMAT_YUV_420_888`.
 const YUV_420: i32 = 0x23;
 /// `AR_LIGHT_ESTIMATE_STATE_VALID`.
 const VALID: i32 = 1;
-/// `AR_TRACKABLE_PLANE`.
-const PLANES: i32 = 0x4152_0101;
 /// What Android's pictures for the processor are by default; ARCore does not tell.
 const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
     range: CodeRange::Full,
 };
-/// Corners of a plane beyond which its outline is none: ARCore's have a few dozen.
-const MAX_CORNERS: usize = 4096;
-
-/// A camera frame with what is known of it.
-#[derive(Debug)]
-pub struct TrackedFrame {
-    /// On the camera's own clock.
-    pub time_ns: i64,
-    /// Copied, so that the camera has its buffer back.
-    pub image: CameraImage,
-    /// Of this very frame.
-    pub sensor_px_from_camera_rdf: DMat3,
-    /// None unless the phone knows where it is.
-    pub world_from_camera: Option<DMat4>,
-    /// What to tell while it does not.
-    pub lost: Option<&'static str>,
-    /// As far as the phone estimates it.
-    pub light: Option<LightEstimate>,
-    /// Those that are being tracked.
-    pub planes: Vec<FoundPlane>,
-}
-
-/// How a plane lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lie {
-    /// As a table.
-    Up,
-    /// As a ceiling.
-    Down,
-    /// As a wall.
-    Upright,
-}
-
-/// A plane that was found, which grows and moves as more is seen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundPlane {
-    /// Its address in ARCore, the same for the whole session.
-    pub id: usize,
-    /// The plane that took it in.
-    pub merged_into: Option<usize>,
-    /// How it lies.
-    pub lie: Lie,
-    /// +Y is its normal.
-    pub world_from_plane: DMat4,
-    /// Convex, in x and z of the plane, metres.
-    pub outline_m: Vec<DVec2>,
-}
-
 /// Why a frame could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
@@ -105,8 +58,9 @@ impl Session {
     }
 
     /// The frame of the last update; none where its picture is not there, as at the start and under load.
-    pub(super) fn read(&self) -> Result<Option<TrackedFrame>, FrameError> {
-        let time_ns = self.time_ns();
+    ///
+    /// ARCore does not tell the exposure. The picture is shown as it is: the activity lies as the sensor does.
+    pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {
             return Ok(None);
         };
@@ -126,27 +80,35 @@ impl Session {
             (api.ArCamera_getTrackingFailureReason)(self.raw(), camera.as_ptr(), &raw mut reason);
             (api.ArCamera_getPose)(self.raw(), camera.as_ptr(), self.pose.as_ptr());
         }
-        let is_tracking = state == TRACKING;
-        let pose = is_tracking.then(|| convert::world_from_camera(self.pose_raw(&self.pose)));
-        Ok(Some(TrackedFrame {
-            time_ns,
-            sensor_px_from_camera_rdf: self.intrinsics(&camera, image.size_px())?,
+        let pose = (state == TRACKING).then(|| convert::world_from_camera(self.pose_raw(&self.pose)));
+        let world_from_camera = pose.flatten();
+        let is_tracking = world_from_camera.is_some();
+        Ok(Some(CameraFrame {
+            stamp,
+            intrinsics: self.intrinsics(&camera, image.size_px())?,
             image,
-            world_from_camera: pose.flatten(),
-            lost: (!is_tracking).then(|| lost(reason)),
-            light: self.light(),
-            planes: if is_tracking { self.planes() } else { Vec::new() },
+            exposure: None,
+            tracking: if is_tracking {
+                Tracking::Normal
+            } else {
+                tracking_without_pose(reason)
+            },
+            world_from_camera,
+            planes: if is_tracking { self.planes() } else { Vec::new() }.into(),
+            anchors: self.held().filter(|_| is_tracking).into_iter().collect(),
+            light_estimate: self.light(),
+            display: Display::default(),
         }))
     }
 
-    fn pose_raw(&self, pose: &Owned<ArPose>) -> [f32; 7] {
+    pub(super) fn pose_raw(&self, pose: &Owned<ArPose>) -> [f32; 7] {
         let mut numbers = [0.0; 7];
         // SAFETY: session and pose live, and seven numbers are what the function writes.
         unsafe { (self.api.ArPose_getPoseRaw)(self.raw(), pose.as_ptr(), numbers.as_mut_ptr()) };
         numbers
     }
 
-    fn intrinsics(&self, camera: &Owned<ArCamera>, size_px: [u32; 2]) -> Result<DMat3, FrameError> {
+    fn intrinsics(&self, camera: &Owned<ArCamera>, size_px: [u32; 2]) -> Result<Intrinsics, FrameError> {
         let ([mut fx, mut fy], [mut cx, mut cy], [mut width, mut height]) = ([0.0; 2], [0.0; 2], [0; 2]);
         let (api, raw, intrinsics) = (&self.api, self.raw(), self.intrinsics.as_ptr());
         // SAFETY: session, camera and intrinsics live, and the numbers are places of ours.
@@ -157,11 +119,9 @@ impl Session {
             (api.ArCameraIntrinsics_getImageDimensions)(raw, intrinsics, &raw mut width, &raw mut height);
         }
         let is_of_picture = size_px.map(i64::from) == [width, height].map(i64::from);
-        let is_camera = fx > 0.0 && fy > 0.0 && [fx, fy, cx, cy].iter().all(|number| number.is_finite());
-        if !is_of_picture || !is_camera {
-            return Err(FrameError::Camera([fx, fy], [width, height]));
-        }
-        Ok(convert::sensor_px_from_camera_rdf([fx, fy], [cx, cy]))
+        convert::intrinsics([fx, fy], [cx, cy])
+            .filter(|_| is_of_picture)
+            .ok_or(FrameError::Camera([fx, fy], [width, height]))
     }
 
     fn image(&self) -> Result<Option<CameraImage>, FrameError> {
@@ -260,71 +220,6 @@ impl Session {
             intensity: Some(intensity.map(f64::from)),
             spherical_harmonics: Some(harmonics.map(f64::from)),
             ..LightEstimate::default()
-        })
-    }
-
-    fn planes(&self) -> Vec<FoundPlane> {
-        let (api, raw, list) = (&self.api, self.raw(), self.trackables.as_ptr());
-        let mut n_planes = 0;
-        // SAFETY: session and list live, and the count is a place of ours.
-        unsafe {
-            (api.ArSession_getAllTrackables)(raw, PLANES, list);
-            (api.ArTrackableList_getSize)(raw, list, &raw mut n_planes);
-        }
-        let planes = (0..n_planes).filter_map(|index| {
-            // SAFETY: the index is below the list's size, and what was acquired is ours to release.
-            let trackable: Owned<ArTrackable> = unsafe {
-                Owned::new(
-                    |place| (api.ArTrackableList_acquireItem)(raw, list, index, place),
-                    api.ArTrackable_release,
-                )
-            }?;
-            self.found_plane(&trackable)
-        });
-        planes.collect()
-    }
-
-    /// A plane that is being tracked; one that ARCore took into another has that one's shape.
-    fn found_plane(&self, trackable: &Owned<ArTrackable>) -> Option<FoundPlane> {
-        let (api, raw) = (&self.api, self.raw());
-        // The list was asked for planes alone, which are trackables in C by a cast.
-        let plane: *const ArPlane = trackable.as_ptr().cast_const().cast();
-        let (mut state, mut kind, mut n_numbers) = (STOPPED, -1, 0);
-        // SAFETY: session, plane and pose live, and the numbers are places of ours; a plane that took this one in is a
-        // trackable that was acquired, and so ours to release.
-        let merged_into: Option<Owned<ArTrackable>> = unsafe {
-            (api.ArTrackable_getTrackingState)(raw, trackable.as_ptr(), &raw mut state);
-            (api.ArPlane_getType)(raw, plane, &raw mut kind);
-            (api.ArPlane_getCenterPose)(raw, plane, self.pose.as_ptr());
-            (api.ArPlane_getPolygonSize)(raw, plane, &raw mut n_numbers);
-            Owned::new(
-                |place| (api.ArPlane_acquireSubsumedBy)(raw, plane, std::ptr::from_mut(place).cast()),
-                api.ArTrackable_release,
-            )
-        };
-        let lie = match kind {
-            0 => Lie::Up,
-            1 => Lie::Down,
-            2 => Lie::Upright,
-            _ => return None,
-        };
-        let n_numbers = usize::try_from(n_numbers).unwrap_or(0);
-        if state != TRACKING || n_numbers > 2 * MAX_CORNERS {
-            return None;
-        }
-        let mut numbers = vec![0.0_f32; n_numbers];
-        // SAFETY: session and plane live, and the array is as long as the function asks for.
-        unsafe { (api.ArPlane_getPolygon)(raw, plane, numbers.as_mut_ptr()) };
-        let corners = numbers
-            .chunks_exact(2)
-            .map(|corner| DVec2::new(corner[0].into(), corner[1].into()));
-        Some(FoundPlane {
-            id: trackable.as_ptr().addr(),
-            merged_into: merged_into.map(|plane| plane.as_ptr().addr()),
-            lie,
-            // A pose is one in the same numbers, whatever it is of.
-            world_from_plane: convert::world_from_camera(self.pose_raw(&self.pose))?,
-            outline_m: corners.collect(),
         })
     }
 }

@@ -3,6 +3,7 @@
 //! All of it is plain Rust over a table of C functions ([`ffi::Functions`]). On a phone the table is that of the loaded
 //! library; in tests it is a fake's, so that nothing here runs for the first time on a phone.
 
+pub mod feed;
 pub mod ffi;
 pub mod frame;
 pub mod session;
@@ -12,10 +13,12 @@ pub mod tracker;
 #[cfg(target_os = "android")]
 pub mod library;
 
+mod anchors;
 mod owned;
+mod planes;
 
 #[cfg(test)]
-mod fake;
+pub(crate) mod fake;
 #[cfg(test)]
 mod header;
 #[cfg(test)]

@@ -1,18 +1,19 @@
 //! One session of ARCore: its objects, how it is configured, and the calls that may fail.
 
-use std::ffi::c_void;
-
 use super::ffi::{
-    ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArCameraIntrinsics, ArConfig, ArFrame,
-    ArLightEstimate, ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
+    ArAnchor, ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArCameraIntrinsics, ArConfig,
+    ArFrame, ArLightEstimate, ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
 };
 use super::owned::Owned;
 use super::status::{Failure, UNSUPPORTED_CONFIGURATION};
+use crate::phone::Java;
 
 /// `AR_UPDATE_MODE_LATEST_CAMERA_IMAGE`: an update never waits.
 const LATEST_IMAGE: i32 = 1;
-/// `AR_PLANE_FINDING_MODE_HORIZONTAL_AND_VERTICAL`: a table, and a wall.
-const ALL_PLANES: i32 = 3;
+/// `AR_PLANE_FINDING_MODE_DISABLED`.
+const NO_PLANES: i32 = 0;
+/// `AR_PLANE_FINDING_MODE_HORIZONTAL`: tables.
+const LEVEL_PLANES: i32 = 1;
 /// `AR_TEXTURE_UPDATE_MODE_EXPOSE_HARDWARE_BUFFER`: the one mode without OpenGL.
 const WITHOUT_GL: i32 = 1;
 /// `AR_LIGHT_ESTIMATION_MODE_DISABLED`.
@@ -24,15 +25,6 @@ const HDR_LIGHT: ArLightEstimationMode = 2;
 const MAX_SIDE_PX: i32 = 1920;
 /// Frames a second beyond which a phone grows hot.
 const MAX_HZ: i32 = 30;
-
-/// Two pointers of Java: the environment of this thread, and the activity.
-#[derive(Clone, Copy, Debug)]
-pub struct Java {
-    /// `JNIEnv *`.
-    pub env: *mut c_void,
-    /// `jobject` of the activity.
-    pub activity: *mut c_void,
-}
 
 /// What a camera can be set to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,8 +48,15 @@ pub fn best_mode(modes: &[CameraMode]) -> Option<usize> {
     (0..modes.len()).max_by_key(|index| modes.get(*index).map(rank))
 }
 
+/// An anchor and the number that it was asked for by.
+pub(super) struct HeldAnchor {
+    pub(super) id: u64,
+    pub(super) anchor: Owned<ArAnchor>,
+}
+
 /// A session with the objects that each of its frames is read into. They are given back before it, in this order.
 pub(super) struct Session {
+    pub(super) anchor: Option<HeldAnchor>,
     pub(super) light: Owned<ArLightEstimate>,
     pub(super) trackables: Owned<ArTrackableList>,
     pub(super) intrinsics: Owned<ArCameraIntrinsics>,
@@ -66,6 +65,7 @@ pub(super) struct Session {
     session: Owned<ArSession>,
     pub(super) api: Functions,
     has_light: bool,
+    finds_planes: bool,
 }
 
 /// The failure of a function that made nothing and says nothing.
@@ -73,7 +73,7 @@ const NOTHING: Failure = Failure(-2);
 
 impl Session {
     /// Creates and configures a session, which is then paused.
-    pub(super) fn create(api: Functions, java: Java) -> Result<Self, Failure> {
+    pub(super) fn create(api: Functions, java: Java, finds_planes: bool) -> Result<Self, Failure> {
         let mut status = 0;
         // SAFETY: the pointers are those of this thread and of a living activity, as the shell has them from Android; a
         // session that was created is ours to destroy.
@@ -101,6 +101,7 @@ impl Session {
             )
         };
         let mut session = Self {
+            anchor: None,
             light: create!(ArLightEstimate_create, ArLightEstimate_destroy),
             trackables: create!(ArTrackableList_create, ArTrackableList_destroy),
             intrinsics: create!(ArCameraIntrinsics_create, ArCameraIntrinsics_destroy),
@@ -109,6 +110,7 @@ impl Session {
             session,
             api,
             has_light: true,
+            finds_planes,
         };
         session.choose_camera()?;
         session.configure()?;
@@ -195,11 +197,25 @@ impl Session {
         Failure::check(unsafe {
             let config = config.as_ptr();
             (api.ArConfig_setUpdateMode)(raw, config, LATEST_IMAGE);
-            (api.ArConfig_setPlaneFindingMode)(raw, config, ALL_PLANES);
+            let planes = if self.finds_planes {
+                LEVEL_PLANES
+            } else {
+                NO_PLANES
+            };
+            (api.ArConfig_setPlaneFindingMode)(raw, config, planes);
             (api.ArConfig_setTextureUpdateMode)(raw, config, WITHOUT_GL);
             (api.ArConfig_setLightEstimationMode)(raw, config, light);
             (api.ArSession_configure)(raw, config)
         })
+    }
+
+    /// Looks for level planes from now on, or no longer; those that were found stay.
+    pub(super) fn find_planes(&mut self, finds_planes: bool) -> Result<(), Failure> {
+        if self.finds_planes == finds_planes {
+            return Ok(());
+        }
+        self.finds_planes = finds_planes;
+        self.configure_with(if self.has_light { HDR_LIGHT } else { NO_LIGHT })
     }
 
     pub(super) fn resume(&self) -> Result<(), Failure> {

@@ -1,5 +1,8 @@
 //! What ARCore answers, in words for the person who holds the phone.
 
+use app_core::app::{ArSession, Permission, ShellEvent};
+use app_core::camera_frame::Tracking;
+
 use super::ffi::{ArAvailability, ArStatus, ArTrackingFailureReason};
 
 /// `AR_SUCCESS`.
@@ -14,6 +17,9 @@ pub const DEADLINE_EXCEEDED: ArStatus = -10;
 pub const RESOURCE_EXHAUSTED: ArStatus = -11;
 /// `AR_ERROR_NOT_YET_AVAILABLE`.
 pub const NOT_YET_AVAILABLE: ArStatus = -12;
+
+/// `AR_ERROR_CAMERA_NOT_AVAILABLE`.
+pub const CAMERA_NOT_AVAILABLE: ArStatus = -13;
 
 /// What can be done about a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +53,7 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (DEADLINE_EXCEEDED, "AR_ERROR_DEADLINE_EXCEEDED", "A picture of the camera came too late.", Remedy::Return),
     (RESOURCE_EXHAUSTED, "AR_ERROR_RESOURCE_EXHAUSTED", "The camera has no room for another picture.", Remedy::Return),
     (NOT_YET_AVAILABLE, "AR_ERROR_NOT_YET_AVAILABLE", "The camera is starting.", Remedy::Return),
-    (-13, "AR_ERROR_CAMERA_NOT_AVAILABLE", "Another app uses the camera. Close it.", Remedy::Return),
+    (CAMERA_NOT_AVAILABLE, "AR_ERROR_CAMERA_NOT_AVAILABLE", "Another app uses the camera. Close it.", Remedy::Return),
     (-14, "AR_ERROR_CLOUD_ANCHORS_NOT_CONFIGURED", "ARCore expects anchors in the cloud, which this app does not use.", Remedy::Report),
     (-15, "AR_ERROR_INTERNET_PERMISSION_NOT_GRANTED", "ARCore expects the internet, which this app does not use.", Remedy::Report),
     (-16, "AR_ERROR_ANCHOR_NOT_SUPPORTED_FOR_HOSTING", "ARCore cannot share this anchor, which this app does not ask for.", Remedy::Report),
@@ -135,18 +141,27 @@ pub fn availability(number: ArAvailability) -> Availability {
     }
 }
 
-/// What to tell while the camera is not tracked, by `ArTrackingFailureReason`.
+/// How well the camera is followed, by `ArTrackingFailureReason` while ARCore does not track it.
 #[must_use]
-pub fn lost(reason: ArTrackingFailureReason) -> &'static str {
+pub fn tracking_without_pose(reason: ArTrackingFailureReason) -> Tracking {
     match reason {
-        0 => "Move the phone slowly over the table.",
-        1 => "The phone has lost its place. Look at the table again.",
-        2 => {
-            "It is too dark. Switch a lamp on, and look whether the camera is switched off in the quick settings."
-        }
-        3 => "Move the phone more slowly.",
-        4 => "There is too little to see. Show more of the table and what stands on it.",
-        5 => "Another app uses the camera. Close it.",
-        _ => "The phone does not know where it is.",
+        // A bad state of its own: the place is looked for again.
+        1 => Tracking::Relocalising,
+        2 => Tracking::TooDark,
+        3 => Tracking::TooFast,
+        4 => Tracking::TooPlain,
+        // None, as at the start; 5, the camera is not there; and what later versions add.
+        _ => Tracking::Starting,
+    }
+}
+
+/// What the app is told of a failure that ends tracking.
+#[must_use]
+pub fn told(failure: Failure) -> ShellEvent {
+    match (failure, failure.remedy()) {
+        (Failure(PERMISSION_NOT_GRANTED), _) => ShellEvent::Permission(Permission::Denied),
+        (Failure(CAMERA_NOT_AVAILABLE), _) => ShellEvent::ArSession(ArSession::Interrupted),
+        (_, Remedy::None | Remedy::UpdateApp) => ShellEvent::ArSession(ArSession::Unsupported),
+        _ => ShellEvent::ArSession(ArSession::Failed),
     }
 }

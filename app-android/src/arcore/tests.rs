@@ -1,45 +1,43 @@
 //! The session's life and its frames, against the fake.
 
-use app_core::camera_frame::CameraImage;
-use glam::{DVec2, DVec3};
+use app_core::app::{ArSession, Permission, ShellEvent};
+use app_core::camera_frame::{CameraImage, Stamp, Tracking};
+use glam::{DMat4, DVec2, DVec3};
 
 use super::fake::{FakePlane, alive, functions, world};
+use super::feed::Feed;
 use super::ffi::{Functions, SIGNATURES};
-use super::frame::{FrameError, Lie};
-use super::session::{CameraMode, Java, best_mode};
-use super::status::{Failure, Remedy, STATUSES};
-use super::tracker::{Geometry, Phone, Step, Tracker, Wait};
+use super::frame::FrameError;
+use super::session::{CameraMode, best_mode};
+use super::status::{Failure, Remedy, STATUSES, told};
+use super::tracker::{Geometry, Run, Step, Tracker, Wait};
+use crate::tests::Desk;
 
-/// A phone whose person answers as told.
-#[derive(Default)]
-struct Desk {
-    allows: bool,
-    n_asked: usize,
+const LOOK: Run = Run {
+    finds_planes: true,
+    is_new_world: false,
+};
+const FOLLOW: Run = Run {
+    finds_planes: false,
+    is_new_world: false,
+};
+const ANEW: Run = Run {
+    finds_planes: true,
+    is_new_world: true,
+};
+
+fn tracker() -> Tracker {
+    Tracker::new(functions())
 }
 
-impl Phone for &mut Desk {
-    fn java(&mut self) -> Java {
-        let somewhere = std::ptr::without_provenance_mut(8);
-        Java {
-            env: somewhere,
-            activity: somewhere,
-        }
-    }
-
-    fn has_camera_permission(&mut self) -> bool {
-        self.allows
-    }
-
-    fn ask_for_camera(&mut self) {
-        self.n_asked += 1;
-    }
+fn look(tracker: &mut Tracker) -> Step {
+    tracker.run(&mut Desk::default(), LOOK)
 }
 
-fn allowing() -> Desk {
-    Desk {
-        allows: true,
-        n_asked: 0,
-    }
+fn running() -> Tracker {
+    let mut tracker = tracker();
+    assert_eq!(look(&mut tracker), Step::Ready);
+    tracker
 }
 
 /// Nothing is left, nothing was given back twice or used after.
@@ -56,23 +54,22 @@ fn calls() -> String {
 
 #[test]
 fn a_session_begins_pauses_resumes_and_ends() {
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
+    let mut tracker = tracker();
     let size_px = [2400, 1080];
     tracker.set_display(Geometry {
         quarter_turns: 1,
         size_px,
     });
-    assert_eq!(tracker.resume(), Step::Ready);
+    assert_eq!(look(&mut tracker), Step::Ready);
     assert_eq!(
         calls(),
-        "availability create mode=2 update=1 planes=3 texture=1 light=2 configure display=1,2400,1080 resume"
+        "availability create mode=2 update=1 planes=1 texture=1 light=2 configure display=1,2400,1080 resume"
     );
-    assert_eq!(tracker.resume(), Step::Ready, "twice");
+    assert_eq!(look(&mut tracker), Step::Ready, "twice");
     tracker.pause();
     tracker.pause();
     assert!(tracker.update().expect("no frame").is_none());
-    assert_eq!(tracker.resume(), Step::Ready);
+    assert_eq!(look(&mut tracker), Step::Ready);
     tracker.set_display(Geometry {
         quarter_turns: 3,
         size_px,
@@ -92,17 +89,20 @@ fn arcore_is_installed_on_the_way() {
         world.availability = vec![1, 201];
         world.install = (0, 1);
     });
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Waiting(Wait::Answer));
-    assert_eq!(tracker.resume(), Step::Waiting(Wait::Install));
+    let mut tracker = tracker();
+    assert_eq!(look(&mut tracker), Step::Waiting(Wait::Answer));
+    assert_eq!(look(&mut tracker), Step::Waiting(Wait::Install));
     assert_eq!(calls(), "availability availability install=1");
     tracker.pause();
     world(|world| world.install = (-105, 0));
-    assert_eq!(tracker.resume(), Step::Refused(Failure(-105)), "declined");
+    assert_eq!(look(&mut tracker), Step::Refused(Failure(-105)), "declined");
     assert_eq!(calls(), "availability install=0");
     world(|world| world.install = (0, 0));
-    assert_eq!(tracker.resume(), Step::Ready);
+    assert_eq!(tracker.run(&mut Desk::default(), ANEW), Step::Ready);
+    assert!(
+        calls().starts_with("availability install=1 create"),
+        "starting over asks again"
+    );
     drop(tracker);
     assert_clean();
 }
@@ -110,53 +110,16 @@ fn arcore_is_installed_on_the_way() {
 #[test]
 fn a_phone_that_cannot_is_told_so_and_asked_for_nothing() {
     world(|world| world.availability = vec![100]);
-    let mut desk = Desk::default();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    let step = tracker.resume();
+    let mut tracker = tracker();
+    let step = look(&mut tracker);
     assert_eq!(calls(), "availability");
-    let (message, remedy) = step.message().expect("a message");
-    assert_eq!(remedy, Some(Remedy::None));
+    let Step::Refused(failure) = step else {
+        panic!("{step:?}");
+    };
+    assert_eq!(failure.remedy(), Remedy::None);
+    let message = failure.to_string();
     assert!(message.starts_with("This phone cannot run ARCore."), "{message}");
     drop(tracker);
-    assert_eq!(desk.n_asked, 0);
-}
-
-#[test]
-fn the_camera_is_asked_for_once_and_again_after_it_was_allowed_and_taken_away() {
-    let mut desk = Desk::default();
-    let mut first = Tracker::new(functions(), &mut desk);
-    assert_eq!(first.resume(), Step::Waiting(Wait::Permission));
-    first.pause();
-    assert_eq!(first.resume(), Step::Refused(Failure(-9)));
-    assert_eq!(first.resume(), Step::Refused(Failure(-9)));
-    drop(first);
-    assert_eq!(desk.n_asked, 1);
-
-    desk.allows = true;
-    let phone = std::cell::RefCell::new(desk);
-    let mut tracker = Tracker::new(functions(), &phone);
-    assert_eq!(tracker.resume(), Step::Ready);
-    tracker.pause();
-    phone.borrow_mut().allows = false;
-    assert_eq!(tracker.resume(), Step::Waiting(Wait::Permission));
-    phone.borrow_mut().allows = true;
-    assert_eq!(tracker.resume(), Step::Ready);
-    drop(tracker);
-    assert_clean();
-}
-
-impl Phone for &std::cell::RefCell<Desk> {
-    fn java(&mut self) -> Java {
-        (&mut *self.borrow_mut()).java()
-    }
-
-    fn has_camera_permission(&mut self) -> bool {
-        self.borrow().allows
-    }
-
-    fn ask_for_camera(&mut self) {
-        self.borrow_mut().n_asked += 1;
-    }
 }
 
 #[test]
@@ -168,11 +131,10 @@ fn whatever_step_of_a_beginning_fails_leaves_nothing_and_may_be_tried_again() {
         ("resume", -13),
     ] {
         world(|world| world.fails.insert(step, status));
-        let mut desk = allowing();
-        let mut tracker = Tracker::new(functions(), &mut desk);
-        assert_eq!(tracker.resume(), Step::Refused(Failure(status)), "{step}");
+        let mut tracker = tracker();
+        assert_eq!(look(&mut tracker), Step::Refused(Failure(status)), "{step}");
         world(|world| world.fails.clear());
-        assert_eq!(tracker.resume(), Step::Ready, "{step}");
+        assert_eq!(look(&mut tracker), Step::Ready, "{step}");
         drop(tracker);
         assert_clean();
     }
@@ -184,12 +146,10 @@ fn a_phone_without_light_estimation_does_without() {
         world.fails.insert("configure", -8);
         world.time_ns = 5;
     });
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
-    assert!(calls().contains("light=2 configure update=1 planes=3 texture=1 light=0 configure"));
+    let mut tracker = running();
+    assert!(calls().contains("light=2 configure update=1 planes=1 texture=1 light=0 configure"));
     let frame = tracker.update().expect("no error").expect("a frame");
-    assert_eq!(frame.light, None);
+    assert_eq!(frame.light_estimate, None);
     drop(tracker);
     assert_clean();
 }
@@ -204,29 +164,29 @@ fn a_frame_is_copied_whole() {
                 kind: 0,
                 pose: [0.0, 0.0, 0.0, 1.0, 0.0, -0.4, 0.0],
                 outline: vec![0.5, 0.25, -0.5, 0.25, 0.0, -0.25],
-                merged_into: None,
             },
             FakePlane {
                 state: 0,
                 kind: 2,
                 pose: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0],
-                outline: vec![],
-                merged_into: Some(0),
+                outline: vec![0.5, 0.25, -0.5, 0.25, 0.0, -0.25],
             },
             FakePlane {
                 state: 1,
                 kind: 0,
                 pose: [0.0; 7],
                 outline: vec![],
-                merged_into: None,
             },
         ];
     });
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
+    let mut tracker = running();
     let frame = tracker.update().expect("no error").expect("a frame");
-    assert_eq!(frame.time_ns, 77);
+    let stamp = Stamp {
+        id: 0,
+        time_ns: 77,
+        world_epoch: 1,
+    };
+    assert_eq!(frame.stamp, stamp);
     let CameraImage::Planes(image) = &frame.image else {
         panic!("{:?}", frame.image);
     };
@@ -236,34 +196,24 @@ fn a_frame_is_copied_whole() {
     );
     let pose = frame.world_from_camera.expect("a pose");
     assert_eq!(pose.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
-    assert_eq!(
-        frame.sensor_px_from_camera_rdf * DVec3::Z,
-        DVec3::new(2.0, 1.0, 1.0)
-    );
-    assert_eq!(frame.lost, None);
-    let light = frame.light.expect("light");
+    assert_eq!((frame.intrinsics.fx_px, frame.intrinsics.cy_px), (500.0, 1.0));
+    assert_eq!(frame.tracking, Tracking::Normal);
+    let light = frame.light_estimate.expect("light");
     assert_eq!(light.direction_to_light_in_world, Some(DVec3::Z));
     assert_eq!(light.intensity, Some([1.0, 2.0, 3.0]));
-    let [table, wall] = &frame.planes[..] else {
-        panic!("{:?}", frame.planes);
+    let [table] = &frame.planes[..] else {
+        panic!("walls and what is not tracked are left out: {:?}", frame.planes);
     };
-    assert_eq!((table.lie, wall.lie), (Lie::Up, Lie::Upright));
-    assert_eq!(
-        table.world_from_plane.transform_point3(DVec3::ZERO).y,
-        f64::from(-0.4_f32)
-    );
-    assert_eq!(table.outline_m[1], DVec2::new(-0.5, 0.25));
-    assert_eq!(table.merged_into, None);
-    assert!(wall.merged_into.is_some());
+    let centre = table.world_from_plane.transform_point3(DVec3::ZERO);
+    assert_eq!(centre, DVec3::new(0.0, f64::from(-0.4_f32), 0.0));
+    assert_eq!(table.half_extent_m, DVec2::new(0.5, 0.25));
     drop(tracker);
     assert_clean();
 }
 
 #[test]
 fn no_frame_before_the_first_twice_or_without_its_picture() {
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
+    let mut tracker = running();
     let mut n_frames = |time_ns, image| {
         world(|world| {
             world.time_ns = time_ns;
@@ -284,21 +234,25 @@ fn no_frame_before_the_first_twice_or_without_its_picture() {
 }
 
 #[test]
-fn a_camera_that_is_lost_has_no_pose_and_a_message() {
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
-    for reason in 0..=6 {
+fn a_camera_that_is_lost_has_no_pose_and_a_reason() {
+    let mut tracker = running();
+    let expected = [
+        Tracking::Starting,
+        Tracking::Relocalising,
+        Tracking::TooDark,
+        Tracking::TooFast,
+        Tracking::TooPlain,
+        Tracking::Starting,
+        Tracking::Starting,
+    ];
+    for (reason, expected) in (0..).zip(expected) {
         world(|world| {
             world.time_ns += 1;
             world.tracking = (1, reason);
         });
         let frame = tracker.update().expect("no error").expect("a frame");
         assert_eq!(frame.world_from_camera, None);
-        assert!(
-            frame.lost.is_some_and(|message| message.ends_with('.')),
-            "{reason}"
-        );
+        assert_eq!(frame.tracking, expected, "{reason}");
     }
 }
 
@@ -320,9 +274,7 @@ fn frames_that_are_wrong_are_errors_and_leave_nothing() {
             *world = super::fake::World::default();
             harm(world);
         });
-        let mut desk = allowing();
-        let mut tracker = Tracker::new(functions(), &mut desk);
-        assert_eq!(tracker.resume(), Step::Ready);
+        let mut tracker = running();
         let error = tracker.update().expect_err(message).to_string();
         assert!(error.contains(message), "{error}");
         drop(tracker);
@@ -332,15 +284,13 @@ fn frames_that_are_wrong_are_errors_and_leave_nothing() {
 
 #[test]
 fn after_a_fatal_failure_a_new_session_begins() {
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
+    let mut tracker = running();
     world(|world| world.fails.insert("update", -2));
     assert!(matches!(tracker.update(), Err(FrameError::Failed(Failure(-2)))));
     assert_clean();
     world(|world| world.fails.clear());
     calls();
-    assert_eq!(tracker.resume(), Step::Ready);
+    assert_eq!(look(&mut tracker), Step::Ready);
     assert!(calls().starts_with("availability create"));
     drop(tracker);
     assert_clean();
@@ -348,9 +298,7 @@ fn after_a_fatal_failure_a_new_session_begins() {
 
 #[test]
 fn a_session_that_cannot_be_paused_is_given_up() {
-    let mut desk = allowing();
-    let mut tracker = Tracker::new(functions(), &mut desk);
-    assert_eq!(tracker.resume(), Step::Ready);
+    let mut tracker = running();
     world(|world| world.fails.insert("pause", -2));
     tracker.pause();
     assert_clean();
@@ -404,4 +352,98 @@ fn a_library_that_lacks_a_function_is_named() {
     };
     assert_eq!(look_up(missing).err().map(|error| error.name), Some(missing));
     assert!(look_up("").is_ok());
+}
+
+#[test]
+fn planes_are_looked_for_only_while_asked_and_another_world_is_another_session() {
+    let mut tracker = running();
+    calls();
+    assert_eq!(tracker.run(&mut Desk::default(), FOLLOW), Step::Ready);
+    assert_eq!(
+        calls(),
+        "update=1 planes=0 texture=1 light=2 configure",
+        "while it runs"
+    );
+    assert_eq!(tracker.run(&mut Desk::default(), FOLLOW), Step::Ready);
+    assert_eq!(calls(), "", "nothing new");
+    let epoch = |tracker: &mut Tracker| {
+        world(|world| world.time_ns += 1);
+        let frame = tracker.update().expect("no error").expect("a frame");
+        frame.stamp.world_epoch
+    };
+    assert_eq!(epoch(&mut tracker), 1);
+    assert_eq!(tracker.run(&mut Desk::default(), ANEW), Step::Ready);
+    assert!(calls().starts_with("update pause availability create"));
+    assert_eq!(epoch(&mut tracker), 2);
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn one_place_is_held_at_a_time() {
+    let mut tracker = running();
+    let held = |tracker: &mut Tracker, id, at: DVec3| {
+        let _ = tracker.hold(id, &DMat4::from_translation(at));
+        world(|world| world.time_ns += 1);
+        let frame = tracker.update().expect("no error").expect("a frame");
+        let anchors = frame.anchors.iter();
+        anchors
+            .map(|anchor| (anchor.id, anchor.world_from_anchor.transform_point3(DVec3::ZERO)))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(held(&mut tracker, 7, DVec3::X), [(7, DVec3::X)]);
+    calls();
+    assert_eq!(held(&mut tracker, 8, DVec3::Z), [(8, DVec3::Z)]);
+    assert_eq!(calls(), "detach anchor update");
+    world(|world| world.anchor_state = 1);
+    assert_eq!(held(&mut tracker, 9, DVec3::Z), [], "not tracked");
+    world(|world| {
+        world.anchor_state = 0;
+        world.fails.insert("anchor", -5);
+    });
+    assert_eq!(held(&mut tracker, 10, DVec3::Z), [], "refused");
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn what_ends_tracking_is_told_by_what_helps() {
+    let said = |number| format!("{:?}", told(Failure(number)));
+    for (number, event) in [
+        (-9, ShellEvent::Permission(Permission::Denied)),
+        (-13, ShellEvent::ArSession(ArSession::Interrupted)),
+        (-101, ShellEvent::ArSession(ArSession::Unsupported)),
+        (-104, ShellEvent::ArSession(ArSession::Unsupported)),
+        (-105, ShellEvent::ArSession(ArSession::Failed)),
+        (-2, ShellEvent::ArSession(ArSession::Failed)),
+    ] {
+        assert_eq!(said(number), format!("{event:?}"), "{number}");
+    }
+}
+
+#[test]
+fn a_feed_waits_for_the_answer_and_comes_back_after_an_interruption() {
+    world(|world| world.availability = vec![1, 1, 203]);
+    let mut desk = Desk::default();
+    let mut feed = Feed::new(Some(functions()));
+    assert!(feed.run(&mut desk, LOOK).is_none());
+    assert!(feed.poll(&mut desk).is_none(), "still looking");
+    assert!(feed.poll(&mut desk).is_none(), "found");
+    assert!(matches!(feed.poll(&mut desk), Some(ShellEvent::Frame(_))));
+    assert!(feed.come_back().is_none());
+    world(|world| world.fails.insert("update", -13));
+    let interrupted = feed.poll(&mut desk);
+    assert!(matches!(
+        interrupted,
+        Some(ShellEvent::ArSession(ArSession::Interrupted))
+    ));
+    assert!(matches!(
+        feed.come_back(),
+        Some(ShellEvent::ArSession(ArSession::Able))
+    ));
+    let without = Feed::new(None).come_back();
+    assert!(matches!(
+        without,
+        Some(ShellEvent::ArSession(ArSession::Unsupported))
+    ));
 }

@@ -1,18 +1,24 @@
 //! From a phone without ARCore to a tracked frame: what is asked for, in which order, and what each refusal leads to.
 //!
-//! | after `resume` | what the app does | what comes next |
-//! | --- | --- | --- |
-//! | [`Step::Ready`] | asks for frames | `update` |
-//! | [`Step::Waiting`] for an answer about ARCore | shows that it looks | `resume` again, in a moment |
-//! | [`Step::Waiting`] for an install or a permission | nothing: Android's own screen is in front | `pause`, then `resume` |
-//! | [`Step::Refused`] | shows the message | `resume`, when the person comes back |
+//! | after `run` | what comes next |
+//! | --- | --- |
+//! | [`Step::Ready`] | `update` |
+//! | [`Step::Waiting`] for an answer about ARCore | `run` again, in a moment |
+//! | [`Step::Waiting`] for an install | Android's own screen is in front: `pause`, then `run` |
+//! | [`Step::Refused`] | `run`, when the person tries again |
+//!
+//! The camera's permission is the app's concern: it asks for frames only where it was given.
 
 use std::fmt;
 
+use app_core::camera_frame::{CameraFrame, Stamp};
+use glam::DMat4;
+
 use super::ffi::Functions;
-use super::frame::{FrameError, TrackedFrame};
-use super::session::{Java, Session};
-use super::status::{Availability, Failure, PERMISSION_NOT_GRANTED, Remedy, availability};
+use super::frame::FrameError;
+use super::session::Session;
+use super::status::{Availability, Failure, availability};
+use crate::phone::{Java, Phone};
 
 /// `AR_INSTALL_STATUS_INSTALLED`.
 const INSTALLED: i32 = 0;
@@ -21,24 +27,23 @@ const NOT_COMPATIBLE: Failure = Failure(-101);
 /// `AR_ERROR_FATAL`.
 const FATAL: Failure = Failure(-2);
 
-/// What the tracker asks of the phone, beside ARCore.
-pub trait Phone {
-    /// The pointers that ARCore is called with, valid on this thread until the next call.
-    fn java(&mut self) -> Java;
-    /// Whether the app may use the camera.
-    fn has_camera_permission(&mut self) -> bool;
-    /// Shows Android's question. The activity pauses and resumes around it.
-    fn ask_for_camera(&mut self);
+/// How frames are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// Whether level planes are looked for.
+    pub finds_planes: bool,
+    /// Whether the world begins anew.
+    pub is_new_world: bool,
 }
 
-/// What `resume` came to.
+/// What `run` came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// Frames can be asked for.
     Ready,
     /// Something else comes first.
     Waiting(Wait),
-    /// There will be no frames before the next `resume`.
+    /// There will be no frames before the next `run`.
     Refused(Failure),
 }
 
@@ -49,8 +54,6 @@ pub enum Wait {
     Answer,
     /// The store's screen.
     Install,
-    /// Android's question.
-    Permission,
 }
 
 /// Either of what keeps a session from beginning.
@@ -74,32 +77,34 @@ pub struct Geometry {
     pub size_px: [i32; 2],
 }
 
-/// Follows the activity and keeps its session.
-pub struct Tracker<P> {
+/// Keeps a session and reads its frames.
+pub struct Tracker {
     api: Functions,
-    phone: P,
     /// Dropped with the tracker, while the library of `api` is still loaded.
     session: Option<Session>,
     is_running: bool,
     has_asked_for_install: bool,
-    has_asked_for_camera: bool,
     display: Option<Geometry>,
     latest_ns: i64,
+    n_frames: u64,
+    /// Each session has a world of its own.
+    n_sessions: u32,
     n_missed: u64,
 }
 
-impl<P: Phone> Tracker<P> {
+impl Tracker {
     /// A tracker without a session.
-    pub fn new(api: Functions, phone: P) -> Self {
+    #[must_use]
+    pub fn new(api: Functions) -> Self {
         Self {
             api,
-            phone,
             session: None,
             is_running: false,
             has_asked_for_install: false,
-            has_asked_for_camera: false,
             display: None,
             latest_ns: 0,
+            n_frames: 0,
+            n_sessions: 0,
             n_missed: 0,
         }
     }
@@ -110,19 +115,33 @@ impl<P: Phone> Tracker<P> {
         self.n_missed
     }
 
-    /// Goes as far as it can, when the activity comes to the front and while it waits for an answer.
-    pub fn resume(&mut self) -> Step {
-        if self.is_running {
-            return Step::Ready;
+    /// Goes as far towards frames as it can.
+    pub fn run(&mut self, phone: &mut dyn Phone, run: Run) -> Step {
+        if run.is_new_world {
+            self.pause();
+            self.session = None;
+            // The person starts over, and may think otherwise of what was declined.
+            self.has_asked_for_install = false;
         }
-        match self.begin() {
+        match self.begin(phone, run.finds_planes) {
             Ok(()) => Step::Ready,
             Err(Halt::Wait(wait)) => Step::Waiting(wait),
             Err(Halt::Refused(failure)) => Step::Refused(failure),
         }
     }
 
-    /// Lets the camera go, when the activity leaves the front. The session stays.
+    /// Holds a place of the world, in place of the one before.
+    ///
+    /// # Errors
+    /// Where ARCore refuses: then none is held.
+    pub fn hold(&mut self, id: u64, world_from_anchor: &DMat4) -> Result<(), Failure> {
+        match &mut self.session {
+            Some(session) => session.hold(id, world_from_anchor),
+            None => Ok(()),
+        }
+    }
+
+    /// Lets the camera go. The session stays.
     pub fn pause(&mut self) {
         let running = self.session.as_ref().filter(|_| self.is_running);
         if running.is_some_and(|session| session.pause().is_err()) {
@@ -143,8 +162,8 @@ impl<P: Phone> Tracker<P> {
     /// The camera's latest frame; none if there is no later one than the last, or none whose picture is there.
     ///
     /// # Errors
-    /// What ARCore or the frame says. After a fatal failure the next `resume` begins a new session.
-    pub fn update(&mut self) -> Result<Option<TrackedFrame>, FrameError> {
+    /// What ARCore or the frame says. After a fatal failure the next `run` begins a new session.
+    pub fn update(&mut self) -> Result<Option<CameraFrame>, FrameError> {
         let Some(session) = self.session.as_ref().filter(|_| self.is_running) else {
             return Ok(None);
         };
@@ -160,34 +179,40 @@ impl<P: Phone> Tracker<P> {
         if time_ns == 0 || time_ns == self.latest_ns {
             return Ok(None);
         }
-        let frame = session.read()?;
+        let frame = session.read(Stamp {
+            id: self.n_frames,
+            time_ns,
+            world_epoch: self.n_sessions,
+        })?;
         match frame {
-            Some(_) => self.latest_ns = time_ns,
+            Some(_) => {
+                self.latest_ns = time_ns;
+                self.n_frames += 1;
+            }
             None => self.n_missed += 1,
         }
         Ok(frame)
     }
 
-    fn begin(&mut self) -> Result<(), Halt> {
-        if self.session.is_none() {
-            self.ensure_installed()?;
-            self.ensure_permission()?;
-            self.session = Some(Session::create(self.api, self.phone.java())?);
-            self.latest_ns = 0;
-            self.tell_display();
-        } else {
-            // It may have been taken away in the settings, while the app was in the background.
-            self.ensure_permission()?;
+    fn begin(&mut self, phone: &mut dyn Phone, finds_planes: bool) -> Result<(), Halt> {
+        match &mut self.session {
+            Some(session) => session.find_planes(finds_planes)?,
+            None => {
+                self.ensure_installed(phone.java())?;
+                self.session = Some(Session::create(self.api, phone.java(), finds_planes)?);
+                self.n_sessions += 1;
+                self.latest_ns = 0;
+                self.tell_display();
+            }
         }
-        if let Some(session) = &self.session {
+        if let Some(session) = self.session.as_ref().filter(|_| !self.is_running) {
             session.resume()?;
         }
         self.is_running = true;
         Ok(())
     }
 
-    fn ensure_installed(&mut self) -> Result<(), Halt> {
-        let Java { env, activity } = self.phone.java();
+    fn ensure_installed(&mut self, Java { env, activity }: Java) -> Result<(), Halt> {
         let mut answer = 0;
         // SAFETY: both pointers are valid now, and the answer is a place of ours.
         unsafe { (self.api.ArCoreApk_checkAvailability)(env, activity, &raw mut answer) };
@@ -197,7 +222,7 @@ impl<P: Phone> Tracker<P> {
             Availability::NotCapable => return Err(NOT_COMPATIBLE.into()),
             Availability::ToInstall | Availability::Unknown => {}
         }
-        // A person who has said no is asked again only at a new start.
+        // A person who has said no is asked again only on starting over.
         let is_first = i32::from(!self.has_asked_for_install);
         self.has_asked_for_install = true;
         let mut outcome = INSTALLED;
@@ -212,19 +237,6 @@ impl<P: Phone> Tracker<P> {
         }
     }
 
-    fn ensure_permission(&mut self) -> Result<(), Halt> {
-        if self.phone.has_camera_permission() {
-            self.has_asked_for_camera = false;
-            return Ok(());
-        }
-        if self.has_asked_for_camera {
-            return Err(Failure(PERMISSION_NOT_GRANTED).into());
-        }
-        self.has_asked_for_camera = true;
-        self.phone.ask_for_camera();
-        Err(Halt::Wait(Wait::Permission))
-    }
-
     fn tell_display(&self) {
         if let (Some(session), Some(display)) = (&self.session, self.display) {
             session.set_display(display.quarter_turns, display.size_px);
@@ -237,19 +249,6 @@ impl fmt::Display for Wait {
         f.write_str(match self {
             Self::Answer => "Looking for Google Play Services for AR.",
             Self::Install => "Google Play Services for AR is being installed.",
-            Self::Permission => "The app sees your toy through the camera. Allow it.",
         })
-    }
-}
-
-impl Step {
-    /// What to tell, and what the person can do; none when ready.
-    #[must_use]
-    pub fn message(self) -> Option<(String, Option<Remedy>)> {
-        match self {
-            Self::Ready => None,
-            Self::Waiting(wait) => Some((wait.to_string(), None)),
-            Self::Refused(failure) => Some((failure.to_string(), Some(failure.remedy()))),
-        }
     }
 }

@@ -10,6 +10,9 @@ use std::ffi::c_void;
 use super::super::ffi::*;
 use super::{World, world};
 
+/// Numbers of poses that were given begin here.
+const GIVEN: usize = 1000;
+
 macro_rules! give_back {
     ($($name:ident($kind:literal, $type:ty);)*) => {$(
         unsafe extern "C" fn $name(object: *mut $type) {
@@ -32,6 +35,7 @@ give_back! {
     light_destroy("light", ArLightEstimate);
     list_destroy("list", ArTrackableList);
     trackable_release("plane", ArTrackable);
+    anchor_release("anchor", ArAnchor);
 }
 
 macro_rules! create {
@@ -73,6 +77,7 @@ macro_rules! get {
 get! {
     frame_time("frame", ArFrame, time: i64) |world, time| *time = world.time_ns;
     camera_state("camera", ArCamera, state: i32) |world, state| *state = world.tracking.0;
+    anchor_state("anchor", ArAnchor, state: i32) |world, state| *state = world.anchor_state;
     camera_reason("camera", ArCamera, reason: i32) |world, reason| *reason = world.tracking.1;
     focal_length("intrinsics", ArCameraIntrinsics, x: f32, y: f32) |world, x, y| [*x, *y] = [world.intrinsics[0], world.intrinsics[1]];
     principal_point("intrinsics", ArCameraIntrinsics, x: f32, y: f32) |world, x, y| [*x, *y] = [world.intrinsics[2], world.intrinsics[3]];
@@ -279,14 +284,21 @@ unsafe extern "C" fn camera_intrinsics(
 }
 
 unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32, place: *mut *mut ArPose) {
-    assert!(raw.is_null());
-    unsafe { *place = world(|world| world.make("pose", 0)) };
+    let raw: Option<&[f32; 7]> = unsafe { raw.cast::<[f32; 7]>().as_ref() };
+    world(|world| {
+        let stands_for = raw.map_or(0, |raw| {
+            world.given.push(*raw);
+            GIVEN + world.given.len() - 1
+        });
+        unsafe { *place = world.make("pose", stands_for) };
+    });
 }
 
-/// A pose stands for the camera's, or for that of the plane before its number.
+/// A pose stands for the camera's, for that of the plane before its number, or from [`GIVEN`] on for one that was given.
 unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
     let raw = world(|world| match world.used("pose", pose) {
         0 => world.pose,
+        given @ GIVEN.. => world.given[given - GIVEN],
         plane => world.planes[plane - 1].pose,
     });
     unsafe { numbers.cast::<[f32; 7]>().write(raw) };
@@ -349,13 +361,40 @@ unsafe extern "C" fn polygon(_: *const ArSession, plane: *const ArPlane, numbers
     unsafe { numbers.copy_from_nonoverlapping(outline.as_ptr(), outline.len()) };
 }
 
-unsafe extern "C" fn subsumed_by(_: *const ArSession, plane: *const ArPlane, place: *mut *mut ArPlane) {
-    let by = world(|world| world.plane(plane).merged_into);
-    unsafe { *place = by.map_or(std::ptr::null_mut(), |by| world(|world| world.make("plane", by))) };
+unsafe extern "C" fn acquire_anchor(
+    session: *mut ArSession,
+    pose: *const ArPose,
+    place: *mut *mut ArAnchor,
+) -> i32 {
+    world(|world| {
+        world.used("session", session);
+        let stands_for = world.used("pose", pose);
+        world.call("anchor");
+        let status = world.status("anchor");
+        if status == 0 {
+            unsafe { *place = world.make("anchor", stands_for) };
+        }
+        status
+    })
+}
+
+unsafe extern "C" fn anchor_detach(session: *mut ArSession, anchor: *mut ArAnchor) {
+    world(|world| {
+        world.used("session", session);
+        world.used("anchor", anchor);
+        world.call("detach");
+    });
+}
+
+unsafe extern "C" fn anchor_pose(_: *const ArSession, anchor: *const ArAnchor, pose: *mut ArPose) {
+    world(|world| {
+        let at = world.used("anchor", anchor);
+        world.alive.get_mut(&pose.addr()).expect("a pose").1 = at;
+    });
 }
 
 /// The fake's functions.
-pub(in super::super) fn functions() -> Functions {
+pub(crate) fn functions() -> Functions {
     Functions {
         ArCoreApk_checkAvailability: check_availability,
         ArCoreApk_requestInstall: request_install,
@@ -428,6 +467,10 @@ pub(in super::super) fn functions() -> Functions {
         ArPlane_getCenterPose: plane_pose,
         ArPlane_getPolygonSize: polygon_size,
         ArPlane_getPolygon: polygon,
-        ArPlane_acquireSubsumedBy: subsumed_by,
+        ArSession_acquireNewAnchor: acquire_anchor,
+        ArAnchor_getPose: anchor_pose,
+        ArAnchor_getTrackingState: anchor_state,
+        ArAnchor_detach: anchor_detach,
+        ArAnchor_release: anchor_release,
     }
 }

@@ -9,46 +9,47 @@ use std::fmt::Write as _;
 
 use super::ffi::ArPlane;
 
-pub(super) use functions::functions;
+pub(crate) use functions::functions;
 
 /// A plane that the fake has found.
 #[derive(Clone)]
-pub(super) struct FakePlane {
-    pub(super) state: i32,
-    pub(super) kind: i32,
-    pub(super) pose: [f32; 7],
-    pub(super) outline: Vec<f32>,
-    /// Index of the plane that took it in.
-    pub(super) merged_into: Option<usize>,
+pub(crate) struct FakePlane {
+    pub(crate) state: i32,
+    pub(crate) kind: i32,
+    pub(crate) pose: [f32; 7],
+    pub(crate) outline: Vec<f32>,
 }
 
 /// What the fake answers, and what it was asked.
-pub(super) struct World {
+pub(crate) struct World {
     /// What `checkAvailability` says, one after the other; the last for good.
-    pub(super) availability: Vec<i32>,
+    pub(crate) availability: Vec<i32>,
     /// Status and outcome of `requestInstall`.
-    pub(super) install: (i32, i32),
+    pub(crate) install: (i32, i32),
     /// Status by name of the function; success where none is set.
-    pub(super) fails: BTreeMap<&'static str, i32>,
+    pub(crate) fails: BTreeMap<&'static str, i32>,
     /// Modes of the camera: width, height, frames a second.
-    pub(super) modes: Vec<[i32; 3]>,
-    pub(super) time_ns: i64,
-    pub(super) tracking: (i32, i32),
-    pub(super) pose: [f32; 7],
-    pub(super) intrinsics: [f32; 4],
-    pub(super) size_px: [i32; 2],
-    pub(super) format: i32,
+    pub(crate) modes: Vec<[i32; 3]>,
+    pub(crate) time_ns: i64,
+    pub(crate) tracking: (i32, i32),
+    pub(crate) pose: [f32; 7],
+    pub(crate) intrinsics: [f32; 4],
+    pub(crate) size_px: [i32; 2],
+    pub(crate) format: i32,
     /// Bytes, row stride and pixel stride of each plane.
-    pub(super) image: Vec<(Vec<u8>, i32, i32)>,
-    pub(super) light: (i32, [f32; 3], [f32; 3], [f32; 27]),
-    pub(super) planes: Vec<FakePlane>,
+    pub(crate) image: Vec<(Vec<u8>, i32, i32)>,
+    pub(crate) light: (i32, [f32; 3], [f32; 3], [f32; 27]),
+    pub(crate) planes: Vec<FakePlane>,
+    pub(crate) anchor_state: i32,
+    /// Poses that were given.
+    given: Vec<[f32; 7]>,
     /// Calls that a test looks at, in order.
-    pub(super) calls: String,
+    pub(crate) calls: String,
     /// Handed out and not given back: address, kind, and what it stands for.
     alive: BTreeMap<usize, (&'static str, usize)>,
     n_made: usize,
     /// What was given back or used without being alive.
-    pub(super) wrong: Vec<String>,
+    pub(crate) wrong: Vec<String>,
 }
 
 impl Default for World {
@@ -73,6 +74,8 @@ impl Default for World {
             image: vec![(pixel(50, 8), 4, 1), (pixel(90, 2), 2, 1), (pixel(200, 2), 2, 1)],
             light: (1, [0.0, 0.0, 2.0], [1.0, 2.0, 3.0], [0.5; 27]),
             planes: Vec::new(),
+            anchor_state: 0,
+            given: Vec::new(),
             calls: String::new(),
             alive: BTreeMap::new(),
             n_made: 0,
@@ -87,12 +90,12 @@ thread_local! {
 }
 
 /// Looks at the fake, or changes what it answers.
-pub(super) fn world<T>(look: impl FnOnce(&mut World) -> T) -> T {
+pub(crate) fn world<T>(look: impl FnOnce(&mut World) -> T) -> T {
     WORLD.with_borrow_mut(look)
 }
 
 /// Kinds of what has not been given back.
-pub(super) fn alive() -> Vec<&'static str> {
+pub(crate) fn alive() -> Vec<&'static str> {
     world(|world| world.alive.values().map(|(kind, _)| *kind).collect())
 }
 

@@ -1,0 +1,77 @@
+//! Android's fingers and screen as the interface takes them.
+
+use app_core::interface::{Insets, Screen, Touch, TouchPhase};
+
+/// Density at which a pixel is a point, in dots an inch.
+const POINT_DPI: f64 = 160.0;
+
+/// What a motion event tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// The finger of that place in the list came down.
+    Down(usize),
+    /// Any of them may have moved.
+    Moved,
+    /// The finger of that place in the list goes up.
+    Up(usize),
+    /// All of them are taken for something else.
+    Cancelled,
+}
+
+/// A finger of a motion event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finger {
+    /// The same as long as it is down.
+    pub id: i32,
+    /// From the window's top left corner, in physical pixels.
+    pub at_px: [f32; 2],
+}
+
+/// The touches of a motion event.
+#[must_use]
+pub fn touches(motion: Motion, fingers: &[Finger]) -> Vec<Touch> {
+    let (phase, only) = match motion {
+        Motion::Down(index) => (TouchPhase::Began, Some(index)),
+        Motion::Moved => (TouchPhase::Moved, None),
+        Motion::Up(index) => (TouchPhase::Ended, Some(index)),
+        Motion::Cancelled => (TouchPhase::Cancelled, None),
+    };
+    let meant = |index: usize| only.is_none_or(|only| only == index);
+    let touches = (0..).zip(fingers).filter(|(index, _)| meant(*index));
+    touches
+        .filter_map(|(_, finger)| {
+            Some(Touch {
+                // Android counts from 0.
+                id: finger.id.try_into().ok()?,
+                phase,
+                at_px: finger.at_px.map(f64::from),
+            })
+        })
+        .collect()
+}
+
+/// The screen of a window of so many pixels.
+///
+/// `content_px` is what no bar or notch covers: left, top, right and bottom from the window's top left corner. Android tells an
+/// empty one before it knows. How large the person wants letters to be is not asked for yet.
+#[must_use]
+pub fn screen(size_px: [u32; 2], density_dpi: Option<u32>, content_px: [i32; 4]) -> Screen {
+    let [left, top, right, bottom] = content_px.map(f64::from);
+    let [width, height] = size_px.map(f64::from);
+    let insets = if right > left && bottom > top {
+        Insets {
+            left_px: left.max(0.0),
+            top_px: top.max(0.0),
+            right_px: (width - right).max(0.0),
+            bottom_px: (height - bottom).max(0.0),
+        }
+    } else {
+        Insets::default()
+    };
+    Screen {
+        size_px,
+        pixels_per_point: density_dpi.map_or(1.0, |dpi| f64::from(dpi) / POINT_DPI),
+        insets,
+        text_scale: 1.0,
+    }
+}

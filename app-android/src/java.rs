@@ -1,0 +1,166 @@
+//! What only Java can do: the camera's permission, the system's settings, and the pointers that ARCore asks for.
+
+use std::path::PathBuf;
+
+use android_activity::{AndroidApp, WindowManagerFlags};
+use app_core::app::Permission;
+use jni::errors::Result;
+use jni::objects::{JObject, JValue};
+use jni::refs::Global;
+use jni::{Env, JavaVM, jni_sig, jni_str};
+
+use crate::phone::{Java, Phone, permission};
+
+const CAMERA: &str = "android.permission.CAMERA";
+const DETAILS: &str = "android.settings.APPLICATION_DETAILS_SETTINGS";
+/// `PackageManager.PERMISSION_GRANTED`.
+const GRANTED: i32 = 0;
+/// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
+const REQUEST: i32 = 1;
+
+/// The phone by its activity.
+pub(crate) struct Activity {
+    app: AndroidApp,
+    was_asked: bool,
+}
+
+impl Activity {
+    /// Of the app that `android_main` was called with.
+    pub(crate) fn new(app: AndroidApp) -> Self {
+        Self {
+            app,
+            was_asked: false,
+        }
+    }
+
+    /// Lets `act` call Java on the thread that activities live on, and writes to the log where it fails.
+    fn on_java_thread(&self, act: fn(&mut Env<'_>, &JObject<'_>) -> Result<()>) {
+        let app = self.app.clone();
+        self.app.run_on_java_main_thread(Box::new(move || {
+            if let Err(error) = with_java(&app, act) {
+                eprintln!("app-android: Java refused: {error}");
+            }
+        }));
+    }
+}
+
+/// Lets `act` call Java on this thread, which stays attached. An exception is cleared and becomes an error.
+fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<T>) -> Result<T> {
+    // SAFETY: the pointer is that of the one virtual machine of this process.
+    let vm = unsafe { JavaVM::from_raw(app.vm_as_ptr().cast()) };
+    vm.attach_current_thread(|env| {
+        let raw: jni::sys::jobject = app.activity_as_ptr().cast();
+        // SAFETY: a global reference to the activity, which `app` keeps for as long as it lives, and which is only lent.
+        let activity = unsafe { env.as_cast_raw::<Global<JObject<'static>>>(&raw)? };
+        let result = act(env, activity.as_ref());
+        if result.is_err() {
+            env.exception_clear();
+        }
+        result
+    })
+}
+
+/// Whether the camera may be used, and whether Android would have a reason for it explained.
+fn permission_of(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<(bool, bool)> {
+    let name = env.new_string(CAMERA)?;
+    let granted = env.call_method(
+        activity,
+        jni_str!("checkSelfPermission"),
+        jni_sig!("(Ljava/lang/String;)I"),
+        &[JValue::Object(&name)],
+    )?;
+    let may_explain = env.call_method(
+        activity,
+        jni_str!("shouldShowRequestPermissionRationale"),
+        jni_sig!("(Ljava/lang/String;)Z"),
+        &[JValue::Object(&name)],
+    )?;
+    Ok((granted.i()? == GRANTED, may_explain.z()?))
+}
+
+fn ask(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
+    let name = env.new_string(CAMERA)?;
+    let names = env.new_object_array(1, jni_str!("java/lang/String"), &name)?;
+    env.call_method(
+        activity,
+        jni_str!("requestPermissions"),
+        jni_sig!("([Ljava/lang/String;I)V"),
+        &[JValue::Object(&names), JValue::Int(REQUEST)],
+    )?;
+    Ok(())
+}
+
+/// `startActivity(new Intent(DETAILS, Uri.parse("package:" + getPackageName())))`.
+fn show_settings(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
+    let scheme = env.new_string("package")?;
+    let details = env.new_string(DETAILS)?;
+    let package = env
+        .call_method(
+            activity,
+            jni_str!("getPackageName"),
+            jni_sig!("()Ljava/lang/String;"),
+            &[],
+        )?
+        .l()?;
+    let of_app = env
+        .call_static_method(
+            jni_str!("android/net/Uri"),
+            jni_str!("fromParts"),
+            jni_sig!("(Ljava/lang/String;Ljava/lang/String;Ljava/lang/String;)Landroid/net/Uri;"),
+            &[
+                JValue::Object(&scheme),
+                JValue::Object(&package),
+                JValue::Object(&JObject::null()),
+            ],
+        )?
+        .l()?;
+    let intent = env.new_object(
+        jni_str!("android/content/Intent"),
+        jni_sig!("(Ljava/lang/String;Landroid/net/Uri;)V"),
+        &[JValue::Object(&details), JValue::Object(&of_app)],
+    )?;
+    env.call_method(
+        activity,
+        jni_str!("startActivity"),
+        jni_sig!("(Landroid/content/Intent;)V"),
+        &[JValue::Object(&intent)],
+    )?;
+    Ok(())
+}
+
+impl Phone for Activity {
+    fn java(&mut self) -> Java {
+        let env = with_java(&self.app, |env, _| Ok(env.get_raw()));
+        Java {
+            // Without an environment ARCore answers with an error of its own.
+            env: env.map_or(std::ptr::null_mut(), |env| env.cast()),
+            activity: self.app.activity_as_ptr(),
+        }
+    }
+
+    fn permission(&mut self) -> Permission {
+        let (is_granted, may_explain) = with_java(&self.app, permission_of).unwrap_or_default();
+        permission(is_granted, self.was_asked, may_explain)
+    }
+
+    fn ask_for_camera(&mut self) {
+        self.was_asked = true;
+        self.on_java_thread(ask);
+    }
+
+    fn open_settings(&mut self) {
+        self.on_java_thread(show_settings);
+    }
+
+    fn keep_awake(&mut self, is_awake: bool) {
+        let (flag, none) = (WindowManagerFlags::KEEP_SCREEN_ON, WindowManagerFlags::empty());
+        let (add, remove) = if is_awake { (flag, none) } else { (none, flag) };
+        self.app.set_window_flags(add, remove);
+    }
+
+    fn folder(&self) -> Option<PathBuf> {
+        self.app
+            .external_data_path()
+            .or_else(|| self.app.internal_data_path())
+    }
+}

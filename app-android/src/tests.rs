@@ -1,0 +1,182 @@
+//! The shell over the fake of ARCore, with an app whose core counts and draws nothing.
+
+use std::path::PathBuf;
+
+use app_core::Core;
+use app_core::app::{Permission, ShellEvent, Step, Wish};
+use app_core::interface::{Insets, TouchPhase};
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use glam::DVec2;
+
+use crate::arcore::fake::{FakePlane, functions, world};
+use crate::arcore::feed::Feed;
+use crate::input::{Finger, Motion, screen, touches};
+use crate::phone::{Java, Phone, permission};
+use crate::save;
+use crate::shell::{Shell, bundled_toy};
+
+/// A phone that grants the camera when it is asked for.
+#[derive(Default)]
+pub(crate) struct Desk {
+    allows: bool,
+}
+
+impl Phone for Desk {
+    fn java(&mut self) -> Java {
+        let somewhere = std::ptr::without_provenance_mut(8);
+        Java {
+            env: somewhere,
+            activity: somewhere,
+        }
+    }
+
+    fn permission(&mut self) -> Permission {
+        permission(self.allows, false, false)
+    }
+
+    fn ask_for_camera(&mut self) {
+        self.allows = true;
+    }
+
+    fn open_settings(&mut self) {}
+
+    fn keep_awake(&mut self, _: bool) {}
+
+    fn folder(&self) -> Option<PathBuf> {
+        None
+    }
+}
+
+fn shell() -> Shell<Desk> {
+    let toy = bundled_toy().expect("the bundled toy");
+    let live = Live::new(Core::counting(), toy, Preset::Balanced);
+    Shell::new(live, Desk::default(), Feed::new(Some(functions())))
+}
+
+fn calls() -> String {
+    world(|world| std::mem::take(&mut world.calls))
+}
+
+#[test]
+fn from_the_first_button_to_a_table() {
+    world(|world| {
+        // The camera looks straight down on a table half a metre below it.
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        world.pose = [-half, 0.0, 0.0, half, 0.0, 0.5, 0.0];
+        world.planes = vec![FakePlane {
+            state: 0,
+            kind: 0,
+            pose: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+            outline: vec![0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5],
+        }];
+    });
+    let mut shell = shell();
+    shell.set_surface(Some([2400, 1080]));
+    shell.set_foreground(true);
+    shell.tick();
+    assert_eq!(calls(), "", "nothing before the person begins");
+    shell.tell(ShellEvent::Wish(Wish::Begin));
+    assert_eq!(shell.live().app().step(), Step::Welcome);
+    // Android's question takes the front for a while.
+    shell.set_foreground(false);
+    shell.set_foreground(true);
+    assert_eq!(shell.live().app().step(), Step::FindTable);
+    assert!(calls().contains("display=1,2400,1080 resume"));
+    shell.tick();
+    shell.tell(ShellEvent::Wish(Wish::Tap(DVec2::new(2.0, 1.0))));
+    assert_eq!(shell.live().app().step(), Step::TakePlate);
+    assert!(calls().contains("planes=0"), "planes are looked for no longer");
+    shell.set_foreground(false);
+    assert_eq!(calls(), "pause ");
+}
+
+#[test]
+fn what_cannot_be_made_yet_is_said_to_have_failed() {
+    let mut shell = shell();
+    world(|world| world.time_ns = 1);
+    shell.tell(ShellEvent::Wish(Wish::Begin));
+    shell.set_foreground(true);
+    shell.tell(ShellEvent::Wish(Wish::Record(true)));
+    assert!(!shell.live().app().is_recording());
+    shell.tick();
+    assert!(shell.live().app().notice().is_some());
+}
+
+#[test]
+fn a_permission_is_what_android_says_of_it() {
+    let cases = [
+        ((true, false, false), Permission::Granted),
+        ((true, true, true), Permission::Granted),
+        ((false, false, false), Permission::Unknown),
+        ((false, false, true), Permission::Denied),
+        ((false, true, true), Permission::Denied),
+        ((false, true, false), Permission::Barred),
+    ];
+    for ((is_granted, was_asked, may_explain), expected) in cases {
+        assert_eq!(permission(is_granted, was_asked, may_explain), expected);
+    }
+}
+
+#[test]
+fn fingers_are_told_apart() {
+    let fingers = [
+        Finger {
+            id: 0,
+            at_px: [1.0, 2.0],
+        },
+        Finger {
+            id: 3,
+            at_px: [5.0, 6.0],
+        },
+    ];
+    let told = |motion| {
+        let touches = touches(motion, &fingers).into_iter();
+        touches
+            .map(|touch| (touch.id, touch.phase, touch.at_px[0]))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(told(Motion::Down(1)), [(3, TouchPhase::Began, 5.0)]);
+    assert_eq!(told(Motion::Up(0)), [(0, TouchPhase::Ended, 1.0)]);
+    assert_eq!(told(Motion::Up(2)), []);
+    let moved = [(0, TouchPhase::Moved, 1.0), (3, TouchPhase::Moved, 5.0)];
+    assert_eq!(told(Motion::Moved), moved);
+    let cancelled = [(0, TouchPhase::Cancelled, 1.0), (3, TouchPhase::Cancelled, 5.0)];
+    assert_eq!(told(Motion::Cancelled), cancelled);
+}
+
+#[test]
+fn a_screen_is_measured_in_points_without_what_bars_cover() {
+    let with_bars = screen([2400, 1080], Some(480), [100, 60, 2300, 1080]);
+    assert_eq!(with_bars.pixels_per_point.to_bits(), 3.0_f64.to_bits());
+    let insets = Insets {
+        left_px: 100.0,
+        top_px: 60.0,
+        right_px: 100.0,
+        bottom_px: 0.0,
+    };
+    assert_eq!(with_bars.insets, insets);
+    let unknown = screen([2400, 1080], None, [0; 4]);
+    assert_eq!(unknown.insets, Insets::default());
+    assert_eq!(unknown.pixels_per_point.to_bits(), 1.0_f64.to_bits());
+}
+
+#[test]
+fn a_photo_is_a_png_of_the_same_pixels() {
+    use app_core::app::Saved;
+    let folder = std::env::temp_dir().join(format!("app-android-{}", std::process::id()));
+    let picture = Image {
+        width_px: 2,
+        height_px: 1,
+        rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
+    };
+    assert_eq!(save::picture(&folder, "photo.png", &picture), Saved::Done);
+    let back = image::open(folder.join("photo.png"))
+        .expect("a picture")
+        .to_rgba8();
+    assert_eq!(back.into_raw(), picture.rgba8);
+    let in_a_file = folder.join("photo.png");
+    assert_eq!(save::bytes(&in_a_file, "log.txt", b"log"), Saved::Failed);
+    std::fs::remove_dir_all(&folder).expect("a folder");
+}
