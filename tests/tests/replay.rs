@@ -174,8 +174,8 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
             check(&preset["folder"], &map["file"]);
         }
     }
-    // Inputs, then picture, error and maps of each preset.
-    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 4 + 2 + 10));
+    // Inputs, then picture, error and maps of each preset, the lights over the photograph among them.
+    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 5 + 2 + 11));
 }
 
 #[test]

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec2};
 
-use super::{CameraImage, Display, Stamp};
+use super::arrival::Stamp;
+use super::display::Display;
+use super::image::CameraImage;
 use crate::scene::{Camera, Intrinsics, LightEstimate};
 
 /// How well the platform follows the camera, and what a person can do about it.

@@ -5,13 +5,12 @@
 
 mod input;
 mod painter;
+mod parts;
 mod picture;
 mod play;
 mod screens;
 mod style;
 mod text;
-
-use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame};
 
@@ -177,17 +176,4 @@ impl std::fmt::Debug for Interface {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Interface")
     }
-}
-
-/// Fonts of the interface, from bytes that are compiled in.
-fn fonts(font: &'static [u8]) -> egui::FontDefinitions {
-    let mut fonts = egui::FontDefinitions::empty();
-    let name = "roboto".to_owned();
-    fonts
-        .font_data
-        .insert(name.clone(), Arc::new(egui::FontData::from_static(font)));
-    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
-        fonts.families.insert(family, vec![name.clone()]);
-    }
-    fonts
 }

@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Slider, Ui};
 
-use super::screens::other;
+use super::parts::other;
 use super::{style, text};
 use crate::app::{App, Wish};
 

@@ -1,7 +1,8 @@
 //! Sheets over the picture: what to do, what is in the way, what happened.
 
-use egui::{Align2, Area, Button, Id, Order, ProgressBar, RichText, ScrollArea, Ui, vec2};
+use egui::{Align2, Area, Id, Order, ProgressBar, RichText, ScrollArea, Ui, vec2};
 
+use super::parts::{lead, other, words};
 use super::{play, style, text};
 use crate::app::{App, Obstacle, Step, Wish};
 
@@ -34,25 +35,6 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mu
                 });
             });
         });
-}
-
-fn words(ui: &mut Ui, title: &str, hint: &str) {
-    ui.label(RichText::new(title).heading());
-    ui.label(RichText::new(hint).color(style::MUTED));
-}
-
-/// The button that leads on, as wide as the sheet.
-fn lead(ui: &mut Ui, label: &str) -> bool {
-    let label = RichText::new(label).color(style::ON_ACCENT);
-    let button = Button::new(label).fill(style::ACCENT);
-    ui.add_sized(vec2(ui.available_width(), style::TOUCH_POINTS), button)
-        .clicked()
-}
-
-/// A button that leads elsewhere.
-pub(super) fn other(ui: &mut Ui, label: &str) -> bool {
-    ui.add(Button::new(label).min_size(vec2(style::TOUCH_POINTS, style::TOUCH_POINTS)))
-        .clicked()
 }
 
 fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {

@@ -1,5 +1,7 @@
 //! Colours and sizes.
 
+use std::sync::Arc;
+
 use egui::{
     Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, TextStyle, Theme, Vec2, Visuals,
 };
@@ -20,7 +22,7 @@ pub(super) const MUTED: Color32 = Color32::from_rgb(190, 194, 204);
 pub(super) const GHOST: Color32 = Color32::from_rgb(255, 214, 120);
 
 pub(super) fn apply(context: &Context, font: &'static [u8]) {
-    context.set_fonts(super::fonts(font));
+    context.set_fonts(fonts(font));
     context.set_theme(Theme::Dark);
     context.all_styles_mut(|style| {
         style.text_styles = [
@@ -59,4 +61,17 @@ pub(super) fn card() -> Frame {
         shadow: Shadow::NONE,
         ..Frame::default()
     }
+}
+
+/// Fonts of the interface, from bytes that are compiled in.
+fn fonts(font: &'static [u8]) -> egui::FontDefinitions {
+    let mut fonts = egui::FontDefinitions::empty();
+    let name = "roboto".to_owned();
+    fonts
+        .font_data
+        .insert(name.clone(), Arc::new(egui::FontData::from_static(font)));
+    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
+        fonts.families.insert(family, vec![name.clone()]);
+    }
+    fonts
 }

@@ -31,7 +31,7 @@ fn collect(folder: &Path, path: &str, modules: &mut Vec<Module>) {
         };
         if file.is_dir() {
             collect(&file, &below, modules);
-        } else {
+        } else if file.extension().is_some_and(|extension| extension == "rs") {
             modules.push(Module {
                 path: below,
                 text: fs::read_to_string(&file).unwrap(),

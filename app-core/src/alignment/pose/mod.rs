@@ -25,20 +25,6 @@ use odds::Odds;
 
 pub(super) use resting::find_resting;
 
-/// Rounds along lines: the level, and how far they reach in its pixels.
-const COARSE: [(usize, i32); 11] = [
-    (2, 10),
-    (2, 10),
-    (2, 8),
-    (2, 8),
-    (2, 6),
-    (2, 6),
-    (2, 4),
-    (1, 6),
-    (1, 6),
-    (1, 4),
-    (1, 4),
-];
 /// Colours are learned this far around the toy, over how far lines reach.
 const LEARNED_AROUND: i32 = 3;
 /// Rounds by matting, at the largest level: ever narrower bands, and how often each.
@@ -203,6 +189,21 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
+    /// Rounds along lines: the level, and how far they reach in its pixels.
+    const COARSE: [(usize, i32); 11] = [
+        (2, 10),
+        (2, 10),
+        (2, 8),
+        (2, 8),
+        (2, 6),
+        (2, 6),
+        (2, 4),
+        (1, 6),
+        (1, 6),
+        (1, 4),
+        (1, 4),
+    ];
+
     fn new(shape: &'a Shape, pyramid: &'a Pyramid, uncertainty: &PoseUncertainty) -> Self {
         Self {
             shape,
@@ -241,7 +242,7 @@ impl<'a> Search<'a> {
 
     /// Freely, or held to a plane.
     fn coarse(&mut self, motion: Motion, held: Option<&Held>) -> Motion {
-        self.by_lines(motion, held, &COARSE)
+        self.by_lines(motion, held, &Self::COARSE)
     }
 
     fn by_lines(&mut self, mut motion: Motion, held: Option<&Held>, rounds: &[(usize, i32)]) -> Motion {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3, IVec2};
 
 use super::motion::{Held, Motion};
-use super::{COARSE, Found, Search};
+use super::{Found, Search};
 use crate::alignment::picture::Pyramid;
 use crate::alignment::shape::Shape;
 use crate::scene::PoseUncertainty;
@@ -73,7 +73,7 @@ impl Search<'_> {
         }
         let mut ranked: Vec<(f64, Motion)> = Vec::new();
         for start in starts {
-            let motion = self.by_lines(start, Some(held), &COARSE[..N_FIRST_ROUNDS]);
+            let motion = self.by_lines(start, Some(held), &Self::COARSE[..N_FIRST_ROUNDS]);
             if let Some(fit) = self.fit(&motion) {
                 ranked.push((fit.wide_loss_px2, motion));
             }
