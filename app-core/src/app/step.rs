@@ -1,3 +1,5 @@
+//! What a person is about to do, and what leads from one step to another.
+//!
 #![doc = include_str!("../../doc/app.md")]
 
 /// What a person is about to do.
