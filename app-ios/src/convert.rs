@@ -4,6 +4,7 @@
 //! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
 //! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
 
+use app_core::app::{ArSession, Permission, Thermal};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 /// How far ARKit's single precision may be from a rigid motion, with room for the roundings of a product.
@@ -41,9 +42,47 @@ pub fn size_px(size_points: [f64; 2], pixels_per_point: f64) -> Option<[u32; 2]>
     (size_px.min_element() >= 1.0).then(|| size_px.as_uvec2().to_array())
 }
 
+/// The camera's permission from an `AVAuthorizationStatus`. Once it was refused, iOS asks nobody again.
+pub fn permission(status: isize) -> Permission {
+    match status {
+        3 => Permission::Granted,
+        0 => Permission::Unknown,
+        _ => Permission::Barred,
+    }
+}
+
+/// How hot the phone is from an `NSProcessInfoThermalState`.
+pub fn thermal(state: isize) -> Thermal {
+    match state {
+        ..=0 => Thermal::Nominal,
+        1 => Thermal::Fair,
+        2 => Thermal::Serious,
+        3.. => Thermal::Critical,
+    }
+}
+
+/// What a session of ARKit is after it failed with an `ARErrorCode`.
+pub fn failed_session(code: isize) -> ArSession {
+    match code {
+        // The configuration is one that the phone does not have.
+        100 => ArSession::Unsupported,
+        _ => ArSession::Failed,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_platforms_numbers_have_their_meanings() {
+        use Permission::{Barred, Granted, Unknown};
+        use Thermal::{Critical, Fair, Nominal, Serious};
+        assert_eq!([0, 1, 2, 3].map(permission), [Unknown, Barred, Barred, Granted]);
+        assert_eq!([0, 1, 2, 3].map(thermal), [Nominal, Fair, Serious, Critical]);
+        let [unsupported, failed] = [ArSession::Unsupported, ArSession::Failed];
+        assert_eq!([100, 102, 103, 200].map(failed_session), [unsupported, failed, failed, failed]);
+    }
 
     /// A quarter turn to the left about the vertical, from a phone at (1, 2, 3).
     const TURNED_LEFT: [[f32; 4]; 4] = [

@@ -1,8 +1,8 @@
-//! The border between UIKit and Rust: panics stop here.
+//! The border between iOS and Rust: panics stop here.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs the body of one UIKit callback. `None` if it panicked; the panic hook has then written message and place to
+/// Runs the body of one callback, or of one thread. `None` if it panicked; the panic hook has then written message and place to
 /// standard error, and the caller must not trust what the body was changing.
 ///
 /// Objective-C frames neither handle nor clean up after a Rust panic, so each callback that runs our code comes

@@ -1,26 +1,34 @@
-//! The iPhone shell: one window scene with one Metal view that the shared core draws on.
+//! The iPhone shell: one window scene with one Metal view, and a camera, for the app that both phones share.
 //!
-//! Data flows one way: UIKit calls the delegates in `scene`, they tell the `view` when it is in front, and the view
-//! lends its layer to the `stage`, which keeps the one `app_core::Core`.
-//! `convert` holds everything that knows ARKit's axes and pixel rules and UIKit's points; the core knows none of them.
+//! It translates and decides nothing. UIKit calls `scene` and `view`, ARKit a delegate in `arkit`; what they tell waits in
+//! `inbox` for the `shell`, which hands it to the one `app_core::live::Live` on the `stage` with each picture, and does what
+//! that then asks for: by `arkit`, `camera`, and `jobs` for what takes long.
+//! `convert` holds everything that knows ARKit's axes and pixel rules, UIKit's points and the platform's numbers; the core
+//! knows none of them.
 //!
-//! What works: the core is created on the view's layer, follows its size, loses its surface in the background while
-//! device and pipelines stay, and presents a frame per display refresh.
-//! `arkit` reads ARKit's frames into plain structs, and makes frames of ours of them.
-//! What is not here yet: a session of ARKit that delivers those. No camera image, pose, plane or light reaches the core, so
-//! the screen shows what the core presents before its first camera frame.
+//! What is there: the app on the view's layer, with a toy to begin with; touches, safe area and letter size; the camera's
+//! permission; world tracking with level planes, interruptions and one anchor; exposure, white balance and focus held;
+//! alignments on a thread; photos and the log as files that Files shows; heat and memory.
+//! What is not: videos, recordings, a toy of the person's own and words for those who do not see the screen. The first two
+//! are told as failed. Camera planes are copied, and 30 frames a second slow the pictures rather than the camera.
+//! Nothing of this has run on a phone.
 //!
 //! The crate is a static library with one C function, `app_ios_main`. It builds on any system, because only linking
 //! needs Apple's SDK; `README.md` beside this crate tells how a Mac makes an app of it.
-//! On other systems only `convert` and what of `arkit` is free of Apple's are compiled.
+//! On other systems only what is free of Apple's is compiled.
 
 pub mod arkit;
 pub mod convert;
+mod guard;
+pub mod inbox;
+pub mod jobs;
 
 #[cfg(target_os = "ios")]
-mod guard;
+mod camera;
 #[cfg(target_os = "ios")]
 mod scene;
+#[cfg(target_os = "ios")]
+mod shell;
 #[cfg(target_os = "ios")]
 mod stage;
 #[cfg(target_os = "ios")]

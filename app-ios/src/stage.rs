@@ -1,11 +1,18 @@
-//! The core and the layer it draws on: created once, without a surface in the background.
+//! The app and the layer it draws on: created once, without a surface in the background.
 
-use app_core::camera_frame::Display;
+use std::sync::Arc;
+
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::toy::{Toy, ToyError};
 use app_core::wgpu::{self, SurfaceTargetUnsafe};
 use app_core::{Core, CoreError};
 use objc2::Message;
 use objc2::rc::Retained;
 use objc2_quartz_core::{CALayer, CAMetalLayer};
+
+/// The toy to begin with: that of the session in this repository.
+const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -16,66 +23,100 @@ pub(crate) enum StageError {
     /// Metal refused the layer.
     #[error("no surface on the view's layer: {0}")]
     Surface(#[from] wgpu::CreateSurfaceError),
-    /// The core could not start, continue or present.
+    /// The core could not start or continue.
     #[error(transparent)]
     Core(#[from] CoreError),
+    /// The toy to begin with cannot be read.
+    #[error(transparent)]
+    Toy(#[from] ToyError),
 }
 
-/// Owns the core and lends it the view's layer.
+/// What became of the app when it was to fit a layer.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fitted {
+    /// It is a new one, which knows of nothing yet.
+    Anew,
+    /// It is the one of before.
+    Again,
+}
+
+/// Owns the app and lends it the view's layer.
 pub(crate) struct Stage {
     instance: wgpu::Instance,
-    core: Option<Core>,
+    live: Option<Live>,
     has_surface: bool,
 }
 
 impl Stage {
-    /// A stage without core; the core comes with the first fit.
+    /// A stage without an app, which comes with the first fit.
     pub(crate) fn new() -> Self {
         let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         Self {
             instance: wgpu::Instance::new(descriptor),
-            core: None,
+            live: None,
             has_surface: false,
         }
     }
 
-    /// Lets the core draw on `layer` in the given size: creates it, continues it, or resizes it, whichever is due.
-    /// Creating it blocks the main thread until device and pipelines exist.
-    pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
-        match &mut self.core {
-            Some(core) if self.has_surface => core.resize(size_px),
-            Some(core) => core.resume(surface_on(&self.instance, layer)?, size_px)?,
+    /// Lets the app draw on `layer` in the given size: creates it, continues it, or resizes it, whichever is due.
+    /// Creating it blocks the main thread until there is a device; pipelines come one a picture.
+    pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<Fitted, StageError> {
+        let mut fitted = Fitted::Again;
+        match &mut self.live {
+            Some(live) if self.has_surface => live.core_mut().resize(size_px),
+            Some(live) => live
+                .core_mut()
+                .resume(surface_on(&self.instance, layer)?, size_px)?,
             None => {
-                let surface = surface_on(&self.instance, layer)?;
-                let core = pollster::block_on(Core::on_surface(&self.instance, surface, size_px))?;
-                self.core = Some(core);
+                let toy = Arc::new(Toy::from_glb("toy.glb", TOY)?);
+                let core = core_on(&self.instance, layer, size_px)?;
+                self.live = Some(Live::new(core, toy, Preset::default()));
+                fitted = Fitted::Anew;
             }
         }
         self.has_surface = true;
+        Ok(fitted)
+    }
+
+    /// Opens another device on `layer`, where the one before was lost.
+    pub(crate) fn reopen(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
+        if let Some(live) = &mut self.live {
+            // A layer has one surface at a time.
+            live.core_mut().suspend();
+            live.reopen(core_on(&self.instance, layer, size_px)?);
+            self.has_surface = true;
+        }
         Ok(())
     }
 
-    /// Drops the surface; the core keeps device, pipelines and what it has learned.
+    /// Drops the surface; the app keeps device, pipelines and what it has learned.
     pub(crate) fn suspend(&mut self) {
-        if let Some(core) = &mut self.core {
-            core.suspend();
+        if let Some(live) = &mut self.live {
+            live.core_mut().suspend();
         }
         self.has_surface = false;
     }
 
-    /// Presents one frame, where there is a surface.
-    pub(crate) fn present(&mut self) -> Result<(), StageError> {
-        match &mut self.core {
-            Some(core) if self.has_surface => Ok(core.present(Display::default())?),
-            _ => Ok(()),
-        }
+    /// The app, once there is one.
+    pub(crate) fn live(&mut self) -> Option<&mut Live> {
+        self.live.as_mut()
     }
 
-    /// Drops the core with all it holds.
+    /// Whether the app has something to draw on.
+    pub(crate) fn has_surface(&self) -> bool {
+        self.has_surface
+    }
+
+    /// Drops the app with all it holds.
     pub(crate) fn clear(&mut self) {
         self.has_surface = false;
-        self.core = None;
+        self.live = None;
     }
+}
+
+fn core_on(instance: &wgpu::Instance, layer: &CALayer, size_px: [u32; 2]) -> Result<Core, StageError> {
+    let surface = surface_on(instance, layer)?;
+    Ok(pollster::block_on(Core::on_surface(instance, surface, size_px))?)
 }
 
 /// A surface on the view's own layer.

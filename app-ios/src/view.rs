@@ -1,23 +1,34 @@
-//! The one view of the app: a Metal layer, its size, and the clock that asks for frames.
+//! The one view of the app: a Metal layer, its size, fingers on it, and the clock that asks for pictures.
 
 use std::cell::{Cell, OnceCell, RefCell};
+use std::rc::Rc;
 
-use objc2::rc::Retained;
+use app_core::app::ShellEvent;
+use app_core::interface::{Insets, Screen, Touch, TouchPhase};
+use objc2::rc::{Retained, autoreleasepool};
 use objc2::runtime::{AnyClass, NSObject};
 use objc2::{ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel};
 use objc2_core_foundation::CGRect;
-use objc2_foundation::{NSRunLoop, NSRunLoopCommonModes};
-use objc2_quartz_core::{CADisplayLink, CAMetalLayer};
-use objc2_ui_kit::{UIResponder, UITraitEnvironment, UIView};
+use objc2_foundation::{NSNotification, NSNotificationCenter, NSRunLoop, NSRunLoopCommonModes, NSSet};
+use objc2_quartz_core::{CADisplayLink, CAFrameRateRange, CAMetalLayer};
+use objc2_ui_kit::{
+    UIApplicationDidReceiveMemoryWarningNotification, UIEvent, UIFontMetrics, UIResponder, UITouch,
+    UITraitEnvironment, UIView,
+};
 
 use crate::convert::size_px;
 use crate::guard::guarded;
-use crate::stage::{Stage, StageError};
+use crate::inbox::Inbox;
+use crate::shell::Shell;
+use crate::stage::StageError;
 
 /// The view's state.
 pub(crate) struct ViewState {
-    stage: RefCell<Stage>,
+    shell: RefCell<Shell>,
+    inbox: Rc<Inbox>,
     in_foreground: Cell<bool>,
+    /// Of the clock.
+    frames_per_s: Cell<u32>,
     /// Retains the view, as the view retains it: [`MetalView::retire`] breaks the circle.
     display_link: OnceCell<Retained<CADisplayLink>>,
 }
@@ -30,7 +41,7 @@ define_class!(
     #[ivars = ViewState]
     pub(crate) struct MetalView;
 
-    // SAFETY: the methods have the signatures that UIKit and, for the last, the display link call them with.
+    // SAFETY: the methods have the signatures that UIKit, the display link and the notification centre call them with.
     impl MetalView {
         #[unsafe(method(layerClass))]
         fn layer_class() -> &'static AnyClass {
@@ -41,12 +52,37 @@ define_class!(
         fn layout_subviews(&self) {
             // SAFETY: the method of the superclass takes nothing and returns nothing.
             let () = unsafe { msg_send![super(self), layoutSubviews] };
-            self.run("layout", |stage| self.fit(stage));
+            self.run("layout", |shell| self.fit(shell));
         }
 
         #[unsafe(method(displayLinkDidFire:))]
         fn display_link_did_fire(&self, _link: &CADisplayLink) {
-            self.run("present", Stage::present);
+            autoreleasepool(|_| self.draw());
+        }
+
+        #[unsafe(method(touchesBegan:withEvent:))]
+        fn touches_began(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
+            guarded(|| self.touch(touches, TouchPhase::Began));
+        }
+
+        #[unsafe(method(touchesMoved:withEvent:))]
+        fn touches_moved(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
+            guarded(|| self.touch(touches, TouchPhase::Moved));
+        }
+
+        #[unsafe(method(touchesEnded:withEvent:))]
+        fn touches_ended(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
+            guarded(|| self.touch(touches, TouchPhase::Ended));
+        }
+
+        #[unsafe(method(touchesCancelled:withEvent:))]
+        fn touches_cancelled(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
+            guarded(|| self.touch(touches, TouchPhase::Cancelled));
+        }
+
+        #[unsafe(method(memoryIsLow:))]
+        fn memory_is_low(&self, _notification: &NSNotification) {
+            guarded(|| self.ivars().inbox.tell(ShellEvent::MemoryLow));
         }
     }
 );
@@ -54,14 +90,28 @@ define_class!(
 impl MetalView {
     /// A view of the given frame (points) that draws nothing until it enters the foreground.
     pub(crate) fn new(main_thread: MainThreadMarker, frame: CGRect) -> Retained<Self> {
+        let inbox = Rc::<Inbox>::default();
         let state = ViewState {
-            stage: RefCell::new(Stage::new()),
+            shell: RefCell::new(Shell::new(main_thread, Rc::clone(&inbox))),
+            inbox,
             in_foreground: Cell::new(false),
+            frames_per_s: Cell::default(),
             display_link: OnceCell::new(),
         };
         let this = Self::alloc(main_thread).set_ivars(state);
         // SAFETY: initWithFrame: is UIView's designated initialiser and takes a CGRect.
         let this: Retained<Self> = unsafe { msg_send![super(this), initWithFrame: frame] };
+        this.setMultipleTouchEnabled(true);
+        // SAFETY: the view answers memoryIsLow:, which takes the notification as its only argument; the centre keeps no
+        // reference to it and forgets it when it goes.
+        unsafe {
+            NSNotificationCenter::defaultCenter().addObserver_selector_name_object(
+                &this,
+                sel!(memoryIsLow:),
+                Some(UIApplicationDidReceiveMemoryWarningNotification),
+                None,
+            );
+        }
         // SAFETY: the view answers displayLinkDidFire:, which takes the link as its only argument.
         let link = unsafe { CADisplayLink::displayLinkWithTarget_selector(&this, sel!(displayLinkDidFire:)) };
         link.setPaused(true);
@@ -71,19 +121,23 @@ impl MetalView {
         this
     }
 
-    /// Creates the surface, and with the first one the core, and starts the clock.
+    /// Creates the surface, and with the first one the app, and starts the clock.
     pub(crate) fn enter_foreground(&self) {
         self.ivars().in_foreground.set(true);
-        self.run("entering the foreground", |stage| self.fit(stage));
+        self.run("entering the foreground", |shell| {
+            self.fit(shell)?;
+            shell.enter_foreground();
+            Ok(())
+        });
         self.pause_clock(false);
     }
 
-    /// Stops the clock and drops the surface: iOS allows no GPU work in the background.
+    /// Stops the clock, the camera, and drops the surface: iOS allows no GPU work in the background.
     pub(crate) fn enter_background(&self) {
         self.ivars().in_foreground.set(false);
         self.pause_clock(true);
-        self.run("entering the background", |stage| {
-            stage.suspend();
+        self.run("entering the background", |shell| {
+            shell.enter_background();
             Ok(())
         });
     }
@@ -102,33 +156,91 @@ impl MetalView {
         }
     }
 
-    /// Matches the surface with the view's size on the current screen, if the view is in front.
-    fn fit(&self, stage: &mut Stage) -> Result<(), StageError> {
-        if !self.ivars().in_foreground.get() {
-            return Ok(());
+    /// One picture.
+    fn draw(&self) {
+        self.run("drawing", |shell| {
+            let Some(screen) = self.screen() else {
+                return Ok(());
+            };
+            shell.present(&self.layer(), &screen)?;
+            self.set_rate(shell.frames_per_s());
+            Ok(())
+        });
+    }
+
+    fn set_rate(&self, frames_per_s: u32) {
+        if self.ivars().frames_per_s.replace(frames_per_s) == frames_per_s {
+            return;
         }
-        // SAFETY: reading a property of the view's own traits, on the main thread.
-        let pixels_per_point = unsafe { self.traitCollection().displayScale() };
-        let size_points = self.bounds().size;
-        match size_px([size_points.width, size_points.height], pixels_per_point) {
-            Some(size_px) => stage.fit(&self.layer(), size_px),
-            // Not laid out yet: layoutSubviews comes back with a size.
-            None => Ok(()),
+        if let Some(link) = self.ivars().display_link.get() {
+            #[allow(clippy::cast_precision_loss, reason = "some dozens a second")]
+            let rate = frames_per_s as f32;
+            link.setPreferredFrameRateRange(CAFrameRateRange {
+                minimum: rate,
+                maximum: rate,
+                preferred: rate,
+            });
         }
     }
 
-    /// Lets `act` work on the stage. After an error or a panic the core is dropped, and the next layout or return to
+    /// Leaves touches for the app, in pixels of the screen.
+    fn touch(&self, touches: &NSSet<UITouch>, phase: TouchPhase) {
+        let pixels_per_point = self.pixels_per_point();
+        for touch in touches {
+            let at_points = touch.locationInView(Some(self));
+            self.ivars().inbox.touch(Touch {
+                // UIKit keeps the object as long as the finger is down.
+                id: Retained::as_ptr(&touch).addr() as u64,
+                phase,
+                at_px: [at_points.x, at_points.y].map(|points| points * pixels_per_point),
+            });
+        }
+    }
+
+    fn pixels_per_point(&self) -> f64 {
+        // SAFETY: reading a property of the view's own traits, on the main thread.
+        unsafe { self.traitCollection().displayScale() }
+    }
+
+    /// The screen as the interface has to know it. None before the first layout.
+    fn screen(&self) -> Option<Screen> {
+        let (pixels_per_point, size_points) = (self.pixels_per_point(), self.bounds().size);
+        let insets = self.safeAreaInsets();
+        Some(Screen {
+            size_px: size_px([size_points.width, size_points.height], pixels_per_point)?,
+            pixels_per_point,
+            insets: Insets {
+                left_px: insets.left * pixels_per_point,
+                top_px: insets.top * pixels_per_point,
+                right_px: insets.right * pixels_per_point,
+                bottom_px: insets.bottom * pixels_per_point,
+            },
+            // How many points a hundred become in the letters that the person has chosen.
+            text_scale: UIFontMetrics::defaultMetrics().scaledValueForValue(100.0) / 100.0,
+        })
+    }
+
+    /// Matches the surface with the view's size on the current screen, if the view is in front.
+    fn fit(&self, shell: &mut Shell) -> Result<(), StageError> {
+        match self.screen() {
+            Some(screen) if self.ivars().in_foreground.get() => shell.fit(&self.layer(), screen.size_px),
+            // In the background, or not laid out yet: layoutSubviews comes back with a size.
+            _ => Ok(()),
+        }
+    }
+
+    /// Lets `act` work on the shell. After an error or a panic the app is dropped, and the next layout or return to
     /// the foreground starts a new one; until then the view keeps its last picture.
-    fn run(&self, what: &str, act: impl FnOnce(&mut Stage) -> Result<(), StageError>) {
-        let Ok(mut stage) = self.ivars().stage.try_borrow_mut() else {
-            // UIKit laid the view out while the stage was at work; the size is read again at the next layout.
+    fn run(&self, what: &str, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
+        let Ok(mut shell) = self.ivars().shell.try_borrow_mut() else {
+            // UIKit laid the view out while the shell was at work; the size is read again at the next layout.
             return;
         };
-        match guarded(|| act(&mut stage)) {
+        match guarded(|| act(&mut shell)) {
             Some(Ok(())) => return,
             Some(Err(error)) => eprintln!("app-ios: {what}: {error}"),
             None => eprintln!("app-ios: {what}: panicked, see above"),
         }
-        guarded(|| stage.clear());
+        guarded(|| shell.clear());
     }
 }

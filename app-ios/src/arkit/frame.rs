@@ -1,10 +1,11 @@
 //! An ARKit frame in plain numbers, and what becomes of it.
 
 use app_core::camera_frame::{
-    CameraImage, CodeRange, LumaCoefficients, PlanarImage, PlaneError, Planes, YcbcrEncoding,
+    Anchor, CameraFrame, CodeRange, Display, Exposure, FoundPlane, LumaCoefficients, PlanarImage, PlaneError,
+    Planes, Stamp, Tracking, YcbcrEncoding,
 };
-use app_core::scene::LightEstimate;
-use glam::{DMat3, DMat4, DVec2};
+use app_core::scene::{Intrinsics, LightEstimate};
+use glam::{DMat4, DVec3, Vec3Swizzles};
 
 use crate::convert;
 
@@ -59,46 +60,23 @@ pub struct RawFrame<'a> {
     pub transform: [[f32; 4]; 4],
     /// `ARTrackingState` and `ARTrackingStateReason`.
     pub tracking: [isize; 2],
-    /// Seconds, and stops that the picture was meant to be brightened by.
-    pub exposure: [f64; 2],
+    /// Seconds and ISO speed, where both are told.
+    pub exposure: Option<[f64; 2]>,
     /// Lumen and kelvin, where light is estimated.
     pub light: Option<[f64; 2]>,
     /// Planes found so far.
     pub surfaces: Vec<RawSurface>,
+    /// The anchor that is held, by the number it was asked for, and the columns of its `transform`.
+    pub anchor: Option<(u64, [[f32; 4]; 4])>,
 }
 
-/// A camera frame with what is known of it.
-#[derive(Debug)]
-pub struct TrackedFrame {
-    /// On the phone's own clock.
-    pub time_ns: i64,
-    /// Copied, so that ARKit has its buffer back.
-    pub image: CameraImage,
-    /// Of this very frame.
-    pub sensor_px_from_camera_rdf: DMat3,
-    /// None unless ARKit trusts it.
-    pub world_from_camera: Option<DMat4>,
-    /// What to tell while it does not.
-    pub lost: Option<&'static str>,
-    /// Time in which the picture was taken, seconds; none where ARKit does not tell.
-    pub exposure_s: Option<f64>,
-    /// As far as the phone estimates it.
-    pub light: Option<LightEstimate>,
-    /// Those whose numbers make sense.
-    pub planes: Vec<FoundPlane>,
-}
-
-/// A plane that was found, which grows and moves as more is seen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundPlane {
-    /// The same as long as ARKit keeps it.
-    pub id: u128,
-    /// As a wall, rather than a table.
-    pub is_upright: bool,
-    /// +Y is its normal.
-    pub world_from_plane: DMat4,
-    /// In x and z of the plane, metres.
-    pub outline_m: Vec<DVec2>,
+/// What the shell counts for a frame, which ARKit does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// Frames delivered before it.
+    pub n_frames: u64,
+    /// Worlds begun before its own.
+    pub world_epoch: u32,
 }
 
 /// Why a frame could not be taken.
@@ -121,55 +99,76 @@ pub enum FrameError {
     Time(f64),
 }
 
-impl TrackedFrame {
-    /// What `raw` becomes.
-    ///
-    /// # Errors
-    /// Where its picture or its camera make no sense.
-    pub fn new(raw: &RawFrame<'_>) -> Result<Self, FrameError> {
-        let range = match raw.pixel_format {
-            FULL_RANGE => CodeRange::Full,
-            VIDEO_RANGE => CodeRange::Video,
-            other => return Err(FrameError::Format(other)),
-        };
-        let [luma, chroma] = raw.planes[..] else {
-            return Err(FrameError::Count(raw.planes.len()));
-        };
-        let planes = Planes::nv12(
-            // A side that has no room is too long for the planes, too.
-            raw.size_px.map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
-            (luma.bytes, luma.row_stride),
-            (chroma.bytes, chroma.row_stride),
-            YcbcrEncoding {
-                coefficients: LumaCoefficients::Bt601,
-                range,
-            },
-        );
-        let sensor_px_from_camera_rdf = convert::sensor_px_from_camera_rdf(raw.intrinsics);
-        let [fx, fy] = [
-            sensor_px_from_camera_rdf.x_axis.x,
-            sensor_px_from_camera_rdf.y_axis.y,
-        ];
-        if !(fx > 0.0 && fy > 0.0 && sensor_px_from_camera_rdf.is_finite()) {
-            return Err(FrameError::Camera(fx, fy));
-        }
-        let is_tracking = raw.tracking[0] == NORMAL;
-        let pose = is_tracking.then(|| convert::world_from_camera(raw.transform));
-        Ok(Self {
-            time_ns: time_ns(raw.timestamp)?,
-            image: PlanarImage::new(&planes)?.into(),
-            sensor_px_from_camera_rdf,
-            world_from_camera: pose.flatten(),
-            lost: (!is_tracking).then(|| lost(raw.tracking)),
-            exposure_s: Some(raw.exposure[0]).filter(|seconds| seconds.is_finite() && *seconds > 0.0),
-            light: raw.light.map(|[lumen, kelvin]| LightEstimate {
-                ambient_intensity: Some(lumen).filter(|lumen| lumen.is_finite()),
-                color_temperature_k: Some(kelvin).filter(|kelvin| *kelvin > 0.0),
-                ..LightEstimate::default()
-            }),
-            planes: raw.surfaces.iter().filter_map(found_plane).collect(),
+/// The frame of the core that `raw` becomes, its picture copied.
+///
+/// # Errors
+/// Where its picture or its camera make no sense.
+pub fn camera_frame(raw: &RawFrame<'_>, count: Count) -> Result<CameraFrame, FrameError> {
+    let pose = (raw.tracking[0] == NORMAL).then(|| convert::world_from_camera(raw.transform));
+    let exposure = raw.exposure.map(|[duration_s, iso]| Exposure { duration_s, iso });
+    let anchor = raw.anchor.as_ref().and_then(|(id, transform)| {
+        Some(Anchor {
+            id: *id,
+            world_from_anchor: convert::world_from_camera(*transform)?,
         })
+    });
+    Ok(CameraFrame {
+        stamp: Stamp {
+            id: count.n_frames,
+            time_ns: time_ns(raw.timestamp)?,
+            world_epoch: count.world_epoch,
+        },
+        intrinsics: intrinsics(raw.intrinsics)?,
+        image: image(raw)?.into(),
+        exposure: exposure.filter(|exposure| exposure.amount().is_some()),
+        tracking: tracking(raw.tracking),
+        world_from_camera: pose.flatten(),
+        planes: raw.surfaces.iter().filter_map(found_plane).collect(),
+        anchors: anchor.into_iter().collect(),
+        light_estimate: raw.light.map(|[lumen, kelvin]| LightEstimate {
+            ambient_intensity: Some(lumen).filter(|lumen| lumen.is_finite()),
+            color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),
+            ..LightEstimate::default()
+        }),
+        // The interface has the one orientation in which the sensor's picture is upright.
+        display: Display::default(),
+    })
+}
+
+fn image(raw: &RawFrame<'_>) -> Result<PlanarImage, FrameError> {
+    let range = match raw.pixel_format {
+        FULL_RANGE => CodeRange::Full,
+        VIDEO_RANGE => CodeRange::Video,
+        other => return Err(FrameError::Format(other)),
+    };
+    let [luma, chroma] = raw.planes[..] else {
+        return Err(FrameError::Count(raw.planes.len()));
+    };
+    let planes = Planes::nv12(
+        // A side that has no room is too long for the planes, too.
+        raw.size_px.map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
+        (luma.bytes, luma.row_stride),
+        (chroma.bytes, chroma.row_stride),
+        YcbcrEncoding {
+            coefficients: LumaCoefficients::Bt601,
+            range,
+        },
+    );
+    Ok(PlanarImage::new(&planes)?)
+}
+
+fn intrinsics(columns: [[f32; 4]; 3]) -> Result<Intrinsics, FrameError> {
+    let sensor_px_from_camera_rdf = convert::sensor_px_from_camera_rdf(columns);
+    let [x, y, centre] = [0, 1, 2].map(|index| sensor_px_from_camera_rdf.col(index));
+    if !(x.x > 0.0 && y.y > 0.0 && sensor_px_from_camera_rdf.is_finite()) {
+        return Err(FrameError::Camera(x.x, y.y));
     }
+    Ok(Intrinsics {
+        fx_px: x.x,
+        fy_px: y.y,
+        cx_px: centre.x,
+        cy_px: centre.y,
+    })
 }
 
 fn time_ns(seconds: f64) -> Result<i64, FrameError> {
@@ -180,41 +179,41 @@ fn time_ns(seconds: f64) -> Result<i64, FrameError> {
     Ok((seconds * NS).round() as i64)
 }
 
+/// A level plane as the rectangle along its own axes that its boundary fills. None where it stands or has no extent.
 fn found_plane(raw: &RawSurface) -> Option<FoundPlane> {
-    let is_finite = raw
-        .boundary
-        .iter()
-        .all(|corner| corner[0].is_finite() && corner[2].is_finite());
-    let outline_m = raw
-        .boundary
-        .iter()
-        .map(|corner| DVec2::new(corner[0].into(), corner[2].into()));
-    Some(FoundPlane {
-        id: u128::from_be_bytes(raw.id),
-        is_upright: match raw.alignment {
-            0 => false,
-            1 => true,
-            _ => return None,
-        },
-        world_from_plane: convert::world_from_camera(raw.transform).filter(|_| is_finite)?,
-        outline_m: outline_m.collect(),
+    let corners = raw.boundary.iter();
+    let corners = corners.map(|corner| DVec3::new(corner[0].into(), 0.0, corner[2].into()));
+    let least = corners.clone().reduce(DVec3::min)?;
+    let most = corners.clone().reduce(DVec3::max)?;
+    let half_extent_m = 0.5 * (most - least);
+    let is_level = raw.alignment == 0;
+    let has_extent = half_extent_m.x > 0.0 && half_extent_m.z > 0.0 && corners.fold(0.0, sum).is_finite();
+    let world_from_plane = convert::world_from_camera(raw.transform)?;
+    (is_level && has_extent).then(|| FoundPlane {
+        id: (0..8).fold(0, |id, byte| id << 8 | u64::from(raw.id[byte] ^ raw.id[byte + 8])),
+        world_from_plane: world_from_plane * DMat4::from_translation(0.5 * (least + most)),
+        half_extent_m: half_extent_m.xz(),
     })
 }
 
-/// What to tell while the camera is not tracked.
-fn lost([state, reason]: [isize; 2]) -> &'static str {
+fn sum(sum: f64, corner: DVec3) -> f64 {
+    sum + corner.x + corner.z
+}
+
+fn tracking([state, reason]: [isize; 2]) -> Tracking {
     match (state, reason) {
-        (LIMITED, 1) => "Move the phone slowly over the table.",
-        (LIMITED, 2) => "Move the phone more slowly.",
-        (LIMITED, 3) => "There is too little to see. Show more of the table and what stands on it.",
-        (LIMITED, 4) => "Look where you looked before, and the phone finds its place again.",
-        _ => "The phone does not know where it is.",
+        (NORMAL, _) => Tracking::Normal,
+        (LIMITED, 2) => Tracking::TooFast,
+        (LIMITED, 3) => Tracking::TooPlain,
+        (LIMITED, 4) => Tracking::Relocalising,
+        _ => Tracking::Starting,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
+    use app_core::camera_frame::CameraImage;
+    use glam::DVec2;
 
     use super::*;
 
@@ -243,21 +242,30 @@ mod tests {
             ],
             transform: UPRIGHT,
             tracking: [2, 0],
-            exposure: [0.01, 0.0],
+            exposure: Some([0.01, 50.0]),
             light: Some([1000.0, 6500.0]),
             surfaces: vec![RawSurface {
                 id: [1; 16],
                 alignment: 0,
                 transform: UPRIGHT,
-                boundary: vec![[0.5, 0.0, -0.25, f32::NAN]],
+                boundary: vec![[0.5, 0.0, -0.25, f32::NAN], [-0.5, 0.0, 0.75, f32::NAN]],
             }],
+            anchor: Some((3, UPRIGHT)),
         }
     }
 
+    const COUNT: Count = Count {
+        n_frames: 7,
+        world_epoch: 2,
+    };
+
     #[test]
     fn a_frame_is_taken_whole() {
-        let frame = TrackedFrame::new(&raw()).expect("a frame");
-        assert_eq!(frame.time_ns, 12_500_000_000);
+        let frame = camera_frame(&raw(), COUNT).expect("a frame");
+        assert_eq!(
+            (frame.stamp.id, frame.stamp.time_ns, frame.stamp.world_epoch),
+            (7, 12_500_000_000, 2)
+        );
         let CameraImage::Planes(image) = &frame.image else {
             panic!("{:?}", frame.image);
         };
@@ -266,30 +274,55 @@ mod tests {
         assert_eq!(image.encoding().range, CodeRange::Full);
         let pose = frame.world_from_camera.expect("a pose");
         assert_eq!(pose.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
-        assert_eq!(
-            frame.sensor_px_from_camera_rdf * DVec3::Z,
-            DVec3::new(2.0, 1.0, 1.0)
-        );
-        let light = frame.light.expect("light");
+        let camera = frame.intrinsics;
+        assert_eq!([camera.fx_px, camera.fy_px], [500.0, 510.0]);
+        assert_eq!([camera.cx_px, camera.cy_px], [2.0, 1.0]);
+        let light = frame.light_estimate.expect("light");
         assert_eq!(
             (light.ambient_intensity, light.color_temperature_k),
             (Some(1000.0), Some(6500.0))
         );
-        assert_eq!((frame.lost, frame.exposure_s), (None, Some(0.01)));
-        assert_eq!(frame.planes[0].outline_m, [DVec2::new(0.5, -0.25)]);
-        assert!(!frame.planes[0].is_upright);
+        assert_eq!(frame.exposure.and_then(|exposure| exposure.amount()), Some(0.005));
+        assert_eq!((frame.anchors[0].id, frame.anchors.len()), (3, 1));
+        assert_eq!(frame.display.quarter_turns, 0);
     }
 
     #[test]
-    fn what_is_not_tracked_has_no_pose_and_a_message() {
-        for tracking in [[0, 0], [1, 0], [1, 1], [1, 2], [1, 3], [1, 4], [1, 9], [7, 0]] {
-            let frame = TrackedFrame::new(&RawFrame { tracking, ..raw() }).expect("a frame");
-            assert_eq!(frame.world_from_camera, None);
-            assert!(
-                frame.lost.is_some_and(|message| message.ends_with('.')),
-                "{tracking:?}"
-            );
+    fn a_plane_is_the_rectangle_that_its_boundary_fills() {
+        let plane = found_plane(&raw().surfaces[0]).expect("a plane");
+        assert_eq!(plane.half_extent_m, DVec2::new(0.5, 0.5));
+        // Between (0.5, -0.25) and (-0.5, 0.75), from a plane at (1, 2, 3).
+        let centre = plane.world_from_plane.transform_point3(DVec3::ZERO);
+        assert_eq!(centre, DVec3::new(1.0, 2.0, 3.25));
+    }
+
+    #[test]
+    fn what_is_not_tracked_has_no_pose_and_says_what_helps() {
+        let told = [
+            ([0, 0], Tracking::Starting),
+            ([1, 0], Tracking::Starting),
+            ([1, 1], Tracking::Starting),
+            ([1, 2], Tracking::TooFast),
+            ([1, 3], Tracking::TooPlain),
+            ([1, 4], Tracking::Relocalising),
+            ([1, 9], Tracking::Starting),
+            ([7, 0], Tracking::Starting),
+        ];
+        for (tracking, expected) in told {
+            let frame = camera_frame(&RawFrame { tracking, ..raw() }, COUNT).expect("a frame");
+            assert_eq!((frame.tracking, frame.world_from_camera), (expected, None));
         }
+    }
+
+    #[test]
+    fn exposures_and_anchors_that_make_no_sense_are_left_out() {
+        let wrong = RawFrame {
+            exposure: Some([0.01, f64::NAN]),
+            anchor: Some((3, [[0.0; 4]; 4])),
+            ..raw()
+        };
+        let frame = camera_frame(&wrong, COUNT).expect("a frame");
+        assert_eq!((frame.exposure, frame.anchors.len()), (None, 0));
     }
 
     #[test]
@@ -351,7 +384,7 @@ mod tests {
             ),
         ];
         for (message, raw) in wrong {
-            let error = TrackedFrame::new(&raw).expect_err(message).to_string();
+            let error = camera_frame(&raw, COUNT).expect_err(message).to_string();
             assert!(error.contains(message), "{error}");
         }
     }
@@ -361,7 +394,15 @@ mod tests {
         let good = &raw().surfaces[0];
         let wrong = [
             RawSurface {
-                alignment: 7,
+                alignment: 1,
+                ..good.clone()
+            },
+            RawSurface {
+                boundary: Vec::new(),
+                ..good.clone()
+            },
+            RawSurface {
+                boundary: vec![good.boundary[0]; 3],
                 ..good.clone()
             },
             RawSurface {
@@ -369,7 +410,7 @@ mod tests {
                 ..good.clone()
             },
             RawSurface {
-                boundary: vec![[f32::NAN; 4]],
+                boundary: vec![good.boundary[0], good.boundary[1], [f32::NAN; 4]],
                 ..good.clone()
             },
         ];

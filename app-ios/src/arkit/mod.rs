@@ -4,5 +4,7 @@ pub mod frame;
 
 #[cfg(target_os = "ios")]
 pub mod read;
+#[cfg(target_os = "ios")]
+pub(crate) mod session;
 #[cfg(target_arch = "aarch64")]
 pub mod shim;

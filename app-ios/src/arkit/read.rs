@@ -5,13 +5,14 @@ use std::ffi::c_void;
 use objc2::rc::Retained;
 use objc2::runtime::Sel;
 use objc2::{Message, msg_send, sel};
-use objc2_ar_kit::{ARFrame, ARPlaneAnchor, ARPlaneGeometry};
+use objc2_ar_kit::{ARAnchor, ARFrame, ARPlaneAnchor, ARPlaneGeometry};
 use objc2_core_video::{
     CVPixelBuffer, CVPixelBufferGetBaseAddressOfPlane, CVPixelBufferGetBytesPerRowOfPlane,
     CVPixelBufferGetHeight, CVPixelBufferGetHeightOfPlane, CVPixelBufferGetPixelFormatType,
     CVPixelBufferGetPlaneCount, CVPixelBufferGetWidth, CVPixelBufferLockBaseAddress, CVPixelBufferLockFlags,
     CVPixelBufferUnlockBaseAddress,
 };
+use objc2_foundation::{NSArray, NSNumber, ns_string};
 
 use super::frame::{RawFrame, RawPlane, RawSurface};
 use super::shim;
@@ -57,7 +58,13 @@ impl Drop for Locked<'_> {
 }
 
 /// Lets `take` see what `frame` holds; the pixels may be read until it returns. None where the pixels cannot be.
-pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Option<T> {
+///
+/// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier.
+pub fn with_raw<T>(
+    frame: &ARFrame,
+    held: Option<(u64, [u8; 16])>,
+    take: impl FnOnce(&RawFrame<'_>) -> T,
+) -> Option<T> {
     // SAFETY: properties of a frame that was delivered, which never change.
     let (camera, buffer, timestamp, light, anchors) = unsafe {
         (
@@ -69,6 +76,7 @@ pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Op
         )
     };
     let locked = Locked::new(&buffer)?;
+    let anchor = held.and_then(|(id, identifier)| Some((id, anchor_of(&anchors, identifier)?)));
     let surfaces = anchors
         .iter()
         .filter_map(|anchor| anchor.downcast::<ARPlaneAnchor>().ok());
@@ -78,7 +86,7 @@ pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Op
             shim::columns3(pointer(&*camera), selector(sel!(intrinsics))).0,
             shim::columns4(pointer(&*camera), selector(sel!(transform))).0,
             [camera.trackingState().0, camera.trackingStateReason().0],
-            [camera.exposureDuration(), f64::from(camera.exposureOffset())],
+            iso(frame).map(|iso| [camera.exposureDuration(), iso]),
         )
     };
     let raw = RawFrame {
@@ -93,8 +101,28 @@ pub fn with_raw<T>(frame: &ARFrame, take: impl FnOnce(&RawFrame<'_>) -> T) -> Op
         // SAFETY: properties of an estimate that never changes.
         light: light.map(|light| unsafe { [light.ambientIntensity(), light.ambientColorTemperature()] }),
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
+        anchor,
     };
     Some(take(&raw))
+}
+
+/// The ISO speed that the picture was taken at; none where its Exif data do not say.
+fn iso(frame: &ARFrame) -> Option<f64> {
+    // SAFETY: a property of a frame that was delivered, which never changes.
+    let exif = unsafe { frame.exifData() };
+    // Exif has a list of speeds, of which a camera fills the first.
+    let speeds = exif.objectForKey(ns_string!("ISOSpeedRatings"))?;
+    let speed = speeds.downcast::<NSArray>().ok()?.firstObject()?;
+    Some(speed.downcast::<NSNumber>().ok()?.doubleValue())
+}
+
+/// Where the anchor of that identifier is.
+fn anchor_of(anchors: &NSArray<ARAnchor>, identifier: [u8; 16]) -> Option<[[f32; 4]; 4]> {
+    // SAFETY: properties of an anchor, which never change; the transform is a SIMD matrix of four columns.
+    anchors.iter().find_map(|anchor| unsafe {
+        let is_it = anchor.identifier().as_bytes() == identifier;
+        is_it.then(|| shim::columns4(pointer(&*anchor), selector(sel!(transform))).0)
+    })
 }
 
 fn surface(anchor: &ARPlaneAnchor) -> RawSurface {
@@ -132,7 +160,7 @@ fn pointer<T: Message>(object: &T) -> *const c_void {
     std::ptr::from_ref(object).cast()
 }
 
-fn selector(selector: Sel) -> *const c_void {
+pub(super) fn selector(selector: Sel) -> *const c_void {
     // SAFETY: a selector is one pointer, by objc2's own layout.
     unsafe { std::mem::transmute::<Sel, *const c_void>(selector) }
 }

@@ -8,6 +8,7 @@
 //!
 //! The file depends on nothing of Apple's, so that a test runs it in an emulator with a C function as `objc_msgSend`.
 
+use core::arch::aarch64::{float32x4_t, vld1q_f32};
 use core::arch::naked_asm;
 use core::ffi::c_void;
 
@@ -55,6 +56,32 @@ pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Column
     };
     // SAFETY: as this function demands.
     unsafe { send(object, selector) }
+}
+
+/// Sends the message `selector` with a `simd_float4x4` to `object`, for a pointer.
+///
+/// # Safety
+/// `object` is one that answers `selector`, which takes a `simd_float4x4` and returns an object, retained or not.
+pub unsafe fn with4(object: *const c_void, selector: *const c_void, columns: &Columns4) -> *mut c_void {
+    // A matrix that is handed over takes v0 to v3, as four vectors do.
+    // SAFETY: the message is sent on as it came, with both pointers in x0 and x1.
+    let send = unsafe {
+        core::mem::transmute::<
+            unsafe extern "C" fn(),
+            unsafe extern "C-unwind" fn(
+                *const c_void,
+                *const c_void,
+                float32x4_t,
+                float32x4_t,
+                float32x4_t,
+                float32x4_t,
+            ) -> *mut c_void,
+        >(objc_msgSend)
+    };
+    // SAFETY: every column has four lanes to load.
+    let [a, b, c, d] = columns.0.map(|column| unsafe { vld1q_f32(column.as_ptr()) });
+    // SAFETY: as this function demands.
+    unsafe { send(object, selector, a, b, c, d) }
 }
 
 /// A message whose answer is in v0 to v3. Only called with another signature, one that returns through x8.

@@ -21,7 +21,8 @@ static float32x4_t column(int index) {
     return vld1q_f32(lanes);
 }
 
-int asks_for_three;
+/* 0 asks for four columns, 1 for three, 2 hands four over. */
+int message;
 
 matrix4 send4(void *object, void *selector) {
     expect(object == (void *)0x1234 && selector == (void *)0x5678, "arguments");
@@ -35,14 +36,24 @@ matrix3 send3(void *object, void *selector) {
     return matrix;
 }
 
+void *take4(void *object, void *selector, matrix4 matrix) {
+    expect(object == (void *)0x1234 && selector == (void *)0x5678, "arguments");
+    for (int index = 0; index < 16; index++) {
+        float number = matrix.columns[index / 4][index % 4];
+        expect(number == 10 * (index / 4) + index % 4 + 1, "a number that is handed over");
+    }
+    return (void *)0x9abc;
+}
+
 /* A jump, so that whatever the callee leaves in the registers is what the caller finds. */
 __attribute__((naked)) void objc_msgSend(void) {
-    __asm__("adrp x9, asks_for_three\n\tldr w9, [x9, :lo12:asks_for_three]\n\tcbnz w9, 1f\n\tb send4\n1:\tb send3");
+    __asm__("adrp x9, message\n\tldr w9, [x9, :lo12:message]\n\tcbz w9, send4\n\tcmp w9, 1\n\tb.eq send3\n\tb take4");
 }
 
 void ask_for_four(void *object, void *selector, float *to);
 void ask_for_four_without(void *object, void *selector, float *to);
 void ask_for_three(void *object, void *selector, float *to);
+void *hand_over_four(void *object, void *selector, const float *from);
 
 int main(void) {
     struct { float before[4]; float matrix[16]; float after[4]; } four __attribute__((aligned(16)));
@@ -56,7 +67,7 @@ int main(void) {
     }
     expect(!memcmp(four.before, four.after, sizeof four.before), "what lies around four columns");
 
-    asks_for_three = 1;
+    message = 1;
     memset(&three, 0xee, sizeof three);
     ask_for_three(object, selector, three.matrix);
     for (int index = 0; index < 12; index++) {
@@ -64,8 +75,14 @@ int main(void) {
     }
     expect(!memcmp(three.before, three.after, sizeof three.before), "what lies around three columns");
 
+    message = 2;
+    for (int index = 0; index < 16; index++) {
+        four.matrix[index] = 10 * (index / 4) + index % 4 + 1;
+    }
+    expect(hand_over_four(object, selector, four.matrix) == (void *)0x9abc, "the answer");
+
     /* Without the shim the numbers must not arrive, or the test would prove nothing. */
-    asks_for_three = 0;
+    message = 0;
     memset(&four, 0, sizeof four);
     ask_for_four_without(object, selector, four.matrix);
     expect(four.matrix[5] != 12, "the control");

@@ -47,3 +47,14 @@ unsafe extern "C" fn ask_for_four(object: *const c_void, selector: *const c_void
 unsafe extern "C" fn ask_for_three(object: *const c_void, selector: *const c_void, to: *mut shim::Columns3) {
     unsafe { *to = shim::columns3(object, selector) };
 }
+
+/// # Safety
+/// As the shim's.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn hand_over_four(
+    object: *const c_void,
+    selector: *const c_void,
+    from: *const shim::Columns4,
+) -> *mut c_void {
+    unsafe { shim::with4(object, selector, &*from) }
+}

@@ -1,0 +1,227 @@
+//! What the app is told of the phone, and what the phone is asked for by the app.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::{Instant, SystemTime};
+
+use app_core::app::{ArSession, Device, Permission, Saved, ShellCommand, ShellEvent, Thermal};
+use app_core::interface::Screen;
+use objc2::MainThreadMarker;
+use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
+use objc2_quartz_core::CALayer;
+use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
+
+use crate::arkit::session::Session;
+use crate::inbox::{Inbox, Told};
+use crate::jobs::{Jobs, save_picture, save_text};
+use crate::stage::{Fitted, Stage, StageError};
+use crate::{camera, convert};
+
+/// The app's hands.
+pub(crate) struct Shell {
+    main_thread: MainThreadMarker,
+    stage: Stage,
+    session: Session,
+    inbox: Rc<Inbox>,
+    jobs: Jobs,
+    start: Instant,
+    /// As told last.
+    permission: Option<Permission>,
+    thermal: Option<Thermal>,
+    wants_device: bool,
+    frames_per_s: u32,
+}
+
+impl Shell {
+    /// A shell without an app, which comes with the first fit.
+    pub(crate) fn new(main_thread: MainThreadMarker, inbox: Rc<Inbox>) -> Self {
+        Self {
+            main_thread,
+            stage: Stage::new(),
+            session: Session::new(main_thread, Rc::clone(&inbox)),
+            inbox,
+            jobs: Jobs::default(),
+            start: Instant::now(),
+            permission: None,
+            thermal: None,
+            wants_device: false,
+            frames_per_s: 60,
+        }
+    }
+
+    /// Lets the app draw on `layer`, and tells it.
+    pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
+        if self.stage.fit(layer, size_px)? == Fitted::Anew {
+            // Another app than the one that threads worked for, and that was told.
+            self.jobs = Jobs::default();
+            (self.permission, self.thermal) = (None, None);
+            self.inbox.tell(ShellEvent::Foreground(true));
+            if !Session::is_supported() {
+                self.inbox.tell(ShellEvent::ArSession(ArSession::Unsupported));
+            }
+        }
+        self.inbox.tell(ShellEvent::Surface(Some(size_px)));
+        Ok(())
+    }
+
+    /// The app came to the front.
+    pub(crate) fn enter_foreground(&mut self) {
+        self.inbox.tell(ShellEvent::Foreground(true));
+        self.session.enter_foreground();
+    }
+
+    /// The app leaves the front: nothing runs and nothing is drawn when this returns.
+    pub(crate) fn enter_background(&mut self) {
+        self.inbox.tell(ShellEvent::Foreground(false));
+        self.inbox.tell(ShellEvent::Surface(None));
+        self.settle();
+        self.stage.suspend();
+    }
+
+    /// One picture.
+    pub(crate) fn present(&mut self, layer: &CALayer, screen: &Screen) -> Result<(), StageError> {
+        self.look();
+        self.settle();
+        if !self.stage.has_surface() {
+            return Ok(());
+        }
+        if std::mem::take(&mut self.wants_device) {
+            self.stage.reopen(layer, screen.size_px)?;
+        }
+        let time_s = self.start.elapsed().as_secs_f64();
+        let Some(live) = self.stage.live() else {
+            return Ok(());
+        };
+        match live.present(screen, time_s) {
+            Ok(commands) => self.obey(commands),
+            Err(error) => {
+                eprintln!("app-ios: {error}");
+                self.inbox.tell(ShellEvent::Device(Device::Lost));
+            }
+        }
+        self.settle();
+        Ok(())
+    }
+
+    /// Pictures a second that the app asks for.
+    pub(crate) fn frames_per_s(&self) -> u32 {
+        self.frames_per_s
+    }
+
+    /// Drops the app with all it holds.
+    pub(crate) fn clear(&mut self) {
+        self.session.pause();
+        self.stage.clear();
+        let _ = self.inbox.take();
+    }
+
+    /// Tells what has to be looked for, where it changed.
+    fn look(&mut self) {
+        let permission = camera::permission();
+        if self.permission.replace(permission) != Some(permission) {
+            self.inbox.tell(ShellEvent::Permission(permission));
+        }
+        let thermal = convert::thermal(NSProcessInfo::processInfo().thermalState().0);
+        if self.thermal.replace(thermal) != Some(thermal) {
+            self.inbox.tell(ShellEvent::Thermal(thermal));
+        }
+        while let Some(event) = self.jobs.result() {
+            self.inbox.tell(event);
+        }
+    }
+
+    /// Hands over all that was told, until there is no more.
+    fn settle(&mut self) {
+        loop {
+            let told = self.inbox.take();
+            if told.is_empty() {
+                return;
+            }
+            for told in told {
+                let Some(live) = self.stage.live() else { return };
+                match told {
+                    Told::Event(event) => {
+                        let commands = live.event(event);
+                        self.obey(commands);
+                    }
+                    Told::Touch(touch) => live.touch(touch),
+                }
+            }
+        }
+    }
+
+    fn obey(&mut self, commands: Vec<ShellCommand>) {
+        for command in commands {
+            match command {
+                ShellCommand::AskPermission => camera::ask_permission(),
+                ShellCommand::OpenSettings => self.open_settings(),
+                ShellCommand::RunTracking {
+                    finds_planes,
+                    is_new_world,
+                } => self.session.run(finds_planes, is_new_world),
+                ShellCommand::PauseTracking => self.session.pause(),
+                ShellCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
+                ShellCommand::HoldAnchor {
+                    id,
+                    world_from_anchor,
+                } => self.session.hold(id, &world_from_anchor),
+                ShellCommand::KeepAwake(is_kept) => {
+                    UIApplication::sharedApplication(self.main_thread).setIdleTimerDisabled(is_kept);
+                }
+                ShellCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
+                ShellCommand::Align(job) => self.jobs.start(
+                    move || ShellEvent::Aligned(Some(Box::new(job.run()))),
+                    || ShellEvent::Aligned(None),
+                ),
+                ShellCommand::ReopenDevice => self.wants_device = true,
+                ShellCommand::SavePhoto => self.save_photo(),
+                ShellCommand::Share => self.save_log(),
+                // Neither can be made yet, which is told as a failure.
+                ShellCommand::Video(true) | ShellCommand::Record(true) => self.saved(Saved::Failed),
+                ShellCommand::PickToy => {
+                    let reason = "this app has one toy so far".to_owned();
+                    self.inbox.tell(ShellEvent::Toy(Err(reason)));
+                }
+                ShellCommand::Video(false) | ShellCommand::Record(false) | ShellCommand::Announce(_) => {}
+            }
+        }
+    }
+
+    fn saved(&self, saved: Saved) {
+        self.inbox.tell(ShellEvent::Saved(saved));
+    }
+
+    fn save_photo(&mut self) {
+        let Some(Ok(picture)) = self.stage.live().map(|live| live.read_picture()) else {
+            return self.saved(Saved::Failed);
+        };
+        let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        let name = format!("photo_{}", since_1970.unwrap_or_default().as_millis());
+        self.jobs.start(
+            move || ShellEvent::Saved(save_picture(&documents(), &name, &picture)),
+            || ShellEvent::Saved(Saved::Failed),
+        );
+    }
+
+    fn save_log(&mut self) {
+        let Some(text) = self.stage.live().map(|live| live.app().log().text()) else {
+            return;
+        };
+        self.saved(save_text(&documents().join("log.txt"), &text));
+    }
+
+    fn open_settings(&self) {
+        // SAFETY: a constant of UIKit.
+        let Some(url) = NSURL::URLWithString(unsafe { UIApplicationOpenSettingsURLString }) else {
+            return;
+        };
+        let application = UIApplication::sharedApplication(self.main_thread);
+        // SAFETY: without options and without a handler there is nothing that could be of a wrong type.
+        unsafe { application.openURL_options_completionHandler(&url, &NSDictionary::new(), None) };
+    }
+}
+
+/// The folder that Files shows.
+fn documents() -> PathBuf {
+    PathBuf::from(NSHomeDirectory().to_string()).join("Documents")
+}
