@@ -81,7 +81,10 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(permission), [Unknown, Barred, Barred, Granted]);
         assert_eq!([0, 1, 2, 3].map(thermal), [Nominal, Fair, Serious, Critical]);
         let [unsupported, failed] = [ArSession::Unsupported, ArSession::Failed];
-        assert_eq!([100, 102, 103, 200].map(failed_session), [unsupported, failed, failed, failed]);
+        assert_eq!(
+            [100, 102, 103, 200].map(failed_session),
+            [unsupported, failed, failed, failed]
+        );
     }
 
     /// A quarter turn to the left about the vertical, from a phone at (1, 2, 3).

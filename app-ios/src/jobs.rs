@@ -110,9 +110,14 @@ mod tests {
             rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
         };
         assert_eq!(save_picture(&folder, "photo", &picture), Saved::Done);
-        let read = image::open(folder.join("photo.png")).expect("a PNG file").to_rgba8();
+        let read = image::open(folder.join("photo.png"))
+            .expect("a PNG file")
+            .to_rgba8();
         assert_eq!(read.into_raw(), picture.rgba8);
-        assert_eq!(save_picture(&folder.join("none"), "photo", &picture), Saved::Failed);
+        assert_eq!(
+            save_picture(&folder.join("none"), "photo", &picture),
+            Saved::Failed
+        );
         assert_eq!(save_text(&folder.join("none/log.txt"), ""), Saved::Failed);
     }
 }

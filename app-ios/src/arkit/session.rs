@@ -11,8 +11,8 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARPlaneDetection, ARSession, ARSessionDelegate, ARSessionObserver, ARSessionRunOptions,
-    ARWorldTrackingConfiguration,
+    ARAnchor, ARFrame, ARPlaneDetection, ARSession, ARSessionDelegate, ARSessionObserver,
+    ARSessionRunOptions, ARWorldTrackingConfiguration,
 };
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo};
 
