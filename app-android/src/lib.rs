@@ -8,7 +8,7 @@
 //!
 //! Nothing of this has run on a phone.
 //! What is not here yet: the camera's exposure, which the app then takes to be constant; heat; the person's size of letters;
-//! video, recordings, choosing a toy, and handing files on: photos and the log are written into the app's own folder.
+//! video, choosing a toy, and handing files on: photos, recordings, the log and times are written into the app's own folder.
 //! ARCore keeps exposure and frame rate to itself, so neither is held or set.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.
@@ -19,6 +19,7 @@ pub mod arcore;
 pub mod convert;
 pub mod input;
 pub mod phone;
+pub mod record;
 pub mod save;
 pub mod shell;
 

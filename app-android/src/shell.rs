@@ -4,28 +4,33 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use app_core::app::{AlignJob, Device, Saved, ShellCommand, ShellEvent};
+use app_core::app::{AlignJob, Device, Recorded, Saved, ShellCommand, ShellEvent};
 use app_core::interface::Screen;
 use app_core::live::Live;
+use app_core::recording::{Take, Taken};
 use app_core::toy::{Toy, ToyError};
 
 use crate::arcore::feed::Feed;
 use crate::arcore::tracker::{Geometry, Run};
 use crate::phone::Phone;
-use crate::save;
+use crate::{record, save};
 
 /// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
 const LANDSCAPE: i32 = 1;
+
+/// File of the one toy that there is.
+const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
+/// Time after which free space is looked at anew.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// The toy that the app comes with: the bundled session's, this project's own.
 ///
 /// # Errors
 /// If it cannot be read.
 pub fn bundled_toy() -> Result<Arc<Toy>, ToyError> {
-    let bytes = include_bytes!("../../tests/sessions/llama/toy.glb");
-    Ok(Arc::new(Toy::from_glb("toy.glb", bytes)?))
+    Ok(Arc::new(Toy::from_glb("toy.glb", TOY)?))
 }
 
 /// An app and the phone that it runs on.
@@ -36,17 +41,21 @@ pub struct Shell<P> {
     /// What other threads tell.
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     wants_device: bool,
+    /// When free space was looked at.
+    looked: Option<Instant>,
 }
 
 impl<P: Phone> Shell<P> {
     /// A shell that has just been started.
-    pub fn new(live: Live, phone: P, feed: Feed) -> Self {
+    pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
+        live.time_by(record::clock());
         let mut shell = Self {
             live,
             phone,
             feed,
             done: channel(),
             wants_device: false,
+            looked: None,
         };
         let event = shell.feed.come_back();
         shell.tell_some(event);
@@ -91,6 +100,11 @@ impl<P: Phone> Shell<P> {
         while let Ok(event) = self.done.1.try_recv() {
             self.tell(event);
         }
+        if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
+            self.looked = Some(Instant::now());
+            let free = self.phone.folder().and_then(|folder| record::free_bytes(&folder));
+            self.tell_some(free.map(ShellEvent::FreeSpace));
+        }
         let event = self.feed.poll(&mut self.phone);
         self.tell_some(event);
     }
@@ -115,7 +129,7 @@ impl<P: Phone> Shell<P> {
         event.into_iter().for_each(|event| self.tell(event));
     }
 
-    fn obey(&mut self, commands: Vec<ShellCommand>) {
+    pub(crate) fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
             match command {
                 ShellCommand::AskPermission => self.phone.ask_for_camera(),
@@ -141,16 +155,13 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::ReopenDevice => self.wants_device = true,
                 ShellCommand::SavePhoto => self.save_photo(),
                 ShellCommand::Share => {
-                    let log = self.live.app().log().text();
-                    let saved = self.phone.folder().map_or(Saved::NotAllowed, |folder| {
-                        save::bytes(&folder, "log.txt", log.as_bytes())
-                    });
+                    let folder = self.phone.folder();
+                    let saved = folder.map_or(Saved::NotAllowed, |folder| record::share(&self.live, &folder));
                     self.tell(ShellEvent::Saved(saved));
                 }
+                ShellCommand::Record(Some(take)) => self.record(*take),
                 // Not there yet, and said so.
-                ShellCommand::Video(true) | ShellCommand::Record(true) => {
-                    self.tell(ShellEvent::Saved(Saved::Failed));
-                }
+                ShellCommand::Video(true) => self.tell(ShellEvent::Saved(Saved::Failed)),
                 ShellCommand::PickToy => {
                     let reason = "toys cannot be chosen on Android yet".to_owned();
                     self.tell(ShellEvent::Toy(Err(reason)));
@@ -160,7 +171,7 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::LockExposure(_)
                 | ShellCommand::FrameRate(_)
                 | ShellCommand::Video(false)
-                | ShellCommand::Record(false) => {}
+                | ShellCommand::Record(None) => {}
             }
         }
     }
@@ -169,6 +180,21 @@ impl<P: Phone> Shell<P> {
     fn align(&mut self, job: Box<AlignJob>) {
         self.on_thread("align", ShellEvent::Aligned(None), move || {
             ShellEvent::Aligned(Some(Box::new(job.run())))
+        });
+    }
+
+    fn record(&mut self, take: Take) {
+        let Some(folder) = self.phone.folder() else {
+            let taken = take.without_file(&std::io::ErrorKind::PermissionDenied.into());
+            let file = String::new();
+            return self.tell(ShellEvent::Recorded(Recorded { file, taken }));
+        };
+        let died = ShellEvent::Recorded(Recorded {
+            file: folder.display().to_string(),
+            taken: Taken::died(take.number()),
+        });
+        self.on_thread("record", died, move || {
+            ShellEvent::Recorded(record::write(take, TOY, &folder))
         });
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use app_core::Core;
-use app_core::app::{Permission, ShellEvent, Step, Wish};
+use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Wish};
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -95,13 +95,9 @@ fn from_the_first_button_to_a_table() {
 #[test]
 fn what_cannot_be_made_yet_is_said_to_have_failed() {
     let mut shell = shell();
-    world(|world| world.time_ns = 1);
-    shell.tell(ShellEvent::Wish(Wish::Begin));
-    shell.set_foreground(true);
-    shell.tell(ShellEvent::Wish(Wish::Record(true)));
-    assert!(!shell.live().app().is_recording());
-    shell.tick();
-    assert!(shell.live().app().notice().is_some());
+    assert!(shell.live().app().notice().is_none());
+    shell.obey(vec![ShellCommand::Video(true)]);
+    assert_eq!(shell.live().app().notice(), Some(&Notice::Saved(Saved::Failed)));
 }
 
 #[test]

@@ -59,8 +59,8 @@
 //!         ..NodePose::default()
 //!     }));
 //!     core.frame(&input)?;
-//!     // Without reading anything back, the picture is a texture to draw on with.
-//!     assert!(core.picture().is_some());
+//!     // Without reading anything back, the picture can be had as a texture to draw on with.
+//!     assert_eq!(core.picture()?.width(), 640);
 //!     Ok(())
 //! }
 //! ```

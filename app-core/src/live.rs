@@ -3,6 +3,8 @@
 //! A shell owns one [`Live`]. It hands over what the platform tells and where fingers are, asks for a picture whenever the screen
 //! wants one, and does what it is then asked for.
 
+mod profiler;
+
 use std::sync::Arc;
 
 use glam::UVec2;
@@ -11,14 +13,17 @@ use wgpu::LoadOp;
 use crate::app::{App, Device, ShellCommand, ShellEvent, Show};
 use crate::camera_frame::Display;
 use crate::core::{Core, CoreError, WarmUp};
-use crate::frame::Warning;
+use crate::frame::{Clock, Warning};
 use crate::governor::{BALANCED_FRONT, Governor, Measured};
 use crate::gpu::context::Gpu;
 use crate::gpu::texture::Texture;
 use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::preset::Preset;
+use crate::profile::{About, Profile};
 use crate::scene::Image;
 use crate::toy::Toy;
+
+use profiler::Profiler;
 
 /// An app on a device.
 pub struct Live {
@@ -35,6 +40,7 @@ pub struct Live {
     warnings: Vec<Warning>,
     /// Where frames a second are to be held.
     governor: Option<Governor>,
+    profiler: Profiler,
     /// Of the latest picture.
     time_s: f64,
 }
@@ -54,6 +60,7 @@ impl Live {
             display: Display::default(),
             warnings: Vec::new(),
             governor: None,
+            profiler: Profiler::default(),
             time_s: 0.0,
         }
     }
@@ -66,9 +73,21 @@ impl Live {
         }
     }
 
+    /// Times frames by a clock of the shell's from now on: for [`Live::times`], for what is shown of times, and for recordings.
+    pub fn time_by(&mut self, clock: Clock) {
+        self.profiler.time_by(clock, &mut self.core);
+    }
+
+    /// The times of the latest frames in which the toy moved; none without a clock.
+    #[must_use]
+    pub fn times(&self) -> Option<&Profile> {
+        self.profiler.profile()
+    }
+
     /// Goes on with another device, where the one before was lost.
-    pub fn reopen(&mut self, core: Core) {
+    pub fn reopen(&mut self, mut core: Core) {
         self.warm_up = Some(core.warm_up(self.preset));
+        self.profiler.reopen(&mut core);
         self.core = core;
         self.painter = None;
         // Another device knows none of its textures.
@@ -244,7 +263,23 @@ impl Live {
                         self.core.turn_down(governor.turned_down())?;
                     }
                 }
-                self.warnings = self.core.frame(&input)?.warnings;
+                let (preset, app) = (self.preset, &self.app);
+                let about = |core: &Core| {
+                    let about = About {
+                        session: "live".to_owned(),
+                        preset: preset.name().to_owned(),
+                        device: core.gpu().adapter_name(),
+                        picture_px: input.image.size_px(),
+                        ..About::default()
+                    };
+                    (about, profiler::args(app.thermal(), self.governor.as_ref()))
+                };
+                let frame = (&mut self.core, &*input);
+                let report = self.profiler.frame(frame, app.shows_profile(), about)?;
+                self.warnings = report.warnings;
+                if let Some(times) = self.profiler.latest() {
+                    self.app.record_profile(&times);
+                }
             }
         }
         Ok(())
@@ -252,6 +287,10 @@ impl Live {
 
     fn profile(&self) -> String {
         let mut lines = format!("{} {:?}", self.preset, self.app.thermal());
+        if let Some(words) = self.profiler.words() {
+            lines.push('\n');
+            lines.push_str(&words);
+        }
         for step in self.governor.iter().flat_map(Governor::turned_down) {
             lines.push('\n');
             lines.push_str(step.what);

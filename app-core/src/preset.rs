@@ -60,6 +60,7 @@ pub const BALANCED: ModelSettings = ModelSettings {
     n_self_shadow_points: 16,
     self_shadow_tile_px: 256,
     is_noise_removed: false,
+    is_plate_fine: false,
     is_shadow_withheld: false,
 };
 
@@ -69,6 +70,7 @@ pub const BEST: ModelSettings = ModelSettings {
     n_toy_draws: 4,
     self_shadow_tile_px: 512,
     is_noise_removed: true,
+    is_plate_fine: true,
     ..BALANCED
 };
 
@@ -124,6 +126,8 @@ pub struct ModelSettings {
     pub self_shadow_tile_px: u32,
     /// Whether the real shadow is denoised, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
+    /// Whether the plate is always kept finer than codes, not only where it was estimated or brought to another exposure.
+    pub is_plate_fine: bool,
     /// Whether the real shadow is withheld from all but the first fits, and the physical pose made like any other:
     /// see [`Inspect::withhold_shadow`](crate::internals::Inspect::withhold_shadow). No preset does so.
     pub is_shadow_withheld: bool,

@@ -181,6 +181,39 @@ impl Profile {
         }
     }
 
+    /// How many frames are in it.
+    pub(crate) fn n_frames(&self) -> usize {
+        self.frame_places().count()
+    }
+
+    /// Drops all but the latest `n_frames` frames.
+    pub(crate) fn keep_latest(&mut self, n_frames: usize) {
+        let n_dropped = self.n_frames().saturating_sub(n_frames);
+        let kept_from = self.frame_places().nth(n_dropped).unwrap_or(self.events.len());
+        let mut place = 0;
+        self.events.retain(|event| {
+            place += 1;
+            event.ph != "X" || place > kept_from
+        });
+    }
+
+    /// Whether the same was measured on the same.
+    pub(crate) fn is_about(&self, about: &About) -> bool {
+        let version = self.about.version;
+        self.about
+            == About {
+                version,
+                ..about.clone()
+            }
+    }
+
+    /// Where scopes of frames stand; all of a frame's stand behind it.
+    fn frame_places(&self) -> impl Iterator<Item = usize> {
+        let events = self.events.iter().enumerate();
+        let frames = events.filter(|(_, event)| event.ph == "X" && event.name == FRAME);
+        frames.map(|(place, _)| place)
+    }
+
     /// The scopes of a thread, with the number of the frame that each is of.
     pub fn scopes(&self, tid: u32) -> impl Iterator<Item = &Event> {
         let of_thread = move |event: &&Event| event.ph == "X" && event.tid == tid;

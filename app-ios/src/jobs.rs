@@ -1,6 +1,6 @@
 //! Work on threads of its own, whose results are fetched with the next picture.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::{fs, io, thread};
 
@@ -25,11 +25,15 @@ impl Default for Jobs {
 
 impl Jobs {
     /// Runs `job` on a thread; what it comes to, or `failed` where it panics or has no thread, is a result.
-    pub fn start(&self, job: impl FnOnce() -> ShellEvent + Send + 'static, failed: fn() -> ShellEvent) {
-        let done = self.done.clone();
+    pub fn start(
+        &self,
+        job: impl FnOnce() -> ShellEvent + Send + 'static,
+        failed: impl Fn() -> ShellEvent + Clone + Send + 'static,
+    ) {
+        let (done, otherwise) = (self.done.clone(), failed.clone());
         let run = move || {
             // Whoever waited may be gone.
-            let _ = done.send(guarded(job).unwrap_or_else(failed));
+            let _ = done.send(guarded(job).unwrap_or_else(otherwise));
         };
         if thread::Builder::new().spawn(run).is_err() {
             let _ = self.done.send(failed());
@@ -56,10 +60,10 @@ pub fn save_picture(folder: &Path, name: &str, picture: &Image) -> Saved {
     }
 }
 
-/// Writes a text.
+/// Writes a file.
 #[must_use]
-pub fn save_text(path: &PathBuf, text: &str) -> Saved {
-    match fs::write(path, text) {
+pub fn save_bytes(path: &Path, bytes: &[u8]) -> Saved {
+    match fs::write(path, bytes) {
         Ok(()) => Saved::Done,
         Err(error) => failed(path, &error),
     }
@@ -118,6 +122,6 @@ mod tests {
             save_picture(&folder.join("none"), "photo", &picture),
             Saved::Failed
         );
-        assert_eq!(save_text(&folder.join("none/log.txt"), ""), Saved::Failed);
+        assert_eq!(save_bytes(&folder.join("none/log.txt"), b""), Saved::Failed);
     }
 }

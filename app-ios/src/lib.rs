@@ -8,9 +8,8 @@
 //!
 //! What is there: the app on the view's layer, with a toy to begin with; touches, safe area and letter size; the camera's
 //! permission; world tracking with level planes, interruptions and one anchor; exposure, white balance and focus held;
-//! alignments on a thread; photos and the log as files that Files shows; heat and memory.
-//! What is not: videos, recordings, a toy of the person's own and words for those who do not see the screen. The first two
-//! are told as failed. Camera planes are copied, and 30 frames a second slow the pictures rather than the camera.
+//! alignments on a thread; photos, recordings, times and the log as files that Files shows; heat, memory and free space.
+//! What is not: videos, which are told as failed, a toy of the person's own and words for those who do not see the screen. Camera planes are copied, and 30 frames a second slow the pictures rather than the camera.
 //! Nothing of this has run on a phone.
 //!
 //! The crate is a static library with one C function, `app_ios_main`. It builds on any system, because only linking
@@ -22,6 +21,7 @@ pub mod convert;
 mod guard;
 pub mod inbox;
 pub mod jobs;
+pub mod record;
 
 #[cfg(target_os = "ios")]
 mod camera;

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::time::{Instant, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
-use app_core::app::{ArSession, Device, Permission, Saved, ShellCommand, ShellEvent, Thermal};
+use app_core::app::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal};
 use app_core::interface::Screen;
+use app_core::recording::{Take, Taken};
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
@@ -13,9 +14,12 @@ use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
 
 use crate::arkit::session::Session;
 use crate::inbox::{Inbox, Told};
-use crate::jobs::{Jobs, save_picture, save_text};
-use crate::stage::{Fitted, Stage, StageError};
-use crate::{camera, convert};
+use crate::jobs::{Jobs, save_picture};
+use crate::stage::{Fitted, Stage, StageError, TOY};
+use crate::{camera, convert, record};
+
+/// Time after which free space is looked at anew.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// The app's hands.
 pub(crate) struct Shell {
@@ -28,6 +32,8 @@ pub(crate) struct Shell {
     /// As told last.
     permission: Option<Permission>,
     thermal: Option<Thermal>,
+    /// When free space was looked at.
+    looked: Option<Instant>,
     wants_device: bool,
     frames_per_s: u32,
 }
@@ -44,6 +50,7 @@ impl Shell {
             start: Instant::now(),
             permission: None,
             thermal: None,
+            looked: None,
             wants_device: false,
             frames_per_s: 60,
         }
@@ -125,6 +132,12 @@ impl Shell {
         if self.thermal.replace(thermal) != Some(thermal) {
             self.inbox.tell(ShellEvent::Thermal(thermal));
         }
+        if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
+            self.looked = Some(Instant::now());
+            if let Some(free_bytes) = record::free_bytes(&documents()) {
+                self.inbox.tell(ShellEvent::FreeSpace(free_bytes));
+            }
+        }
         while let Some(event) = self.jobs.result() {
             self.inbox.tell(event);
         }
@@ -175,14 +188,15 @@ impl Shell {
                 ),
                 ShellCommand::ReopenDevice => self.wants_device = true,
                 ShellCommand::SavePhoto => self.save_photo(),
-                ShellCommand::Share => self.save_log(),
-                // Neither can be made yet, which is told as a failure.
-                ShellCommand::Video(true) | ShellCommand::Record(true) => self.saved(Saved::Failed),
+                ShellCommand::Share => self.share(),
+                ShellCommand::Record(Some(take)) => self.record(*take),
+                // None can be made yet, which is told as a failure.
+                ShellCommand::Video(true) => self.saved(Saved::Failed),
                 ShellCommand::PickToy => {
                     let reason = "this app has one toy so far".to_owned();
                     self.inbox.tell(ShellEvent::Toy(Err(reason)));
                 }
-                ShellCommand::Video(false) | ShellCommand::Record(false) | ShellCommand::Announce(_) => {}
+                ShellCommand::Video(false) | ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
             }
         }
     }
@@ -203,11 +217,22 @@ impl Shell {
         );
     }
 
-    fn save_log(&mut self) {
-        let Some(text) = self.stage.live().map(|live| live.app().log().text()) else {
-            return;
-        };
-        self.saved(save_text(&documents().join("log.txt"), &text));
+    fn share(&mut self) {
+        let shared = self.stage.live().map(|live| record::share(live, &documents()));
+        shared.into_iter().for_each(|saved| self.saved(saved));
+    }
+
+    fn record(&mut self, take: Take) {
+        let number = take.number();
+        self.jobs.start(
+            move || ShellEvent::Recorded(record::write(take, TOY, &documents())),
+            move || {
+                ShellEvent::Recorded(Recorded {
+                    file: String::new(),
+                    taken: Taken::died(number),
+                })
+            },
+        );
     }
 
     fn open_settings(&self) {

@@ -11,8 +11,10 @@ use objc2::Message;
 use objc2::rc::Retained;
 use objc2_quartz_core::{CALayer, CAMetalLayer};
 
+use crate::record::clock;
+
 /// The toy to begin with: that of the session in this repository.
-const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
+pub(crate) const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -70,7 +72,9 @@ impl Stage {
             None => {
                 let toy = Arc::new(Toy::from_glb("toy.glb", TOY)?);
                 let core = core_on(&self.instance, layer, size_px)?;
-                self.live = Some(Live::new(core, toy, Preset::default()));
+                let mut live = Live::new(core, toy, Preset::default());
+                live.time_by(clock());
+                self.live = Some(live);
                 fitted = Fitted::Anew;
             }
         }

@@ -4,10 +4,11 @@
 // own
 // depth, so that a moved limb carries no rim of what was behind it.
 //
-// Each colour goes with the light it was seen under, so that it can be shown under another.
+// Each colour goes with what light it was seen under, so that it can be shown under another. That and the base colour are
+// the same for all pictures of a view: of a new picture `fs_recolor` takes the colours alone.
 //
-// Reads: frame, validity, gbuffer. Writes: linear colour, alpha 1 where a colour was found;
-// radiance over base colour that the fit gives to the pixels it is from; their base colour.
+// Reads: frame, validity, gbuffer. Writes: in the toy box, linear colour, alpha 1 where a colour was found; each light's
+// cosine times its visibility at the pixels it is from; their base colour, alpha how far they face upwards.
 // CPU reference: reference/appearance.rs.
 
 @group(1) @binding(0) var frame: texture_2d<f32>;
@@ -23,50 +24,78 @@ const REACH_PX: i32 = 3;
 const OTHER_SURFACE: f32 = 1e-4;
 
 fn frame_at(texel: vec2i) -> vec3f {
-  return textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
+  return textureLoad(frame, region_texel(texel) + vec2i(globals.region_origin_px), 0).rgb;
 }
 
-fn base_at(texel: vec2i) -> vec3f {
-  return textureLoad(gbuffer_base, texel, 0).rgb;
+fn received_at(texel: vec2i) -> vec4f {
+  return textureLoad(gbuffer_received, texel, 0);
 }
 
-fn lit_at(texel: vec2i) -> vec3f {
-  return toy_radiance_over_base(textureLoad(gbuffer_normal, texel, 0).xyz, textureLoad(gbuffer_received, texel, 0));
+// Base colour, and the part of what the surface sees that lies above the horizon.
+fn base_at(texel: vec2i) -> vec4f {
+  let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
+  return vec4f(textureLoad(gbuffer_base, texel, 0).rgb, hemispheres(normal).x);
+}
+
+fn is_one_surface(texel: vec2i) -> bool {
+  return textureLoad(validity, texel, 0).g == 1.0;
+}
+
+// Weight of the pixel at an offset from one at `here`'s depth.
+fn weight_of(offset: vec2i, other: vec2i, here: f32) -> f32 {
+  if !is_one_surface(other) { return 0.0; }
+  let distance_squared = max(f32(offset.x * offset.x + offset.y * offset.y), 1.0);
+  let is_own = here == 0.0 || is_same_surface(here, textureLoad(gbuffer_depth, other, 0));
+  return select(OTHER_SURFACE, 1.0, is_own) / (distance_squared * distance_squared);
 }
 
 struct Appearance {
   @location(0) color: vec4f,
-  @location(1) lit: vec4f,
+  @location(1) received: vec4f,
   @location(2) base: vec4f,
 }
 
 @fragment
 fn fs_clean(@builtin(position) at: vec4f) -> Appearance {
   let texel = vec2i(at.xy);
-  if textureLoad(validity, texel, 0).g == 1.0 {
-    return Appearance(vec4f(frame_at(texel), 1.0), vec4f(lit_at(texel), 1.0), vec4f(base_at(texel), 1.0));
+  if is_one_surface(texel) {
+    return Appearance(vec4f(frame_at(texel), 1.0), received_at(texel), base_at(texel));
   }
-  let last = vec2i(globals.region_size_px) - 1;
   let here = textureLoad(gbuffer_depth, texel, 0);
   var color = vec4f(0.0);
-  var lit = vec3f(0.0);
-  var base = vec3f(0.0);
+  var received = vec4f(0.0);
+  var base = vec4f(0.0);
   for (var y = -REACH_PX; y <= REACH_PX; y++) {
     for (var x = -REACH_PX; x <= REACH_PX; x++) {
-      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
-      if textureLoad(validity, other, 0).g == 0.0 { continue; }
-      let distance_squared = max(f32(x * x + y * y), 1.0);
-      let is_own = here == 0.0 || is_same_surface(here, textureLoad(gbuffer_depth, other, 0));
-      let weight = select(OTHER_SURFACE, 1.0, is_own) / (distance_squared * distance_squared);
+      let other = clamped_to_box(texel + vec2i(x, y));
+      let weight = weight_of(vec2i(x, y), other, here);
+      if weight == 0.0 { continue; }
       color += weight * vec4f(frame_at(other), 1.0);
-      lit += weight * lit_at(other);
+      received += weight * received_at(other);
       base += weight * base_at(other);
     }
   }
-  if color.a > 0.0 { return Appearance(color / color.a, vec4f(lit / color.a, 1.0), vec4f(base / color.a, 1.0)); }
+  if color.a > 0.0 { return Appearance(color / color.a, received / color.a, base / color.a); }
   // A part too thin to have such a pixel: its own is the best there is.
-  if here > 0.0 {
-    return Appearance(vec4f(frame_at(texel), 1.0), vec4f(lit_at(texel), 1.0), vec4f(base_at(texel), 1.0));
-  }
+  if here > 0.0 { return Appearance(vec4f(frame_at(texel), 1.0), received_at(texel), base_at(texel)); }
   return Appearance(vec4f(0.0), vec4f(0.0), vec4f(0.0));
+}
+
+// As above, the colours alone.
+@fragment
+fn fs_recolor(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2i(at.xy);
+  if is_one_surface(texel) { return vec4f(frame_at(texel), 1.0); }
+  let here = textureLoad(gbuffer_depth, texel, 0);
+  var color = vec4f(0.0);
+  for (var y = -REACH_PX; y <= REACH_PX; y++) {
+    for (var x = -REACH_PX; x <= REACH_PX; x++) {
+      let other = clamped_to_box(texel + vec2i(x, y));
+      let weight = weight_of(vec2i(x, y), other, here);
+      if weight > 0.0 { color += weight * vec4f(frame_at(other), 1.0); }
+    }
+  }
+  if color.a > 0.0 { return color / color.a; }
+  if here > 0.0 { return vec4f(frame_at(texel), 1.0); }
+  return vec4f(0.0);
 }

@@ -80,7 +80,7 @@ struct Observation {
 fn observe(texel: vec2u) -> Observation {
   var seen: Observation;
   let at = vec2f(texel) + 0.5;
-  let evident = textureLoad(validity, texel, 0).r;
+  let evident = marks_at(vec2i(texel)).r;
   seen.point = receiver_point(at);
   if evident == 0.0 || !is_hit(seen.point) { return seen; }
   let plate_texel = textureLoad(plate, texel, 0);
@@ -138,12 +138,13 @@ fn intensity_equation(seen: Observation, channel: u32) -> Equation {
 
 fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   var eq: Equation;
-  let base = textureLoad(gbuffer_base, texel, 0).rgb;
+  if marks_at(vec2i(texel)).g == 0.0 { return eq; }
+  let in_box = box_texel(vec2i(texel));
+  let base = textureLoad(gbuffer_base, in_box, 0).rgb;
   let f = frame_at(texel);
-  if textureLoad(validity, texel, 0).g == 0.0 { return eq; }
-  let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
+  let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
   eq.value = f[channel] / fit.gain[channel];
-  let received = textureLoad(gbuffer_received, texel, 0);
+  let received = textureLoad(gbuffer_received, in_box, 0);
   let part = hemispheres(normal);
   eq.columns[0] = base[channel] * part.x;
   eq.columns[1] = base[channel] * part.y;

@@ -18,7 +18,7 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return vec4f(0.0); }
   let texel = vec2u(at);
   let here = receiver_point(vec2f(texel) + 0.5);
-  let seen = textureLoad(validity, texel, 0).b;
+  let seen = marks_at(vec2i(texel)).b;
   if seen == 0.0 || receiver_of(here) != receiver_of(point) { return vec4f(0.0); }
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;

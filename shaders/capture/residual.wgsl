@@ -26,7 +26,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   let at = region_px_of(point);
   if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return sums; }
   let texel = vec2u(at);
-  let seen = textureLoad(validity, texel, 0).r;
+  let seen = marks_at(vec2i(texel)).r;
   if seen == 0.0 || receiver_of(receiver_point(vec2f(texel) + 0.5)) != receiver_of(point) { return sums; }
   let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let b = textureLoad(plate, texel, 0);

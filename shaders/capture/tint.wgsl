@@ -31,15 +31,17 @@ fn seen_in_anchor(at: vec2f, depth: f32) -> vec3f {
 
 @compute @workgroup_size(8, 8)
 fn cs_add(@builtin(global_invocation_id) id: vec3u) {
-  let texel = id.xy * stride_px;
-  if any(vec2f(texel) >= globals.region_size_px) { return; }
-  if textureLoad(validity, texel, 0).g < 1.0 { return; }
-  let surface = textureLoad(gbuffer_normal, texel, 0);
-  let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, texel, 0));
-  let expected = fit.gain.rgb * textureLoad(gbuffer_base, texel, 0).rgb * lit;
+  // The same texels of the region wherever the box begins.
+  let start = (vec2u(globals.toy_box_origin_px) + stride_px - 1u) / stride_px;
+  let texel = (start + id.xy) * stride_px;
+  let in_box = box_texel(vec2i(texel));
+  if !is_in_toy_box(in_box) || marks_at(vec2i(texel)).g < 1.0 { return; }
+  let surface = textureLoad(gbuffer_normal, in_box, 0);
+  let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
+  let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
   let shown = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   if largest(shown) > BRIGHTEST_USABLE { return; }
-  let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, texel, 0)));
+  let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
   let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
   for (var channel = 0u; channel < 3u; channel++) {

@@ -35,6 +35,9 @@ struct Globals {
   region_size_px: vec2f,
   // Top left corner of the region in the camera image.
   region_origin_px: vec2f,
+  // The part of the region that targets of the toy hold: its corner, counted from the region's, and its size.
+  toy_box_origin_px: vec2f,
+  toy_box_size_px: vec2f,
   n_receivers: u32,
   // Bit k is 1 where receiver k is seen from behind.
   seen_from_behind: u32,
@@ -44,6 +47,25 @@ struct Globals {
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;
+
+// The texel of the region at a texel of the toy box.
+fn region_texel(in_box: vec2i) -> vec2i {
+  return in_box + vec2i(globals.toy_box_origin_px);
+}
+
+// The texel of the toy box at a texel of the region; `is_in_toy_box` tells whether there is one.
+fn box_texel(in_region: vec2i) -> vec2i {
+  return in_region - vec2i(globals.toy_box_origin_px);
+}
+
+fn is_in_toy_box(in_box: vec2i) -> bool {
+  return all(in_box >= vec2i(0)) && all(in_box < vec2i(globals.toy_box_size_px));
+}
+
+// The texel of the box nearest to one that may lie beyond it.
+fn clamped_to_box(in_box: vec2i) -> vec2i {
+  return clamp(in_box, vec2i(0), vec2i(globals.toy_box_size_px) - 1);
+}
 
 // A point of a receiver: (x, z) in its plane, and its index, MAX_RECEIVERS where the pixel sees none.
 // A vector, since drivers of older Adreno keep structs in fragment shaders at 16 bits. Source: KhronosGroup/WebGL issue

@@ -66,15 +66,15 @@ fn inside_border(region_px: vec2f) -> f32 {
   return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
 }
 
-// Whether the toy's surface beside this pixel is no longer in its place.
+// Whether the toy's surface beside this texel of the toy box is no longer in its place. None is near the border of the box,
+// unless that is the region's.
 fn has_moved_beside(texel: vec2i) -> bool {
-  let last = vec2i(globals.region_size_px) - 1;
   var most = 0.0;
   for (var k = 0u; k < 16u; k++) {
     let turn = f32(k) * 0.78539816;
     let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
-    let tap = clamp(texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn)))), vec2i(0), last);
-    most = max(most, textureLoad(moved_mask, tap, 0).r);
+    let tap = texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
+    most = max(most, textureLoad(moved_mask, clamped_to_box(tap), 0).r);
   }
   return most > 0.0;
 }
@@ -110,7 +110,7 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
   let lit = fit.gain.rgb * b.rgb;
-  let evident = textureLoad(validity, texel, 0);
+  let evident = marks_at(vec2i(texel));
   // No plate and no estimate: the frame stays.
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
@@ -132,7 +132,7 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let is_outlier = smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
-  let has_moved = evident.b == 0.0 && has_moved_beside(vec2i(texel));
+  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(vec2i(texel)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
@@ -149,26 +149,25 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   return max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
 }
 
-fn drawn_toy(texel: vec2u) -> vec4f {
+fn drawn_toy(texel: vec2i) -> vec4f {
   let first = textureLoad(toy_0, texel, 0);
   if drawing.n_toy_draws == 1u { return first; }
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
 // Part of a pixel that the toy covers.
-fn coverage(texel: vec2u) -> f32 {
+fn coverage(texel: vec2i) -> f32 {
   return round(textureLoad(covered, texel, 0).r / COVERED_POSITION) / f32(N_POSITIONS);
 }
 
 // The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
-fn toy_color(texel: vec2u) -> vec4f {
+fn toy_color(texel: vec2i) -> vec4f {
   let own = drawn_toy(texel);
   if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
-  let last = vec2i(globals.region_size_px) - 1;
   var sum = vec4f(0.0);
   for (var y = -1; y <= 1; y++) {
     for (var x = -1; x <= 1; x++) {
-      sum += drawn_toy(vec2u(clamp(vec2i(texel) + vec2i(x, y), vec2i(0), last)));
+      sum += drawn_toy(clamped_to_box(texel + vec2i(x, y)));
     }
   }
   if sum.a == 0.0 { return vec4f(0.0); }
@@ -176,19 +175,20 @@ fn toy_color(texel: vec2u) -> vec4f {
 }
 
 // The toy over what is behind it: premultiplied colour, and its coverage.
-fn toy_layer(texel: vec2u) -> vec4f {
+fn toy_layer(texel: vec2i) -> vec4f {
+  if !is_in_toy_box(texel) { return vec4f(0.0); }
   let part = coverage(texel);
   if part == 0.0 { return vec4f(0.0); }
   return part * toy_color(texel);
 }
 
-// 1 where everything in and around a pixel is as the camera saw it.
+// 1 where everything in and around a texel of the toy box is as the camera saw it.
 fn stillness(texel: vec2i) -> f32 {
-  let last = vec2i(globals.region_size_px) - 1;
+  if !is_in_toy_box(texel) { return 1.0; }
   var most = 0.0;
   for (var y = -1; y <= 1; y++) {
     for (var x = -1; x <= 1; x++) {
-      let other = clamp(texel + vec2i(x, y), vec2i(0), last);
+      let other = clamped_to_box(texel + vec2i(x, y));
       most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(moved_mask, other, 0).r));
     }
   }
@@ -199,15 +199,16 @@ fn stillness(texel: vec2i) -> f32 {
 fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2u(position.xy);
   let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
-  let toy = toy_layer(texel);
+  let in_box = box_texel(vec2i(texel));
+  let toy = toy_layer(in_box);
   if toy.a == 1.0 {
-    return vec4f(mix(toy.rgb, frame_color, stillness(vec2i(texel))), 1.0);
+    return vec4f(mix(toy.rgb, frame_color, stillness(in_box)), 1.0);
   }
   var change = vec4f(0.0);
   let laid = (1.0 - toy.a) * receiver(position, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
   if change.a == 0.0 { return vec4f(laid, 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
-  let still = stillness(vec2i(texel));
+  let still = stillness(in_box);
   return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
 }

@@ -33,6 +33,6 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
 @fragment
 fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
   // w is the inverse depth at the position.
-  if is_behind_receiver(at.xy + position_px(index), at.w) { discard; }
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px + position_px(index), at.w) { discard; }
   return vec4f(COVERED_POSITION);
 }

@@ -21,6 +21,6 @@ fn fs_moved(
   @location(0) shown_clip: vec4f,
   @location(1) physical_clip: vec4f,
 ) -> @location(0) vec4f {
-  if is_behind_receiver(at.xy, at.w) { discard; }
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px, at.w) { discard; }
   return vec4f(moved(region_px(shown_clip), region_px(physical_clip)));
 }

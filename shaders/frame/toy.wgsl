@@ -13,7 +13,7 @@
 @group(1) @binding(1) var appearance: texture_2d<f32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
 @group(1) @binding(3) var appearance_base: texture_2d<f32>;
-@group(1) @binding(4) var appearance_lit: texture_2d<f32>;
+@group(1) @binding(4) var appearance_received: texture_2d<f32>;
 @group(1) @binding(5) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(6) var<storage, read> tints: array<vec4f>;
 
@@ -69,6 +69,12 @@ fn vs_toy(in: Vertex) -> Surface {
   );
 }
 
+// The light that the camera's colour at `texel` was seen under, as radiance over base colour.
+fn seen_under(texel: vec2u) -> vec3f {
+  let up = textureLoad(appearance_base, texel, 0).a;
+  return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
+}
+
 // Whether the camera's colour at `texel` is of another material of the model.
 fn is_other_material(texel: vec2u, base: vec3f) -> bool {
   let other = textureLoad(appearance_base, texel, 0).rgb;
@@ -91,12 +97,11 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
   let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
-  let last = globals.region_size_px - 1.0;
   var sum = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
     let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let tap = low + corner;
-    if !(all(tap >= vec2f(0.0)) && all(tap <= last)) { continue; }
+    let tap = low + corner - globals.toy_box_origin_px;
+    if !(all(tap >= vec2f(0.0)) && all(tap < globals.toy_box_size_px)) { continue; }
     let texel = vec2u(tap);
     let surface = textureLoad(gbuffer_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
@@ -104,7 +109,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
-    sum += weight * vec4f(relit(color.rgb, lit, textureLoad(appearance_lit, texel, 0).rgb), 1.0);
+    sum += weight * vec4f(relit(color.rgb, lit, seen_under(texel)), 1.0);
   }
   if sum.a == 0.0 { return sum; }
   return vec4f(sum.rgb / sum.a, 1.0);
@@ -130,7 +135,7 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
 // middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
 // either, and are done.
 fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
-  if moved == 1.0 || light_change(lit, textureLoad(appearance_lit, texel, 0).rgb) == 0.0 { return moved; }
+  if moved == 1.0 || light_change(lit, seen_under(texel)) == 0.0 { return moved; }
   let received = light_received(true, physical_normal, physical_in_anchor);
   return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
 }
@@ -169,7 +174,7 @@ fn fs_toy(
   let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  if is_behind_receiver(at.xy - offset_px, at.w) { discard; }
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { discard; }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
   let is_other = difference(vec2u(at.xy), is_moved, lit, physical_normal, physical_in_anchor);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(is_other));

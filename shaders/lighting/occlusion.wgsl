@@ -7,7 +7,8 @@
 // and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
 // that show another by depth.
-// Of a closed mesh only the side that faces the light is drawn: a ray that enters it leaves it again.
+// Each triangle is drawn once a point, from whichever side; of a closed mesh only those that face the light: a ray that
+// enters it leaves it again.
 //
 // Reads: posed positions in anchor space. Writes: HIDDEN_POINT for each light point hidden.
 // CPU reference: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).

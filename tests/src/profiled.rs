@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
+use app_core::camera_frame::Display;
 use app_core::core::{Core, CoreError};
-use app_core::frame::{Clock, FrameInput};
+use app_core::frame::{Clock, FrameInput, StageTime};
+use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::profile::{About, Args, DEVICE, FRAME, Frame, PROCESSOR, Profile};
 use app_core::session::{Session, SessionError};
@@ -84,12 +86,22 @@ pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result
         picture_px: [scene.width_px, scene.height_px],
         ..About::default()
     });
+    let screen = core.hidden_screen([scene.width_px, scene.height_px]);
     let mut before_ms = None;
     for number in 0..session.n_frames() {
         let input = FrameInput::from(&session.frame(number)?);
         let begin_ms = now_ms();
         let report = core.frame(&input)?;
-        let cpu_ms = now_ms() - begin_ms;
+        let drawn_from_ms = now_ms();
+        if let Some(screen) = &screen {
+            core.draw_on(screen, Display::default())?;
+        }
+        let end_ms = now_ms();
+        let on_screen = StageTime {
+            stage: "screen",
+            begin_ms: drawn_from_ms,
+            cpu_ms: end_ms - drawn_from_ms,
+        };
         let pass_times = core.read_pass_times()?;
         let args = Args {
             number: Some(number as u64),
@@ -100,10 +112,10 @@ pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result
         before_ms = Some(begin_ms);
         let frame = Frame {
             begin_ms,
-            cpu_ms,
+            cpu_ms: end_ms - begin_ms,
+            further_stages: &[on_screen],
             pass_times: &pass_times,
             args,
-            ..Frame::default()
         };
         profile.add(&report, frame);
     }

@@ -233,8 +233,7 @@ fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
             if change < Change::Scene {
                 assert_eq!(given.created, BTreeMap::new(), "{what}");
                 if let Some(plan) = traced.core.plan() {
-                    let mut planned = planned_by_model(plan, change);
-                    planned.push((frame::Path::Frame, "present"));
+                    let planned = planned_by_model(plan, change);
                     assert_eq!(order(&report), first_runs(planned), "{what}");
                 }
             }

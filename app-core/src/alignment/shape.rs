@@ -29,9 +29,7 @@ impl Shape {
         let mut posed = PosedMesh::default();
         toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
         let shadow = toy.shadow_indices();
-        let facing = &shadow.ranges.facing;
-        let corners = &shadow.indices[facing.start as usize..facing.end as usize];
-        let mut used: Vec<u32> = corners.to_vec();
+        let mut used = shadow.indices.clone();
         used.sort_unstable();
         used.dedup();
         let mut places = vec![0; posed.positions.len()];
@@ -43,11 +41,11 @@ impl Shape {
             .map(|vertex| posed.positions[*vertex as usize].as_dvec3())
             .collect();
         let bounds = Bounds::around(points.iter().copied());
-        let triangles = corners.as_chunks().0.iter();
         Ok(Self {
             faces: Faces::new(
-                triangles
-                    .map(|corners: &[u32; 3]| corners.map(|vertex| places[vertex as usize]))
+                shadow
+                    .facing_anywhere()
+                    .map(|corners| corners.map(|vertex| places[vertex as usize]))
                     .collect(),
             ),
             centre: bounds.centre(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::pose_filter::{PoseFilter, PoseNoise};
+use super::recorder::Recorder;
 use crate::alignment::{AlignError, Aligner, Alignment};
 use crate::camera_frame::Anchor;
 use crate::frame::{FrameInput, NoLight};
@@ -194,6 +195,14 @@ impl Place {
         }
         self.aligner = Some(done.aligner);
         true
+    }
+
+    /// Tells a recording where the toy was found, and the lights.
+    pub(super) fn tell(&self, recorder: &Recorder) {
+        recorder.aligned(
+            &self.world_from_object,
+            self.lights.as_deref().unwrap_or_default(),
+        );
     }
 
     /// The thread of an alignment did not come to an end: begins with a new one.

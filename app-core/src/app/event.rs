@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::aligning::{AlignJob, AlignedJob};
 use super::step::Step;
 use crate::camera_frame::CameraFrame;
+use crate::recording::{Take, Taken};
 use crate::toy::{ClipId, Toy};
 
 pub use crate::governor::Heat as Thermal;
@@ -64,6 +65,15 @@ pub enum Saved {
     NotAllowed,
     /// It failed otherwise.
     Failed,
+}
+
+/// A recording that has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Where a person finds it.
+    pub file: String,
+    /// What became of it.
+    pub taken: Taken,
 }
 
 /// What a person wishes, by a touch or a button.
@@ -137,8 +147,12 @@ pub enum ShellEvent {
     Aligned(Option<Box<AlignedJob>>),
     /// A toy was read, or why it was not.
     Toy(Result<Arc<Toy>, String>),
-    /// A photo, video or recording was saved, or not.
+    /// A photo, a video or what is to be shared was saved, or not.
     Saved(Saved),
+    /// [`ShellCommand::Record`]: it has ended, by itself or since it was asked to.
+    Recorded(Recorded),
+    /// What is free where recordings go, in bytes; once a second.
+    FreeSpace(u64),
     /// What a person wishes.
     Wish(Wish),
 }
@@ -180,8 +194,9 @@ pub enum ShellCommand {
     SavePhoto,
     /// Begin a video of the finished pictures, or end and save it.
     Video(bool),
-    /// Begin to record the session, or end and save it.
-    Record(bool),
+    /// Write this recording on another thread, and tell; none where the one before was ended: what waits of it is still
+    /// written.
+    Record(Option<Box<Take>>),
     /// Let a person choose a toy's file, and tell.
     PickToy,
     /// Hand log, recording and profile to whoever the person chooses.

@@ -54,6 +54,7 @@ impl App {
             && self.platform.thermal < Thermal::Critical
             && self.place.as_ref().is_some_and(Place::is_known);
         self.fade.step(elapsed_s, is_known);
+        self.record(&frame);
     }
 
     /// Whether poses or pixels of before mean nothing in a frame.
@@ -170,7 +171,10 @@ impl App {
         };
         if place.take(*done) {
             let verdict = place.verdict.clone();
-            self.log.line(self.time_s, &verdict);
+            if let (Some(recorder), Some(Verdict::Found { .. })) = (&self.recorder, &verdict) {
+                place.tell(recorder);
+            }
+            self.note(&verdict);
             self.judge(verdict);
         }
     }

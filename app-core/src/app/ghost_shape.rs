@@ -22,8 +22,7 @@ impl GhostShape {
             return Self::default();
         }
         let shadow = toy.shadow_indices();
-        let all = shadow.ranges.all.start as usize..shadow.ranges.all.end as usize;
-        let triangles = shadow.indices[all].as_chunks().0.to_vec();
+        let triangles = shadow.indices.as_chunks().0.to_vec();
         Self {
             points: posed.points().collect(),
             faces: Faces::new(triangles),

@@ -15,6 +15,8 @@ mod plate_taker;
 mod platform;
 mod playback;
 mod pose_filter;
+mod recorder;
+mod recordings;
 mod show;
 mod step;
 mod wishes;
@@ -29,9 +31,10 @@ use aligning::Place;
 use ghost::Ghost;
 use ghost_shape::GhostShape;
 use platform::{Captures, Commanded, Platform};
+use recorder::Recorder;
 
 pub use aligning::{AlignJob, AlignedJob, Verdict};
-pub use event::{ArSession, Device, Permission, Saved, ShellCommand, ShellEvent, Thermal, Wish};
+pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
 pub use log::Log;
 pub use notice::Notice;
 pub use plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
@@ -50,6 +53,8 @@ pub struct App {
     platform: Platform,
     commanded: Commanded,
     captures: Captures,
+    recorder: Option<Recorder>,
+    n_recordings: u64,
     /// The person began before the camera was allowed.
     wants_to_begin: bool,
     /// The tracker is to begin another world.
@@ -89,6 +94,8 @@ impl App {
             platform: Platform::default(),
             commanded: Commanded::default(),
             captures: Captures::default(),
+            recorder: None,
+            n_recordings: 0,
             wants_to_begin: false,
             wants_new_world: false,
             wants_anchor: false,
@@ -131,12 +138,15 @@ impl App {
             ShellEvent::Aligned(done) => self.aligned(done),
             ShellEvent::Toy(read) => self.take_toy(read),
             ShellEvent::Saved(saved) => self.saved(saved),
+            ShellEvent::Recorded(recorded) => self.recorded(recorded),
+            ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
             ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
         }
         let wanted = Commanded::wanted(self.step, &self.platform, self.captures);
         self.captures = wanted.captures;
+        let take = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);
-        commands.extend(self.commanded.follow(wanted, is_new_world));
+        commands.extend(self.commanded.follow(wanted, is_new_world, take));
         if self.step != step {
             commands.push(ShellCommand::Announce(self.step));
         }
@@ -224,7 +234,7 @@ impl App {
     /// Goes where a cause leads, and makes ready for it.
     fn go(&mut self, cause: Cause) {
         let next = self.step.after(cause);
-        self.log.line(self.time_s, &(cause, next));
+        self.note(&(cause, next));
         if next == self.step && cause != Cause::StartOver && cause != Cause::WorldLost {
             return;
         }

@@ -1,6 +1,6 @@
 //! What a person should hear of, for some seconds.
 
-use super::event::Saved;
+use super::event::{Recorded, Saved};
 
 /// How long it stands, in seconds.
 const SHOWN_S: f64 = 6.0;
@@ -21,9 +21,17 @@ pub enum Notice {
     WorldLost,
     /// Graphics had to be set up again.
     DeviceRestarted,
-    /// A photo, a video or a recording.
+    /// A photo, a video or what is to be shared.
     Saved(Saved),
-    /// Memory is short: the recording was ended.
+    /// A recording has ended.
+    Recorded(Recorded),
+    /// A recording has ended without a frame.
+    NothingRecorded,
+    /// Frames come faster than they are written: the recording lacks some.
+    RecordingDrops,
+    /// A recording cannot begin.
+    NoRoomToRecord,
+    /// Memory is short: what was being kept was ended.
     MemoryLow,
 }
 

@@ -3,6 +3,7 @@
 use super::event::{ArSession, Device, Permission, ShellCommand, Thermal};
 use super::step::Step;
 use crate::camera_frame::Tracking;
+use crate::recording::Take;
 
 /// What the platform grants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,6 +16,8 @@ pub(super) struct Platform {
     pub(super) thermal: Thermal,
     /// Of the latest frame.
     pub(super) tracking: Tracking,
+    /// Where recordings go, as far as it was told.
+    pub(super) free_bytes: Option<u64>,
 }
 
 /// Why the app cannot go on for now. Each has its words, and its way back.
@@ -115,7 +118,8 @@ impl Commanded {
             },
             captures: Captures {
                 video: captures.video && tracking && step == Step::Play,
-                recording: captures.recording && tracking,
+                // Of one place, with one toy that stands there.
+                recording: captures.recording && tracking && step == Step::Play,
             },
         }
     }
@@ -125,15 +129,20 @@ impl Commanded {
         self.tracking
     }
 
-    /// The commands that lead from what was asked for to what is `wanted`.
-    pub(super) fn follow(&mut self, wanted: Self, is_new_world: bool) -> Vec<ShellCommand> {
+    /// The commands that lead from what was asked for to what is `wanted`; `take` is the recording that begins.
+    pub(super) fn follow(
+        &mut self,
+        wanted: Self,
+        is_new_world: bool,
+        take: Option<Box<Take>>,
+    ) -> Vec<ShellCommand> {
         let mut commands = Vec::new();
         // What was kept is saved before the camera goes.
         if wanted.captures.video != self.captures.video {
             commands.push(ShellCommand::Video(wanted.captures.video));
         }
         if wanted.captures.recording != self.captures.recording {
-            commands.push(ShellCommand::Record(wanted.captures.recording));
+            commands.push(ShellCommand::Record(take));
         }
         if wanted.frames_per_s != self.frames_per_s {
             commands.push(ShellCommand::FrameRate(wanted.frames_per_s));

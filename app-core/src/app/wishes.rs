@@ -50,7 +50,7 @@ impl App {
                 }
             }
             Wish::Video(is_on) => self.captures.video = is_on,
-            Wish::Record(is_on) => self.captures.recording = is_on,
+            Wish::Record(is_on) => self.wish_recording(is_on),
             Wish::ShowProfile(is_on) => self.shows_profile = is_on,
             Wish::PickToy => commands.push(ShellCommand::PickToy),
             Wish::Share => commands.push(ShellCommand::Share),
@@ -150,8 +150,8 @@ impl App {
 
     pub(super) fn saved(&mut self, saved: Saved) {
         if saved != Saved::Done {
-            // A recording that cannot be written goes on in vain.
-            self.captures = super::Captures::default();
+            // A video that cannot be written goes on in vain.
+            self.captures.video = false;
         }
         self.tell(Notice::Saved(saved));
     }
@@ -171,7 +171,7 @@ impl App {
     }
 
     pub(super) fn tell(&mut self, notice: Notice) {
-        self.log.line(self.time_s, &notice);
+        self.note(&notice);
         self.notices.tell(self.time_s, notice);
     }
 }

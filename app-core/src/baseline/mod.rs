@@ -13,11 +13,12 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::texture::Texture;
+use crate::passes::finished::Picture;
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
-use crate::passes::plate::{self, PLATE_FORMAT};
+use crate::passes::plate::{self, FINE_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::Change;
 use crate::readback::FloatMap;
@@ -75,9 +76,9 @@ impl Baseline {
         self.plan = plan;
     }
 
-    /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &TextureView {
-        &self.targets.retarget.codes
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        self.targets.retarget.picture()
     }
 
     /// Encodes the frame path, and before it the capture passes that `change` needs.
@@ -167,7 +168,7 @@ impl Baseline {
             views: pictures.plate_views,
             plates: pictures.plates,
         };
-        self.plate_pass.encode(recorder, &inputs, &self.plate.view);
+        self.plate_pass.encode(recorder, &inputs, &self.plate);
     }
 
     fn warp_inputs<'a>(&'a self, toy: &'a ToyMesh, pose: Pose, light: u32) -> warp::Inputs<'a> {
@@ -216,5 +217,5 @@ impl Baseline {
 }
 
 fn plate_target(gpu: &Gpu, plan: &BaselinePlan) -> Texture {
-    Texture::target(gpu, "plate", plan.region.size_px, PLATE_FORMAT)
+    Texture::target(gpu, "plate", plan.region.size_px, FINE_FORMAT)
 }

@@ -10,6 +10,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
+use crate::passes::finished::Picture;
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 use crate::passes::present::REGION_FORMAT;
@@ -53,7 +54,7 @@ pub(crate) struct Targets {
     depth: Texture,
     pub(crate) picture: Texture,
     /// View of its sRGB codes, not decoded.
-    pub(crate) codes: TextureView,
+    codes: TextureView,
 }
 
 impl Targets {
@@ -66,6 +67,14 @@ impl Targets {
             depth: samples("retarget depth", TextureFormat::Depth32Float),
             codes: picture.codes(gpu),
             picture,
+        }
+    }
+
+    /// Both views of the picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        Picture {
+            light: &self.picture.view,
+            codes: &self.codes,
         }
     }
 }

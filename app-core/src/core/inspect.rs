@@ -5,10 +5,12 @@ use bytemuck::Zeroable;
 use super::{Core, CoreError};
 use crate::gpu::device::Kind;
 use crate::gpu::meter::Memory;
+use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::state::grids::Grid;
 use crate::model::state::solution::Fit;
 use crate::model::state::tints::TintMap;
+use crate::passes::present::OUTPUT_FORMAT;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use crate::stage::Stage;
@@ -20,6 +22,9 @@ pub trait Inspect {
 
     /// Bytes of textures and buffers that the device was asked for so far, by their descriptors.
     fn memory(&self) -> Memory;
+
+    /// A screen that nobody sees, to be drawn on by [`Core::draw_on`]; none without a device.
+    fn hidden_screen(&self, size_px: [u32; 2]) -> Option<wgpu::Texture>;
 
     /// The model's plan of the latest retargeted frame, once there was one.
     fn plan(&self) -> Option<&Plan>;
@@ -74,6 +79,11 @@ impl Inspect for Core {
 
     fn memory(&self) -> Memory {
         self.gpu.memory()
+    }
+
+    fn hidden_screen(&self, size_px: [u32; 2]) -> Option<wgpu::Texture> {
+        let screen = Texture::target(&self.gpu, "screen", size_px.into(), OUTPUT_FORMAT);
+        screen.raw().cloned()
     }
 
     fn plan(&self) -> Option<&Plan> {

@@ -13,13 +13,14 @@ use crate::camera_frame::{CameraImage, Display};
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
 use crate::governor::Step;
-use crate::gpu::context::{AdapterChoice, Gpu};
+use crate::gpu::context::{AdapterChoice, Gpu, GpuError};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::stages::{Clock, Stages};
 use crate::gpu::timer::Timer;
 use crate::gpu::work::Work;
 use crate::model::Model;
+use crate::passes::finished::Finished;
 use crate::passes::screen;
 use crate::preset::Preset;
 use crate::scene::{Image, Scene};
@@ -27,7 +28,7 @@ use crate::stage::Stage;
 use crate::stage::method::Method;
 
 use preview::Preview;
-use window::{Finished, Window};
+use window::Window;
 
 pub use error::CoreError;
 pub use warm_up::WarmUp;
@@ -152,7 +153,8 @@ impl Core {
         let Some(window) = &mut self.window else {
             return Ok(());
         };
-        Ok(window.present(&self.gpu, picture, display, paint)?)
+        let on = (&*self.gpu, self.timer.as_mut());
+        Ok(window.present(on, picture, display, paint)?)
     }
 
     /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the surface. The target's
@@ -160,11 +162,12 @@ impl Core {
     ///
     /// # Errors
     /// When there is no scene, or the device refuses.
-    pub fn draw_on(&self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
+    pub fn draw_on(&mut self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
         let picture = latest(self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
-        self.gpu.guarded(|| {
-            let screen = screen::Pass::new(&self.gpu, target.format());
-            window::show(&self.gpu, &screen, (picture, display), target);
+        let (gpu, timer) = (&*self.gpu, self.timer.as_mut());
+        gpu.guarded(|| {
+            let screen = screen::Pass::new(gpu, target.format());
+            window::show((gpu, timer), &screen, (&picture, display), target);
         })?;
         Ok(())
     }
@@ -239,15 +242,19 @@ impl Core {
     /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
     #[must_use]
     pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
-        let picture_px = self.stage.as_ref().map(Finished::of)?.size_px;
-        Some(window::count(picture_px, screen_px, display))
+        let picture = self.stage.as_ref()?.finished();
+        Some(window::count(&picture, screen_px, display))
     }
 
-    /// The texture that each frame's picture is drawn to, of the scene's size: sRGB codes as
-    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It stays until the next scene.
-    #[must_use]
-    pub fn picture(&self) -> Option<&wgpu::Texture> {
-        self.stage.as_ref().and_then(|stage| stage.output.raw())
+    /// Draws the latest frame's picture into a texture of the scene's size: sRGB codes as
+    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It is the same until the next scene.
+    ///
+    /// # Errors
+    /// When there is no scene, or the device refuses.
+    pub fn picture(&self) -> Result<&wgpu::Texture, CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
+        picture.raw().ok_or_else(|| GpuError::no_device().into())
     }
 
     /// Waits for the device and returns the latest picture, alpha 255.
@@ -256,8 +263,9 @@ impl Core {
     /// When there is no scene, or the device is lost.
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
-        let rgba8 = self.gpu.read_texture(stage.output.raw())?;
-        let [width_px, height_px] = stage.output.size_px().to_array();
+        let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
+        let rgba8 = self.gpu.read_texture(picture.raw())?;
+        let [width_px, height_px] = picture.size_px().to_array();
         Ok(Image {
             width_px,
             height_px,
@@ -322,7 +330,7 @@ impl Core {
 
 /// The picture that was made or taken last.
 fn latest<'a>(preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
-    preview.map(Preview::finished).or(stage.map(Finished::of))
+    preview.map(Preview::finished).or(stage.map(Stage::finished))
 }
 
 fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {

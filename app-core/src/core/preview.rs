@@ -2,10 +2,10 @@
 
 use glam::UVec2;
 
-use super::window::Finished;
 use crate::camera_frame::CameraImage;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
+use crate::passes::finished::Finished;
 use crate::stage::camera_texture::CameraTexture;
 
 /// A camera's picture on the device.
@@ -34,6 +34,10 @@ impl Preview {
     }
 
     pub(super) fn finished(&self) -> Finished<'_> {
-        Finished::new(self.texture.view(), self.size_px)
+        Finished {
+            frame: self.texture.picture(),
+            region: None,
+            size_px: self.size_px.into(),
+        }
     }
 }

@@ -4,39 +4,19 @@ use wgpu::CurrentSurfaceTexture;
 
 use crate::camera_frame::Display;
 use crate::gpu::context::{Gpu, GpuError};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorded, Recorder};
 use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::timer::Timer;
 use crate::gpu::work::Work;
+use crate::passes::finished::Finished;
 use crate::passes::present::OUTPUT_FORMAT;
-use crate::passes::screen::{self, ScreenMap};
-use crate::stage::Stage;
+use crate::passes::screen;
 
 /// A configured surface.
 pub(super) struct Window {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     screen: screen::Pass,
-}
-
-/// The finished picture.
-#[derive(Clone, Copy)]
-pub(super) struct Finished<'a> {
-    /// Decoded where it is read.
-    view: &'a TextureView,
-    pub(super) size_px: [u32; 2],
-}
-
-impl<'a> Finished<'a> {
-    pub(super) fn new(view: &'a TextureView, size_px: [u32; 2]) -> Self {
-        Self { view, size_px }
-    }
-
-    pub(super) fn of(stage: &'a Stage) -> Self {
-        Self {
-            view: stage.finished(),
-            size_px: stage.output.size_px().to_array(),
-        }
-    }
 }
 
 impl Window {
@@ -74,7 +54,7 @@ impl Window {
     /// Shows `picture`, or black.
     pub(super) fn present(
         &mut self,
-        gpu: &Gpu,
+        (gpu, timer): (&Gpu, Option<&mut Timer>),
         picture: Option<Finished<'_>>,
         display: Display,
         paint: impl FnOnce(&Gpu, &wgpu::Texture),
@@ -93,7 +73,9 @@ impl Window {
             }
         };
         match picture {
-            Some(picture) => show(gpu, &self.screen, (picture, display), &texture.texture),
+            Some(picture) => {
+                show((gpu, timer), &self.screen, (&picture, display), &texture.texture);
+            }
             None => blacken(gpu, &texture.texture),
         }
         paint(gpu, &texture.texture);
@@ -106,41 +88,35 @@ impl Window {
 
 /// Draws a picture on a target that takes sRGB codes as they are.
 pub(super) fn show(
-    gpu: &Gpu,
+    (gpu, timer): (&Gpu, Option<&mut Timer>),
     screen: &screen::Pass,
-    (picture, display): (Finished<'_>, Display),
+    (picture, display): (&Finished<'_>, Display),
     target: &wgpu::Texture,
-) {
+) -> Recorded {
     let target = TextureView::of_other(gpu, target);
-    encode(gpu, screen, (picture, display), &target).submit();
+    show_on((gpu, timer), screen, (picture, display), &target)
 }
 
 /// What that costs.
-pub(super) fn count(picture_px: [u32; 2], screen_px: [u32; 2], display: Display) -> Work {
+pub(super) fn count(picture: &Finished<'_>, screen_px: [u32; 2], display: Display) -> Work {
     let gpu = Gpu::default();
-    let target = |size_px: [u32; 2]| Texture::target(&gpu, "", size_px.into(), OUTPUT_FORMAT);
-    let (picture, target) = (target(picture_px), target(screen_px));
-    let picture = Finished {
-        view: &picture.view,
-        size_px: picture_px,
-    };
+    let target = Texture::target(&gpu, "", screen_px.into(), OUTPUT_FORMAT);
     let screen = screen::Pass::new(&gpu, OUTPUT_FORMAT);
-    let recorded = encode(&gpu, &screen, (picture, display), &target.view).submit();
+    let recorded = show_on((&gpu, None), &screen, (picture, display), &target.view);
     recorded.ran.iter().map(|run| run.work).sum()
 }
 
-fn encode<'g>(
-    gpu: &'g Gpu,
+fn show_on(
+    (gpu, timer): (&Gpu, Option<&mut Timer>),
     screen: &screen::Pass,
-    (picture, display): (Finished<'_>, Display),
+    (picture, display): (&Finished<'_>, Display),
     target: &TextureView,
-) -> Recorder<'g> {
+) -> Recorded {
     let screen_px = target.size_px().to_array();
-    let image_from_screen = display.image_from_screen(picture.size_px, screen_px);
-    let map = ScreenMap::new(&image_from_screen, picture.size_px);
-    let mut recorder = Recorder::new(gpu, None);
-    screen.encode(&mut recorder, (picture.view, &map), target);
-    recorder
+    let image_from_screen = display.image_from_screen(picture.size_px.to_array(), screen_px);
+    let mut recorder = Recorder::new(gpu, timer);
+    screen.encode(&mut recorder, (picture, &image_from_screen), target);
+    recorder.submit()
 }
 
 fn blacken(gpu: &Gpu, target: &wgpu::Texture) {

@@ -27,6 +27,8 @@ pub struct Reach<'a> {
     ambient_reach_m: f64,
     /// In the picture.
     extent: Extent,
+    /// Of the toy alone.
+    toy: Extent,
 }
 
 /// The extent on one receiver.
@@ -79,15 +81,17 @@ impl<'a> Reach<'a> {
             planes: planes.collect(),
             ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
             extent: Extent::EMPTY,
+            toy: Extent::EMPTY,
         }
     }
 
     /// Includes a point of the toy, in anchor space, its shadows and the receivers near it.
     pub fn include(&mut self, in_anchor: DVec3) {
-        self.extent.include(
-            self.view
-                .image_px_from(&self.world_from_anchor, in_anchor.extend(1.0)),
-        );
+        let at = self
+            .view
+            .image_px_from(&self.world_from_anchor, in_anchor.extend(1.0));
+        self.extent.include(at);
+        self.toy.include(at);
         for k in 0..self.planes.len() {
             let in_plane = self.planes[k].plane_from_anchor.transform_point3(in_anchor);
             // A wall far from the toy keeps its ambient light.
@@ -107,6 +111,12 @@ impl<'a> Reach<'a> {
     #[must_use]
     pub fn region(&self) -> Option<PixelRect> {
         self.extent.rect(self.view.image_px)
+    }
+
+    /// The rectangle around the points of the toy, within the image; `None` when they are out of the picture.
+    #[must_use]
+    pub fn toy(&self) -> Option<PixelRect> {
+        self.toy.rect(self.view.image_px)
     }
 
     /// Extent of toy and shadows on each receiver, within the rectangle that is kept.

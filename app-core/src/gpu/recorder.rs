@@ -380,6 +380,14 @@ impl Render<'_> {
         }
     }
 
+    /// Draws a picture of `size_px` of which the attachments hold the part at `origin_px`; before anything is set.
+    pub(crate) fn part_of(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
+        let (origin, size) = (origin_px.as_vec2(), size_px.as_vec2());
+        if let Some(raw) = &mut self.raw {
+            raw.set_viewport(-origin.x, -origin.y, size.x, size.y, 0.0, 1.0);
+        }
+    }
+
     /// Draws no farther than a part of the attachments; before anything is set.
     fn within(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
         self.tally.narrow(n_pixels(size_px));

@@ -13,7 +13,8 @@ impl Clock {
         Self(Arc::new(now_ms))
     }
 
-    fn now_ms(&self) -> f64 {
+    /// Milliseconds since whenever.
+    pub(crate) fn now_ms(&self) -> f64 {
         (self.0)()
     }
 }

@@ -104,15 +104,7 @@ impl Texture {
 
     /// A view of the codes of an sRGB texture, not decoded.
     pub(crate) fn codes(&self, gpu: &Gpu) -> TextureView {
-        self.view_as(gpu, TextureFormat::Rgba8Unorm)
-    }
-
-    /// A view of a texture of sRGB codes that decodes them.
-    pub(crate) fn decoded(&self, gpu: &Gpu) -> TextureView {
-        self.view_as(gpu, TextureFormat::Rgba8UnormSrgb)
-    }
-
-    fn view_as(&self, gpu: &Gpu, format: TextureFormat) -> TextureView {
+        let format = TextureFormat::Rgba8Unorm;
         let descriptor = wgpu::TextureViewDescriptor {
             format: Some(format),
             ..Default::default()
@@ -285,6 +277,16 @@ pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
         0 | 1 => TextureFormat::R16Float,
         2 => TextureFormat::Rg16Float,
         _ => TextureFormat::Rgba16Float,
+    }
+}
+
+/// The narrowest format of 8-bit fractions that has so many channels, of up to four.
+#[must_use]
+pub(crate) fn fractions(n_channels: usize) -> TextureFormat {
+    match n_channels {
+        0 | 1 => TextureFormat::R8Unorm,
+        2 => TextureFormat::Rg8Unorm,
+        _ => TextureFormat::Rgba8Unorm,
     }
 }
 

@@ -137,9 +137,9 @@ impl Interface {
         let output = self.context.run_ui(input, |ui| {
             CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
                 picture::show(ui, app, screen, wheel_steps, &mut wishes);
-                screens::notice(ui, app);
+                let notice = screens::notice(ui, app);
                 if app.shows_profile() {
-                    screens::profile(ui, profile);
+                    screens::profile(ui, profile, notice);
                 }
                 screens::sheet(ui, app, is_menu_open, &mut wishes);
             });

@@ -11,6 +11,9 @@ pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut
         let words = egui::RichText::new(text::of_verdict(verdict));
         ui.label(words.small().color(style::MUTED));
     }
+    if app.is_recording() {
+        ui.label(egui::RichText::new(text::RECORDING).small());
+    }
     clip(ui, app, wishes);
     ui.horizontal_wrapped(|ui| {
         if other(ui, text::PHOTO) {

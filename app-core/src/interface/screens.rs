@@ -1,6 +1,6 @@
 //! Sheets over the picture: what to do, what is in the way, what happened.
 
-use egui::{Align2, Area, Id, Order, ProgressBar, RichText, ScrollArea, Ui, vec2};
+use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 
 use super::parts::{lead, other, words};
 use super::{play, style, text};
@@ -92,11 +92,11 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, wishes: &mut Vec<Wish>
     wishes.extend(way_back);
 }
 
-/// What happened, at the top.
-pub(super) fn notice(ui: &Ui, app: &App) {
-    let Some(notice) = app.notice() else { return };
+/// What happened, at the top; the place that it takes.
+pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
+    let notice = app.notice()?;
     let width = (ui.ctx().content_rect().width() - 24.0).min(style::SHEET_POINTS);
-    Area::new(Id::unique("notice"))
+    let shown = Area::new(Id::unique("notice"))
         .order(Order::Foreground)
         .interactable(false)
         .anchor(Align2::CENTER_TOP, vec2(0.0, 12.0))
@@ -106,15 +106,30 @@ pub(super) fn notice(ui: &Ui, app: &App) {
                 ui.label(text::of_notice(notice));
             });
         });
+    Some(shown.response.rect)
 }
 
-/// Times, in the top left corner.
-pub(super) fn profile(ui: &Ui, lines: &str) {
-    Area::new(Id::unique("profile"))
+/// Times, in the top left corner, or below a notice that would lie on them.
+pub(super) fn profile(ui: &Ui, lines: &str, notice: Option<Rect>) {
+    let id = Id::unique("profile");
+    let area = ui.ctx().content_rect();
+    // As wide as in the picture before; at first there is none.
+    let right = ui
+        .ctx()
+        .memory(|memory| memory.area_rect(id))
+        .map(|rect| rect.right());
+    let is_below = |notice: &Rect| right.unwrap_or(f32::INFINITY) + 8.0 > notice.left();
+    let top = notice
+        .filter(is_below)
+        .map_or(0.0, |notice| notice.bottom() - area.top());
+    Area::new(id)
         .order(Order::Middle)
         .interactable(false)
-        .anchor(Align2::LEFT_TOP, vec2(8.0, 8.0))
+        .anchor(Align2::LEFT_TOP, vec2(8.0, 8.0 + top))
         .show(ui.ctx(), |ui| {
-            style::card().show(ui, |ui| ui.label(RichText::new(lines).small()));
+            style::card().show(ui, |ui| {
+                ui.set_max_width((area.width() - 48.0).min(style::SHEET_POINTS));
+                ui.label(RichText::new(lines).small());
+            });
         });
 }

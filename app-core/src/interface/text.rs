@@ -1,7 +1,8 @@
 //! Every word of the interface, in one place.
 
-use crate::app::{App, Notice, Obstacle, PlateRefusal, PlateStep, Saved, Step, Verdict};
+use crate::app::{App, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Step, Verdict};
 use crate::camera_frame::Tracking;
+use crate::recording::{Ending, Taken};
 
 /// What a person is about to do, and how.
 pub(super) fn of_step(app: &App) -> (&'static str, String) {
@@ -80,8 +81,33 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::Saved(Saved::NoRoom) => "Not saved: there is no room left.".to_owned(),
         Notice::Saved(Saved::NotAllowed) => "Not saved: the system does not allow it.".to_owned(),
         Notice::Saved(Saved::Failed) => "Not saved: writing failed.".to_owned(),
+        Notice::Recorded(recorded) => of_recorded(recorded),
+        Notice::NothingRecorded => "Nothing was recorded: no frame came with a place.".to_owned(),
+        Notice::RecordingDrops => "Writing is too slow: the recording lacks some frames.".to_owned(),
+        Notice::NoRoomToRecord => "Nothing is recorded: there is too little room left.".to_owned(),
         Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
     }
+}
+
+fn of_recorded(recorded: &Recorded) -> String {
+    let Taken {
+        n_frames,
+        n_dropped,
+        ending,
+        ..
+    } = &recorded.taken;
+    let why = match ending {
+        Ending::Asked => String::new(),
+        Ending::NoRoom => "There is no room left. ".to_owned(),
+        Ending::TooLarge => "It is as large as it may be. ".to_owned(),
+        Ending::NotAllowed => "The system does not allow it. ".to_owned(),
+        Ending::Failed(reason) => format!("It cannot be written: {reason}. "),
+    };
+    let lacks = match n_dropped {
+        0 => String::new(),
+        n_dropped => format!(", {n_dropped} are missing"),
+    };
+    format!("{why}{n_frames} frames are recorded{lacks}: {}", recorded.file)
 }
 
 /// How well the toy was found, and what is not known.
@@ -121,6 +147,7 @@ pub(super) const MORE: &str = "More";
 pub(super) const LESS: &str = "Close";
 pub(super) const RECORD: &str = "Record the session";
 pub(super) const END_RECORD: &str = "End the recording";
+pub(super) const RECORDING: &str = "Recording";
 pub(super) const PROFILE: &str = "Show times";
 pub(super) const REPLACE: &str = "Move the outline";
 pub(super) const RETAKE: &str = "Photograph the empty place";

@@ -16,13 +16,14 @@ use crate::geometry::bounds::Sphere;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::texture::Texture;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::{FramePath, FrameTargets};
 use crate::model::lighting::Lighting;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
+use crate::passes::finished::Picture;
 use crate::passes::globals::Globals;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate;
@@ -112,20 +113,49 @@ impl Model {
         }
     }
 
-    /// Follows the camera to another view, or settings that are turned down or up; textures are kept if they suffice.
-    pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals, light_points: Vec<Vec<Vec4>>) {
+    /// Follows the camera to another view, or settings that are turned down or up; targets are kept if they suffice, else
+    /// dropped before others are made.
+    pub(crate) fn follow(
+        mut self,
+        gpu: &Gpu,
+        plan: Plan,
+        globals: &Globals,
+        light_points: Vec<Vec<Vec4>>,
+    ) -> Self {
+        self.order = Order::new(&plan);
         let is_alike = plan.has_sizes_of(&self.region.plan);
         if is_alike && self.captured.serves(&plan) {
             self.captured.light.injected = None;
             self.drawn.light.injected = None;
-        } else {
-            gpu.release_groups();
-            self.lighting = Lighting::new(gpu, &plan, light_points);
-            self.captured = CaptureTargets::new(gpu, &plan);
-            self.drawn = FrameTargets::new(gpu, &plan);
+            self.region.follow(gpu, plan, globals);
+            return self;
         }
-        self.order = Order::new(&plan);
-        self.region.follow(gpu, plan, globals);
+        let Self {
+            state,
+            mut region,
+            order,
+            lighting,
+            captured,
+            drawn,
+            passes,
+        } = self;
+        gpu.release_groups();
+        drop((lighting, captured, drawn));
+        let (lighting, captured, drawn) = (
+            Lighting::new(gpu, &plan, light_points),
+            CaptureTargets::new(gpu, &plan),
+            FrameTargets::new(gpu, &plan),
+        );
+        region.follow(gpu, plan, globals);
+        Self {
+            state,
+            region,
+            order,
+            lighting,
+            captured,
+            drawn,
+            passes,
+        }
     }
 
     /// Moves lights and toy, whose number and materials stay the same.
@@ -134,9 +164,9 @@ impl Model {
         self.state.tints.surround(gpu, toy);
     }
 
-    /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &TextureView {
-        &self.drawn.by_pass.composite.codes
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        self.drawn.by_pass.composite.picture()
     }
 
     /// Encodes the frame path, and before it the capture steps that `change` needs.

@@ -3,9 +3,11 @@
 //! Both paths take their order from it (`capture::order`, `frame::order`).
 
 use glam::UVec2;
+use wgpu::TextureFormat;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
 use crate::plan::{LeftOut, SceneFacts};
 use crate::preset::ModelSettings;
 use crate::scene::MAX_LIGHTS;
@@ -34,6 +36,9 @@ pub struct Plan {
     pub region: PixelRect,
     /// Pixels of the region that can show the physical toy, counted from its corner.
     pub physical_toy: Option<PixelRect>,
+    /// The toy box: pixels of the region that hold the toy in every pose and what is looked up around it, counted from the
+    /// region's corner.
+    pub toy_box: PixelRect,
     /// Lights whose shadows are moved, at most four.
     pub n_lights: usize,
     /// Points over each of them, a multiple of 16: of a hard light as well, whose edge they antialias.
@@ -46,6 +51,8 @@ pub struct Plan {
     pub n_receivers: u32,
     /// Whether the plate is estimated where none was photographed.
     pub is_plate_estimated: bool,
+    /// Whether the plate is kept finer than codes.
+    pub is_plate_fine: bool,
     /// Draws of the shown toy, each offset by a fraction of a pixel.
     pub n_toy_draws: u32,
     /// Whether the real shadow is denoised.
@@ -79,11 +86,13 @@ impl Plan {
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
+            toy_box: toy_box(facts, settings),
             left_out: left_out(facts, n_lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
+            is_plate_fine: settings.is_plate_fine || !facts.is_plate_complete || facts.are_plates_scaled,
             n_toy_draws: settings.n_toy_draws,
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
@@ -105,18 +114,34 @@ impl Plan {
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
             let counts = [plan.n_lights, plan.n_light_points, plan.n_ambient_directions];
-            (plan.region.size_px, plan.ambient_px, counts)
+            (plan.region.size_px, plan.toy_box.size_px, plan.ambient_px, counts)
         };
         sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
     }
 
-    /// Pixels of the region at most `reach_px` from those that show the physical toy: their corner, counted from the
-    /// region's, and their size.
+    /// Format of the plate.
+    pub(crate) fn plate_format(&self) -> TextureFormat {
+        if self.is_plate_fine {
+            FINE_FORMAT
+        } else {
+            CODED_FORMAT
+        }
+    }
+
+    /// What drawing onto the toy box takes: its corner, and the size of the region that it is a part of.
+    #[must_use]
+    pub fn part_drawn(&self) -> (UVec2, UVec2) {
+        (self.toy_box.origin_px, self.region.size_px)
+    }
+
+    /// Pixels of the toy box at most `reach_px` from those that show the physical toy: their corner, counted from the
+    /// box's, and their size.
     #[must_use]
     pub fn near_physical_toy(&self, reach_px: u32) -> Option<(UVec2, UVec2)> {
         // What rounding adds in 32 bits is less than a pixel.
         let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
-        Some((near.origin_px, near.size_px))
+        let near = near.common(&self.toy_box)?;
+        Some((near.origin_px - self.toy_box.origin_px, near.size_px))
     }
 }
 
@@ -126,6 +151,21 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
     Some(PixelRect {
         origin_px: common.origin_px - region.origin_px,
         ..common
+    })
+}
+
+/// The toy box. A shadow that is withheld marks pixels all over the region.
+fn toy_box(facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
+    let whole = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: facts.region.size_px,
+    };
+    if settings.is_shadow_withheld {
+        return whole;
+    }
+    in_region(facts.toy_box, &facts.region).unwrap_or(PixelRect {
+        size_px: UVec2::ONE,
+        ..whole
     })
 }
 

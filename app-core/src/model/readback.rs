@@ -3,7 +3,9 @@
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::texture::Texture;
 use crate::model::Model;
+use crate::model::capture::validity::FAR_MARKS;
 use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
 use crate::passes::globals::Globals;
@@ -14,10 +16,10 @@ impl Model {
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let (captured, drawn) = (&self.captured, &self.drawn);
         let map = match map {
-            Map::Validity => read_texture(gpu, captured.by_pass.validity.marks.raw()),
-            Map::GbufferBase => read_texture(gpu, captured.by_pass.gbuffer.base.raw()),
-            Map::GbufferReceived => read_texture(gpu, captured.by_pass.gbuffer.received.raw()),
-            Map::Appearance => read_texture(gpu, captured.by_pass.appearance.color.raw()),
+            Map::Validity => self.read_box(gpu, &captured.by_pass.validity.marks, FAR_MARKS),
+            Map::GbufferBase => self.read_box(gpu, &captured.by_pass.gbuffer.base, [0.0; 4]),
+            Map::GbufferReceived => self.read_box(gpu, &captured.by_pass.gbuffer.received, [0.0; 4]),
+            Map::Appearance => self.read_box(gpu, &captured.by_pass.appearance.color, [0.0; 4]),
             Map::PhysicalVisibility => read_texture(gpu, captured.light.visibility.lights.raw()),
             Map::PhysicalAmbient => read_texture(gpu, captured.light.visibility.ambient.raw()),
             Map::Visibility => read_texture(gpu, drawn.light.visibility.lights.raw()),
@@ -33,9 +35,27 @@ impl Model {
         map.map(Some)
     }
 
+    /// A target of the toy box, laid into the region; beyond the box is `beyond`.
+    fn read_box(&self, gpu: &Gpu, target: &Texture, beyond: [f32; 4]) -> Result<FloatMap, GpuError> {
+        let plan = &self.region.plan;
+        let (origin, size) = (plan.toy_box.origin_px, plan.region.size_px);
+        let map = read_texture(gpu, target.raw())?;
+        let mut texels = vec![beyond; (size.x * size.y) as usize];
+        for (y, row) in (origin.y..).zip(map.texels.chunks_exact(map.width as usize)) {
+            let first = (y * size.x + origin.x) as usize;
+            texels[first..first + row.len()].copy_from_slice(row);
+        }
+        Ok(FloatMap {
+            width: size.x,
+            height: size.y,
+            texels,
+        })
+    }
+
     /// Covered fractions of pixels, from the counts of `coverage`.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let mut map = read_texture(gpu, self.drawn.by_pass.coverage.covered.count.raw())?;
+        let covered = &self.drawn.by_pass.coverage.covered.count;
+        let mut map = self.read_box(gpu, covered, [0.0, 0.0, 0.0, 1.0])?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
         map.texels.iter_mut().for_each(|texel| texel[0] /= all);

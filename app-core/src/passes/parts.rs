@@ -12,6 +12,8 @@ pub(crate) const DEPTH: Part = part!("common/depth");
 pub(crate) const FLATTEN: Part = part!("common/flatten");
 /// One triangle over the whole target.
 pub(crate) const FULLSCREEN: Part = part!("common/fullscreen");
+/// Marks of the validity mask, which a shader binds as `validity`.
+pub(crate) const MARKS: Part = part!("common/marks");
 /// Whether a point of the toy has moved on the screen.
 pub(crate) const MOVED: Part = part!("common/moved");
 /// sRGB codes and linear light.

@@ -9,7 +9,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
-use crate::gpu::texture::TextureView;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::FULLSCREEN;
 use crate::scene::MAX_RECEIVERS;
@@ -20,8 +20,10 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &part!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]),
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
-/// Format of a plate: finer than codes, since gains have been applied; alpha marks photographed pixels.
-pub(crate) const PLATE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of a plate that is finer than codes, as where gains have been applied; alpha marks photographed pixels.
+pub(crate) const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of a plate in codes, as where all of it was photographed at one exposure.
+pub(crate) const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Maximum number of plates that a view's plate is made of.
 pub(crate) const MAX_PLATES: usize = 4;
 
@@ -45,8 +47,17 @@ shared_struct! {
     }
 }
 
+impl PlateViews {
+    /// Whether a plate is brought to another exposure than its own.
+    pub(crate) fn are_scaled(&self) -> bool {
+        let plates = self.plates.iter().take(self.n_plates as usize);
+        plates.flat_map(|plate| &plate.gain[..3]).any(|gain| *gain != 1.0)
+    }
+}
+
 pub(crate) struct Pass {
-    draw: Draw,
+    fine: Draw,
+    coded: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -59,25 +70,23 @@ pub(crate) struct Inputs<'a> {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let draw = |format| gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_choose", groups, &[format]));
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(
-                &SHADER,
-                "fs_choose",
-                groups,
-                &[PLATE_FORMAT],
-            )),
+            fine: draw(FINE_FORMAT),
+            coded: draw(CODED_FORMAT),
         }
     }
 
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &Texture) {
+        let draw = if target.format() == CODED_FORMAT {
+            &self.coded
+        } else {
+            &self.fine
+        };
         let groups = [
-            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
-            recorder.bind(
-                &self.draw,
-                GROUP_PASS,
-                &[inputs.views.into(), inputs.plates.into()],
-            ),
+            recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(draw, GROUP_PASS, &[inputs.views.into(), inputs.plates.into()]),
         ];
-        recorder.fullscreen(&self.draw, &groups, &[target]);
+        recorder.fullscreen(draw, &groups, &[&target.view]);
     }
 }

@@ -1,5 +1,7 @@
-//! `present`: the camera image with the work region laid over it, code for code, or as much of it as is shown.
+//! `present`: the camera image with the work region laid over it, code for code, or as much of it as is shown, for those who
+//! read the picture.
 
+use bytemuck::Zeroable;
 use wgpu::TextureFormat;
 
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
@@ -9,6 +11,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
+use crate::passes::finished::Finished;
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -33,13 +36,6 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Views of sRGB textures as plain codes.
-pub(crate) struct Inputs<'a> {
-    pub(crate) frame_codes: &'a TextureView,
-    pub(crate) region_codes: &'a TextureView,
-    pub(crate) placement: Placement,
-}
-
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [&[][..], SLOTS, &[], &[]];
@@ -53,13 +49,16 @@ impl Pass {
         }
     }
 
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
-        let resources = [
-            Resource::PerUse,
-            inputs.frame_codes.into(),
-            inputs.region_codes.into(),
-        ];
-        let own = recorder.bind_with(&self.draw, GROUP_PASS, &inputs.placement, &resources);
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, finished: &Finished<'_>, target: &TextureView) {
+        let placement = finished.region.map_or(Placement::zeroed(), |laid| Placement {
+            origin_px: laid.rect.origin_px.to_array(),
+            size_px: laid.rect.size_px.to_array(),
+            effect: laid.effect,
+            unused: 0.0,
+        });
+        let region = finished.region.map_or(finished.frame, |laid| laid.picture);
+        let resources = [Resource::PerUse, finished.frame.codes.into(), region.codes.into()];
+        let own = recorder.bind_with(&self.draw, GROUP_PASS, &placement, &resources);
         recorder.fullscreen(&self.draw, &[own], &[target]);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::DVec4;
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
@@ -10,7 +11,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
-use crate::toy::{PosedMesh, ShadowRanges, Toy};
+use crate::toy::{PosedMesh, Toy};
 
 /// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
 pub(crate) const LOOK_STREAMS: [Stream; 4] = [
@@ -66,7 +67,9 @@ struct Run {
 pub(crate) struct ToyMesh {
     indices: Buffer,
     shadow_indices: Buffer,
-    pub(crate) shadow_ranges: ShadowRanges,
+    n_shadow_indices: u32,
+    /// Whether it is made of closed pieces alone.
+    is_closed: bool,
     uvs: Buffer,
     colors: Buffer,
     runs: Vec<Run>,
@@ -91,7 +94,8 @@ impl ToyMesh {
                 bytemuck::cast_slice(&toy.shadow_indices().indices),
                 BufferUsages::INDEX,
             ),
-            shadow_ranges: toy.shadow_indices().ranges.clone(),
+            n_shadow_indices: u32::try_from(toy.shadow_indices().indices.len()).unwrap_or(u32::MAX),
+            is_closed: toy.shadow_indices().is_closed(),
             uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
             colors: gpu.buffer(
                 "colors",
@@ -114,16 +118,27 @@ impl ToyMesh {
         self.materials.bind(recorder, pipeline)
     }
 
+    /// Whether triangles that face away from points, homogeneous and in anchor space, hide nothing from them that others do
+    /// not.
+    pub(crate) fn is_culled(&self, pose: &PoseBuffers, mut points: impl Iterator<Item = DVec4>) -> bool {
+        self.is_closed && !points.any(|point| pose.around.holds(point))
+    }
+
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
     pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
         self.bind_positions(render, positions);
-        render.draw_indexed(self.shadow_ranges.all.clone(), instances);
+        self.draw_shadow(render, instances);
     }
 
-    /// Binds what [`ToyMesh::shadow_ranges`] are ranges of; positions are in slot 0.
+    /// Binds what [`ToyMesh::draw_shadow`] draws; positions are in slot 0.
     pub(crate) fn bind_positions(&self, render: &mut Render<'_>, positions: &Buffer) {
         render.set_vertices(0, positions);
         render.set_indices(&self.shadow_indices);
+    }
+
+    /// Draws each triangle once for each instance.
+    pub(crate) fn draw_shadow(&self, render: &mut Render<'_>, instances: Range<u32>) {
+        render.draw_indexed(0..self.n_shadow_indices, instances);
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.

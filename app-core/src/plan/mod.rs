@@ -12,12 +12,17 @@ pub struct SceneFacts {
     pub region: PixelRect,
     /// Pixels of the image that can show the physical toy; none where it is out of the picture.
     pub physical_toy: Option<PixelRect>,
+    /// Pixels of the image that targets of the toy are to hold, in whatever pose it is shown; none where it is out of the
+    /// picture.
+    pub toy_box: Option<PixelRect>,
     /// Lights whose shadows are moved.
     pub n_lights: usize,
     /// Receivers that shadows are moved on, one to four.
     pub n_receivers: u32,
     /// One plate shows all of the region, or several together.
     pub is_plate_complete: bool,
+    /// Whether a plate was brought to the exposure of another.
+    pub are_plates_scaled: bool,
 }
 
 /// Work that a scene does not need.

@@ -20,19 +20,28 @@ pub(crate) struct Injected {
     pub(crate) shown: Option<Texture>,
 }
 
-/// A texture of the size and format of `like`, in f16, with the values of `map`.
+/// A texture of the size and format of `like`, in f16 or in fractions of 8 bits, with the values of `map`.
 pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
     let format = like.format();
     let size_px = like.size_px();
     let texture = Texture::target(gpu, "injected visibility", size_px, format);
     let n_channels = usize::from(format.components());
-    let halves: Vec<u8> = map
-        .texels
-        .iter()
-        .flat_map(|texel| &texel[..n_channels])
-        .flat_map(|value| f16_from_f32(value.clamp(0.0, 1.0)).to_le_bytes())
-        .collect();
-    texture.write(gpu, &halves);
+    let values = map.texels.iter().flat_map(|texel| &texel[..n_channels]);
+    let values = values.map(|value| value.clamp(0.0, 1.0));
+    let is_half = format.block_copy_size(None) == Some(2 * u32::from(format.components()));
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 255"
+    )]
+    let texels: Vec<u8> = if is_half {
+        values
+            .flat_map(|value| f16_from_f32(value).to_le_bytes())
+            .collect()
+    } else {
+        values.map(|value| (255.0 * value).round() as u8).collect()
+    };
+    texture.write(gpu, &texels);
     texture
 }
 

@@ -18,7 +18,10 @@ pub enum Stop {
         /// What is to be left free.
         min_free_bytes: u64,
     },
-    /// What is written to refused; the end of the file is cut.
+    /// The device is full; the end of the file is cut.
+    #[error("no room is left on the device")]
+    Full,
+    /// What is written to refused otherwise; the end of the file is cut.
     #[error("cannot be written: {0}")]
     Sink(String),
 }
@@ -48,6 +51,9 @@ pub enum WriteError {
         /// The limit.
         max_bytes: u64,
     },
+    /// A camera picture that could not be encoded, and why. Nothing was written.
+    #[error("a picture cannot be encoded: {0}")]
+    Picture(String),
     /// A frame that repeats a picture which was never written. Nothing was written.
     #[error("picture {sequence} is repeated, but was never recorded")]
     NoSuchPicture {

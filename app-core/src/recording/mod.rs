@@ -7,6 +7,8 @@
 
 mod bounds;
 mod chunk;
+mod codec;
+pub(crate) mod entry;
 mod error;
 mod found;
 mod message;
@@ -16,15 +18,19 @@ mod reader;
 mod scan;
 mod source;
 mod summary;
+mod take;
 mod topics;
 mod viewer;
 mod wire;
 mod writer;
 
+pub use codec::{PictureCodec, PlatformEncoder};
+pub use entry::LiveFrame;
 pub use error::{Damage, Loss, RecordingError, Stop, WriteError};
 pub use found::Note;
 pub use queue::{Inlet, Item, Outlet, queue};
 pub use reader::Recording;
 pub use source::Source;
+pub use take::{Ending, Take, TakeOptions, Taken};
 pub use topics::Topic;
 pub use writer::{Flushed, Limits, Picture, Writer};

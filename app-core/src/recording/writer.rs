@@ -1,7 +1,7 @@
 //! Writes a recording as it is taken: append-only, a chunk a second.
 
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use serde_json::value::RawValue;
 
@@ -27,6 +27,14 @@ pub struct Limits {
     pub max_bytes: u64,
     /// What is to be left free on the device, which the caller tells with [`Writer::tick`]; bytes.
     pub min_free_bytes: u64,
+}
+
+impl Limits {
+    /// For an app: it leaves the person room for a photo, and a file that other devices can take.
+    pub const APP: Self = Self {
+        max_bytes: 4_000_000_000,
+        min_free_bytes: 512 << 20,
+    };
 }
 
 impl Default for Limits {
@@ -270,7 +278,7 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// When the sink refuses, or has before.
     pub fn finish(mut self) -> Result<(W, Flushed), WriteError> {
-        if let Some(Stop::Sink(_)) = &self.stop {
+        if let Some(Stop::Sink(_) | Stop::Full) = &self.stop {
             self.check()?;
         }
         self.stop = None;
@@ -391,7 +399,10 @@ impl<W: Write> Writer<W> {
 
     fn refused(&mut self, result: std::io::Result<()>) -> Result<(), WriteError> {
         result.or_else(|error| {
-            self.stop = Some(Stop::Sink(error.to_string()));
+            self.stop = Some(match error.kind() {
+                ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Stop::Full,
+                _ => Stop::Sink(error.to_string()),
+            });
             self.check()
         })
     }

@@ -8,6 +8,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::camera_planes::{self, Planes};
+use crate::passes::finished::Picture;
 
 pub(crate) struct CameraTexture {
     texture: Texture,
@@ -35,9 +36,12 @@ impl CameraTexture {
         &self.texture.view
     }
 
-    /// The picture's sRGB codes.
-    pub(crate) fn codes(&self) -> &TextureView {
-        &self.codes
+    /// Both views of the picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        Picture {
+            light: &self.texture.view,
+            codes: &self.codes,
+        }
     }
 
     /// Uploads `image` unless it is the one that is there already.

@@ -22,7 +22,10 @@ use crate::scene::Camera;
 use crate::toy::ToyError;
 
 /// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
-const SPARE_PX: u32 = 8;
+pub(super) const SPARE_PX: u32 = 8;
+
+/// Farthest that a pixel is looked up around the toy, with one for rounding and one for multisamples.
+const AROUND_TOY_PX: u32 = 10;
 
 /// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {
@@ -34,6 +37,9 @@ pub(super) struct Footprint {
     pub(super) least_region: PixelRect,
     /// The region of a method that starts with this frame.
     pub(super) region: PixelRect,
+    /// Pixels of the image that show the toy in all poses so far, and what is looked up around them; none where it is out of
+    /// the picture.
+    pub(super) least_toy_box: Option<PixelRect>,
     pub(super) bounds: Bounds,
     pub(super) plane_rects: Vec<PlaneRect>,
     pub(super) choice: PlateChoice,
@@ -109,6 +115,7 @@ impl Stage {
         let least_region = on_view.region()?.grown(BORDER_PX, view.image_px);
         let region = least_region.grown(SPARE_PX, view.image_px);
         let plane_rects = on_view.plane_rects();
+        let toy = on_view.toy();
         let corners_in_world = corners_in_world(&layout, &reach.bounds, &plane_rects);
         let toy_in_world = layout.world_from_anchor().transform_point3(reach.bounds.centre());
         let choice = choose(&self.scene, &view, &corners_in_world, toy_in_world);
@@ -120,6 +127,7 @@ impl Stage {
             corners_in_world,
             least_region,
             region,
+            least_toy_box: toy.map(|toy| toy.grown(AROUND_TOY_PX, view.image_px)),
             plane_rects,
             choice,
             view,

@@ -5,9 +5,9 @@ use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::TextureView;
 use crate::model::{self, Model};
 use crate::passes;
+use crate::passes::finished::Picture;
 use crate::passes::list::WarmUp;
 use crate::passes::pictures::Pictures;
 use crate::passes::toy_mesh::ToyMesh;
@@ -46,6 +46,18 @@ impl Method {
         }
     }
 
+    /// Whether the targets of the toy hold these pixels of the image, as far as the region goes.
+    pub(crate) fn holds_toy(&self, needed: Option<PixelRect>) -> bool {
+        let Self::Model(model) = self else { return true };
+        let (region, toy_box) = (self.region(), model.region.plan.toy_box);
+        let known = PixelRect {
+            origin_px: toy_box.origin_px + region.origin_px,
+            ..toy_box
+        };
+        let needed = needed.and_then(|needed| needed.common(&region));
+        needed.is_none_or(|needed| known.contains(&needed))
+    }
+
     pub(crate) fn left_out(&self) -> &[LeftOut] {
         match self {
             Self::Model(model) => &model.region.plan.left_out,
@@ -53,8 +65,8 @@ impl Method {
         }
     }
 
-    /// The codes of the region's picture.
-    pub(crate) fn picture(&self) -> &TextureView {
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
         match self {
             Self::Model(model) => model.picture(),
             Self::Baseline(baseline) => baseline.picture(),

@@ -8,9 +8,8 @@ mod placement;
 mod reuse;
 mod supported;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use bytemuck::Zeroable;
 use glam::{DMat4, DVec3, UVec2};
 
 use crate::camera_frame::CameraImage;
@@ -26,9 +25,10 @@ use crate::geometry::view::View;
 use crate::governor::Step;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::{Recorder, n_pixels};
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::texture::Texture;
+use crate::passes::finished::{Finished, Laid};
 use crate::passes::pictures::Pictures;
-use crate::passes::present::{self, OUTPUT_FORMAT, Placement};
+use crate::passes::present::{self, OUTPUT_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, LeftOut};
 use crate::plates::store::PlateStore;
@@ -80,9 +80,10 @@ pub(crate) struct Stage {
     state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
     reached_rects: Vec<PlaneRect>,
-    pub(crate) output: Texture,
-    /// The output, decoded where it is read.
-    finished: TextureView,
+    /// How much of the region's picture the latest frame shows; none where the camera image passes through.
+    effect: Option<f64>,
+    /// The picture as a texture, once one was asked for.
+    output: OnceLock<Texture>,
 }
 
 /// The method with its state, and the latest frame that this was learned from.
@@ -129,7 +130,6 @@ impl Stage {
             .toy
             .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
         let size_px = UVec2::new(scene.width_px, scene.height_px);
-        let output = Texture::target(gpu, "output", size_px, OUTPUT_FORMAT);
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
@@ -145,8 +145,8 @@ impl Stage {
             receivers: receivers.anchored,
             receiver_indices: receivers.indices,
             receivers_warning: receivers.warning,
-            finished: output.decoded(gpu),
-            output,
+            effect: None,
+            output: OnceLock::new(),
             preset,
             world_from_object: scene.world_from_object,
             is_object_placed: true,
@@ -168,9 +168,30 @@ impl Stage {
         }
     }
 
-    /// The latest picture, decoded where it is read.
-    pub(crate) fn finished(&self) -> &TextureView {
-        &self.finished
+    /// The latest picture, of which the region's part still has to be laid over the camera image.
+    pub(crate) fn finished(&self) -> Finished<'_> {
+        let laid = self.method().zip(self.effect).map(|(method, effect)| Laid {
+            picture: method.picture(),
+            rect: method.region(),
+            #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+            effect: effect as f32,
+        });
+        Finished {
+            frame: self.camera.picture(),
+            region: laid,
+            size_px: self.size_px(),
+        }
+    }
+
+    /// Draws that picture into a texture of its size: codes.
+    pub(crate) fn draw_picture(&self, gpu: &Gpu) -> &Texture {
+        let output = self
+            .output
+            .get_or_init(|| Texture::target(gpu, "output", self.size_px(), OUTPUT_FORMAT));
+        let mut recorder = Recorder::new(gpu, None);
+        self.present.encode(&mut recorder, &self.finished(), &output.view);
+        recorder.submit();
+        output
     }
 
     /// The scene that is staged.
@@ -243,7 +264,7 @@ impl Stage {
         }
     }
 
-    /// Encodes one frame into `output`.
+    /// Encodes one frame.
     pub(crate) fn encode(
         &mut self,
         recorder: &mut Recorder<'_>,
@@ -270,18 +291,16 @@ impl Stage {
             warnings: about_scene.chain(about_lights).collect(),
         };
         recorder.stages.begin("pose and footprint");
-        let made_by = match self.footprint(input)? {
+        self.effect = match self.footprint(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
                 None
             }
             Ok(footprint) => {
                 self.encode_region(recorder, input, &footprint, &mut report);
-                self.state.as_ref()
+                Some(input.effect)
             }
         };
-        let method = made_by.map(|state| &state.method);
-        self.encode_present(recorder, method, input.effect);
         Ok(report)
     }
 
@@ -340,25 +359,6 @@ impl Stage {
         }
     }
 
-    /// Lays the region over the camera frame, or passes the frame through where no method ran.
-    fn encode_present(&self, recorder: &mut Recorder<'_>, method: Option<&Method>, effect: f64) {
-        let placement = method
-            .map(Method::region)
-            .map_or(Placement::zeroed(), |region| Placement {
-                origin_px: region.origin_px.to_array(),
-                size_px: region.size_px.to_array(),
-                #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
-                effect: effect as f32,
-                unused: 0.0,
-            });
-        let inputs = present::Inputs {
-            frame_codes: self.camera.codes(),
-            region_codes: method.map_or(self.camera.codes(), Method::picture),
-            placement,
-        };
-        self.present.encode(recorder, &inputs, &self.output.view);
-    }
-
     fn layout(&self) -> SceneLayout<'_> {
         SceneLayout {
             receivers: &self.receivers,
@@ -368,7 +368,11 @@ impl Stage {
     }
 
     fn view(&self, camera: &Camera) -> View {
-        let image_px = UVec2::new(self.scene.width_px, self.scene.height_px);
-        View::new(image_px, camera)
+        View::new(self.size_px(), camera)
+    }
+
+    /// Of each picture.
+    fn size_px(&self) -> UVec2 {
+        UVec2::new(self.scene.width_px, self.scene.height_px)
     }
 }

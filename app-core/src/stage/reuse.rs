@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec4};
 
-use super::footprint::Footprint;
+use super::footprint::{Footprint, SPARE_PX};
 use super::method::Method;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
@@ -82,7 +82,8 @@ impl Stage {
             Method::Baseline(_) => true,
         };
         let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
-            && state.method.region().contains(&footprint.least_region);
+            && state.method.region().contains(&footprint.least_region)
+            && state.method.holds_toy(footprint.least_toy_box);
         // What was injected belongs to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
@@ -133,20 +134,22 @@ impl Stage {
             return;
         };
         let region = region_in(&state.method, footprint);
-        match (self.preset.settings(), &mut state.method) {
+        state.method = match (self.preset.settings(), state.method) {
             (Settings::Model(settings), Method::Model(model)) => {
-                let facts = self.facts(footprint, region);
+                let known_px = model.region.plan.toy_box.size_px;
+                let facts = self.facts(footprint, (region, known_px));
                 let plan = Plan::new(&facts, &self.settings(settings));
-                let globals = globals(&footprint.view, &region, &self.layout());
+                let globals = globals(&footprint.view, &region, &self.layout()).with_toy_box(&plan.toy_box);
                 let light_points = self.light_points(&plan);
-                model.follow(gpu, plan, &globals, light_points);
+                Method::Model(Box::new(model.follow(gpu, plan, &globals, light_points)))
             }
-            (Settings::Baseline(settings), Method::Baseline(baseline)) => {
+            (Settings::Baseline(settings), Method::Baseline(mut baseline)) => {
                 let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
                 baseline.follow(gpu, plan, &globals, &uniform);
+                Method::Baseline(baseline)
             }
             _ => return,
-        }
+        };
         state.view = footprint.view.clone();
         state.is_first_view = false;
         self.state = Some(state);
@@ -157,9 +160,10 @@ impl Stage {
         if let Some(state) = &self.state
             && let (Settings::Model(settings), Method::Model(model)) = (self.preset.settings(), &state.method)
         {
-            let facts = self.facts(footprint, region_in(&state.method, footprint));
-            let plan = Plan::new(&facts, &self.settings(settings));
             let known = &model.region.plan;
+            let region = region_in(&state.method, footprint);
+            let facts = self.facts(footprint, (region, known.toy_box.size_px));
+            let plan = Plan::new(&facts, &self.settings(settings));
             if plan.self_shadow != known.self_shadow {
                 return self.start(gpu, input, footprint);
             }
@@ -197,7 +201,12 @@ impl Stage {
         }
     }
 
-    pub(super) fn facts(&self, footprint: &Footprint, region: PixelRect) -> SceneFacts {
+    /// Of a region; the toy box becomes no smaller than one that is known.
+    pub(super) fn facts(
+        &self,
+        footprint: &Footprint,
+        (region, known_box_px): (PixelRect, UVec2),
+    ) -> SceneFacts {
         let world_from_anchor = self.layout().world_from_anchor();
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_receivers = self.receivers.len() as u32;
@@ -206,9 +215,11 @@ impl Stage {
             physical_toy: footprint
                 .view
                 .image_rect(&world_from_anchor, &self.physical_bounds),
+            toy_box: toy_box_in(&region, footprint, known_box_px),
             n_lights: self.lights.used.len(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),
+            are_plates_scaled: footprint.plate_views.are_scaled(),
         }
     }
 
@@ -243,7 +254,7 @@ impl Stage {
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
-        let globals = globals(&footprint.view, &plan.region, &self.layout());
+        let globals = globals(&footprint.view, &plan.region, &self.layout()).with_toy_box(&plan.toy_box);
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let n_lights = self.lights.used.len();
         let state = SceneState::new(gpu, grids_over(&self.reached_rects), n_lights, toy);
@@ -286,7 +297,7 @@ impl Stage {
     ) -> (BaselinePlan, Globals, Uniform) {
         let globals = globals(&footprint.view, &region, &self.layout());
         let uniform = uniform(&self.layout(), &footprint.bounds, settings);
-        let plan = BaselinePlan::new(&self.facts(footprint, region), settings);
+        let plan = BaselinePlan::new(&self.facts(footprint, (region, UVec2::ZERO)), settings);
         (plan, globals, uniform)
     }
 }
@@ -296,6 +307,29 @@ fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
     let image_px = footprint.view.image_px;
     let size_px = moving_size(method.region().size_px, &footprint.region, image_px);
     footprint.region.within(size_px, image_px)
+}
+
+/// The part of the image that is to be the toy box of a region.
+fn toy_box_in(region: &PixelRect, footprint: &Footprint, known_px: UVec2) -> Option<PixelRect> {
+    let needed = footprint
+        .least_toy_box?
+        .grown(SPARE_PX, footprint.view.image_px)
+        .common(region)?;
+    // A first one is as large as it must be, as the region is.
+    let size_px = if known_px == UVec2::ZERO {
+        needed.size_px
+    } else {
+        moving_size(known_px, &needed, region.size_px)
+    };
+    let in_region = PixelRect {
+        origin_px: needed.origin_px - region.origin_px,
+        ..needed
+    };
+    let in_region = in_region.within(size_px, region.size_px);
+    Some(PixelRect {
+        origin_px: in_region.origin_px + region.origin_px,
+        ..in_region
+    })
 }
 
 /// The size a region takes under a moving camera: as it is while that is enough, else the next step.

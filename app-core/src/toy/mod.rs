@@ -42,7 +42,7 @@ pub use graph::Trs;
 pub use material::{Material, MaterialTexture, Wrap};
 pub use moment::{NodeId, NodePose, Pose};
 pub use pose::PosedMesh;
-pub use shadow_indices::{ShadowIndices, ShadowRanges};
+pub use shadow_indices::ShadowIndices;
 pub use surface::Part;
 pub use texture::Texture;
 

@@ -6,7 +6,6 @@
 //! Source: the "shadow index buffer" of meshoptimizer; here vertices are welded only if no pose can separate them.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use glam::Vec3;
 
@@ -17,36 +16,11 @@ use super::surface::Surface;
 /// Triangles of welded corners.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShadowIndices {
-    /// Corners of triangles, each the first of the vertices that coincide with it in every pose.
+    /// Corners of triangles, each the first of the vertices that coincide with it in every pose: those of closed pieces,
+    /// then those of open ones.
     pub indices: Vec<u32>,
-    /// Ranges of them to draw.
-    pub ranges: ShadowRanges,
-}
-
-/// Ranges of [`ShadowIndices::indices`].
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ShadowRanges {
-    /// Every triangle once.
-    pub all: Range<u32>,
-    /// Occluders of a light where only triangles that face it are drawn: closed pieces once, open ones from both
-    /// sides.
-    ///
-    /// A ray to a light outside a closed piece leaves it as often as it enters it, or once more where it starts inside.
-    pub facing: Range<u32>,
-    /// The same for a light that may be within a closed piece: every triangle from both sides.
-    pub both_sides: Range<u32>,
-}
-
-impl ShadowRanges {
-    /// Range to draw from a point, of which triangles that face away are culled.
-    #[must_use]
-    pub fn seen_from(&self, is_within_toy: bool) -> Range<u32> {
-        if is_within_toy {
-            self.both_sides.clone()
-        } else {
-            self.facing.clone()
-        }
-    }
+    /// How many of the corners are of closed pieces, whose faces look outwards.
+    pub n_closed: usize,
 }
 
 impl ShadowIndices {
@@ -64,22 +38,24 @@ impl ShadowIndices {
         let (closed, open): (Vec<_>, Vec<_>) = triangles
             .into_iter()
             .partition(|[corner, ..]| pieces.is_closed(*corner));
-        let turned = |[a, b, c]: &[u32; 3]| [*a, *c, *b];
-        let sections = [
-            closed.clone(),
-            open.clone(),
-            open.iter().map(turned).collect(),
-            closed.iter().map(turned).collect(),
-        ];
-        let first = |n_triangles: usize| 0..u32::try_from(3 * n_triangles).unwrap_or(u32::MAX);
         Self {
-            indices: sections.concat().into_flattened(),
-            ranges: ShadowRanges {
-                all: first(closed.len() + open.len()),
-                facing: first(closed.len() + 2 * open.len()),
-                both_sides: first(2 * (closed.len() + open.len())),
-            },
+            n_closed: 3 * closed.len(),
+            indices: [closed, open].concat().into_flattened(),
         }
+    }
+
+    /// Whether every triangle is of a closed piece, so that those which face a point outside hide from it all that the toy
+    /// does: a ray to it leaves a piece as often as it enters it, or once more where it starts inside.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.n_closed == self.indices.len()
+    }
+
+    /// Triangles of which those that face an eye cover all that the toy covers: open pieces are among them from both sides.
+    pub(crate) fn facing_anywhere(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let triangles = |indices| <[u32]>::as_chunks::<3>(indices).0.iter().copied();
+        let open = triangles(&self.indices[self.n_closed..]);
+        triangles(&self.indices).chain(open.map(|[a, b, c]| [a, c, b]))
     }
 }
 

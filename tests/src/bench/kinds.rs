@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use app_core::camera_frame::CameraImage;
+use app_core::camera_frame::{CameraImage, Display};
 use app_core::core::{Core, CoreError};
 use app_core::frame::{FrameInput, PassTime};
 use app_core::internals::Inspect;
@@ -93,17 +93,20 @@ fn of_kind(
 ) -> Result<KindTimes, CoreError> {
     let (mut cpu, mut device) = (Vec::new(), Vec::new());
     let (mut n_made, mut made_bytes) = (0, 0);
+    let screen = inputs
+        .first()
+        .and_then(|input| core.hidden_screen(input.image.size_px()));
     for input in inputs.iter().take(MOST_INPUTS) {
         let others = [input.clone(), with_new(input, kind)];
         // Where either is new, what was learned of the place stays.
         for known in &others {
-            core.frame(known)?;
+            show(core, known, screen.as_ref())?;
         }
         let before = made(core);
         for next in others.iter().cycle().take(2 * n_repeats) {
             core.read_pass_times()?;
             let start = Instant::now();
-            core.frame(next)?;
+            show(core, next, screen.as_ref())?;
             cpu.push(start.elapsed().as_secs_f64() * 1e3);
             device.push(core.read_pass_times()?);
         }
@@ -124,6 +127,12 @@ fn of_kind(
         passes: passes(&device),
         ratio_to_paper: None,
     })
+}
+
+/// Makes a frame and draws it on a screen of the picture's size.
+fn show(core: &mut Core, input: &FrameInput, screen: Option<&wgpu::Texture>) -> Result<(), CoreError> {
+    core.frame(input)?;
+    screen.map_or(Ok(()), |screen| core.draw_on(screen, Display::default()))
 }
 
 /// Objects and bytes that the device was asked for so far.

@@ -10,7 +10,6 @@ use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
 use app_core::preset::Preset;
-use app_core::session::Capture;
 use app_core::wgpu;
 use clap::{Parser, ValueEnum};
 use harness::files::BUNDLED_SESSION;
@@ -54,6 +53,12 @@ struct Args {
     /// Folder for photos and the tour's pictures [default: target/view]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Quality of a recording's pictures, 1 to 100 [default: lossless]
+    #[arg(long, value_name = "QUALITY", value_parser = clap::value_parser!(u8).range(1..=100))]
+    jpeg: Option<u8>,
+    /// What "Another toy" chooses: a binary glTF file; one can be dropped on the window, too
+    #[arg(long, value_name = "FILE.glb")]
+    toy: Option<PathBuf>,
     /// Close the window after so many seconds
     #[arg(long, value_name = "N", conflicts_with = "tour")]
     seconds: Option<f64>,
@@ -65,8 +70,7 @@ fn main() -> ExitCode {
 
 fn run(args: Args) -> Result<()> {
     let path = args.session.unwrap_or_else(|| PathBuf::from(BUNDLED_SESSION));
-    let session = Capture::open(open_session(&path)?).with_context(|| path.display().to_string())?;
-    let feed = Feed::of(&session)?;
+    let feed = Feed::of_stored(open_session(&path)?).with_context(|| path.display().to_string())?;
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let results = || package.parent().unwrap_or(package).join(RESULTS);
     let out = args.out.unwrap_or_else(results);
@@ -81,6 +85,8 @@ fn run(args: Args) -> Result<()> {
                 hold: args.hold,
                 out,
                 seconds: args.seconds,
+                jpeg_quality: args.jpeg,
+                toy_to_pick: args.toy,
             },
         );
     }
@@ -90,7 +96,10 @@ fn run(args: Args) -> Result<()> {
     ))?;
     let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
     args.hold.into_iter().for_each(|hold| live.hold(hold));
+    live.time_by(window::clock());
     let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
+    desk.jpeg_quality = args.jpeg;
+    desk.toy_to_pick = args.toy;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

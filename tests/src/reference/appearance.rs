@@ -1,6 +1,6 @@
 //! CPU reference of `appearance.wgsl`: the toy's own colours, carried a little past its outline.
 
-use glam::{DVec3, IVec2, UVec2};
+use glam::{DVec3, DVec4, IVec2, UVec2};
 
 use super::raster::Raster;
 
@@ -16,10 +16,10 @@ const DEPTH_STEP: f64 = 0.005;
 pub struct ToyPixel {
     /// Linear colour of the camera's frame.
     pub color: DVec3,
-    /// Radiance over base colour that the fit gives to it.
-    pub lit: DVec3,
-    /// Base colour of the model.
-    pub base: DVec3,
+    /// Each light's cosine times its visibility.
+    pub received: DVec4,
+    /// Base colour of the model, and the part of what it sees that lies above the horizon.
+    pub base: DVec4,
 }
 
 /// What is known of a pixel.
@@ -59,14 +59,14 @@ pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
         let preference = if is_own { 1.0 } else { OTHER_SURFACE };
         let weight = preference / f64::from(offset.length_squared().max(1)).powi(2);
         sum.color += weight * other.pixel.color;
-        sum.lit += weight * other.pixel.lit;
+        sum.received += weight * other.pixel.received;
         sum.base += weight * other.pixel.base;
         total += weight;
     }
     if total > 0.0 {
         return Some(ToyPixel {
             color: sum.color / total,
-            lit: sum.lit / total,
+            received: sum.received / total,
             base: sum.base / total,
         });
     }

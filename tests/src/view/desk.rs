@@ -1,17 +1,18 @@
 //! A shell on a desktop: it does what the app asks for, with a session as its camera and a folder as its photo library.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
+use std::thread::{self, JoinHandle};
 
-use app_core::app::{AlignedJob, Permission, Saved, ShellCommand, ShellEvent};
+use app_core::app::{Permission, Saved, ShellCommand, ShellEvent};
 use app_core::core::CoreError;
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::scene::Image;
 
 use super::feed::Feed;
-use crate::output::{make_folder, write_png, write_whole};
+use super::kept;
+use crate::output::{make_folder, write_png};
 
 /// Where alignments run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +34,18 @@ pub struct Desk {
     out: PathBuf,
     jobs: Jobs,
     waiting: Vec<ShellCommand>,
-    done: (Sender<Option<AlignedJob>>, Receiver<Option<AlignedJob>>),
+    /// What threads tell.
+    done: (Sender<ShellEvent>, Receiver<ShellEvent>),
+    /// Quality of a recording's pictures; lossless without one.
+    pub jpeg_quality: Option<u8>,
+    /// The toy that a person chooses when asked.
+    pub toy_to_pick: Option<PathBuf>,
+    /// The thread that writes a recording.
+    writer: Option<JoinHandle<()>>,
+    /// The latest recording.
+    recording: Option<PathBuf>,
+    /// Time since free space was told, in seconds.
+    unlooked_s: f64,
     is_tracking: bool,
     is_making_video: bool,
     n_saved: usize,
@@ -53,6 +65,11 @@ impl Desk {
             jobs,
             waiting: Vec::new(),
             done: channel(),
+            jpeg_quality: None,
+            toy_to_pick: None,
+            writer: None,
+            recording: None,
+            unlooked_s: f64::INFINITY,
             is_tracking: false,
             is_making_video: false,
             n_saved: 0,
@@ -66,10 +83,18 @@ impl Desk {
         self.obey(commands);
     }
 
-    /// The camera goes on by `elapsed_s`, if it was asked to, and alignments that ended are told.
+    /// The camera goes on by `elapsed_s`, if it was asked to, and what threads have done is told.
     pub fn tick(&mut self, elapsed_s: f64) {
-        while let Ok(done) = self.done.1.try_recv() {
-            self.tell(ShellEvent::Aligned(done.map(Box::new)));
+        while let Ok(event) = self.done.1.try_recv() {
+            self.tell(event);
+        }
+        self.unlooked_s += elapsed_s;
+        if self.unlooked_s >= 1.0 {
+            self.unlooked_s = 0.0;
+            let free_bytes = kept::free_bytes(&self.out);
+            free_bytes
+                .into_iter()
+                .for_each(|free| self.tell(ShellEvent::FreeSpace(free)));
         }
         if self.is_tracking {
             let frame = self.feed.next(elapsed_s);
@@ -129,7 +154,7 @@ impl Desk {
                         thread::spawn(move || {
                             let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| job.run()));
                             // The window may be closed by now.
-                            let _ = done.send(result.ok());
+                            let _ = done.send(ShellEvent::Aligned(result.ok().map(Box::new)));
                         });
                     }
                 },
@@ -143,22 +168,68 @@ impl Desk {
                         self.tell(ShellEvent::Saved(Saved::Done));
                     }
                 }
-                ShellCommand::ReopenDevice => self.wants_device = true,
-                ShellCommand::Share => {
-                    let log = self.live.app().log().text();
-                    let shared = make_folder(&self.out)
-                        .and_then(|()| write_whole(&self.out.join("log.txt"), log.as_bytes()));
-                    let saved = if shared.is_ok() {
-                        Saved::Done
-                    } else {
-                        Saved::Failed
-                    };
-                    self.tell(ShellEvent::Saved(saved));
+                ShellCommand::PickToy => {
+                    let asked = self.toy_to_pick.clone();
+                    match asked {
+                        Some(path) => self.pick(&path),
+                        None => {
+                            let reason = "drop one on the window, or name one with --toy".to_owned();
+                            self.tell(ShellEvent::Toy(Err(reason)));
+                        }
+                    }
                 }
-                // A desktop has no screen that goes off, no lens to hold, no settings of its own, and a session its own toy.
+                ShellCommand::ReopenDevice => self.wants_device = true,
+                ShellCommand::Record(Some(take)) => {
+                    let kept = kept::Recording {
+                        take,
+                        toy: self.feed.toy_file(),
+                        jpeg_quality: self.jpeg_quality,
+                    };
+                    let (writer, file) = kept.write(&self.out, self.done.0.clone());
+                    (self.writer, self.recording) = (Some(writer), file);
+                }
+                ShellCommand::Share => {
+                    let shared = kept::share(&self.out, &self.live, self.recording.as_deref());
+                    self.tell(ShellEvent::Saved(match shared {
+                        Ok(()) => Saved::Done,
+                        Err(_) => Saved::Failed,
+                    }));
+                }
+                // A desktop has no screen that goes off, no lens to hold and no settings of its own.
                 _ => {}
             }
         }
+    }
+
+    /// A person chose a toy's file, which may be none.
+    pub fn pick(&mut self, path: &Path) {
+        let read = kept::read_toy(path).map(|(toy, file)| {
+            self.feed.set_toy_file(file);
+            toy
+        });
+        self.tell(ShellEvent::Toy(read));
+    }
+
+    /// The file of the latest recording.
+    #[must_use]
+    pub fn recording(&self) -> Option<&Path> {
+        self.recording.as_deref()
+    }
+
+    /// Waits until a recording that was ended is written, and tells.
+    pub fn wait_for_recording(&mut self) {
+        if let Some(writer) = self.writer.take() {
+            let _ = writer.join();
+        }
+        while let Ok(event) = self.done.1.try_recv() {
+            self.tell(event);
+        }
+    }
+
+    /// Leaves nothing unwritten behind.
+    pub fn close(&mut self) {
+        self.tell(ShellEvent::Foreground(false));
+        self.wait_for_recording();
     }
 
     fn save_picture(&mut self, name: &str) -> Saved {

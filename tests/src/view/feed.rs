@@ -4,17 +4,37 @@ use std::sync::Arc;
 
 use app_core::camera_frame::{Anchor, CameraFrame, Display, Exposure, FoundPlane, Stamp, Tracking};
 use app_core::scene::{Camera, Scene};
-use app_core::session::{Session, SessionError, SessionFrame};
+use app_core::session::{Capture, Files, Session, SessionError, SessionFrame};
 use glam::{DMat4, DVec2, DVec3};
+use serde::Deserialize;
+
+use crate::files::SESSION_FILE;
+use crate::stored::Stored;
 
 /// Receivers whose normals are nearer than this to straight up are level planes: cosine of 10 degrees.
 const LEVEL: f64 = 0.985;
+
+/// As the format has it.
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+pub(super) const MAX_TOY_BYTES: u64 = 256 << 20;
+
+/// Of the index no more than the name of the toy's file.
+#[derive(Deserialize)]
+struct Index {
+    toy: ToyEntry,
+}
+
+#[derive(Deserialize)]
+struct ToyEntry {
+    file: String,
+}
 
 /// A session as a camera delivers it.
 pub struct Feed {
     scene: Scene,
     frames: Vec<SessionFrame>,
     planes: Arc<[FoundPlane]>,
+    toy_file: Arc<[u8]>,
     /// Whether the toy stands there.
     pub is_toy_there: bool,
     /// Whether the platform has found no plane yet.
@@ -41,6 +61,7 @@ impl Feed {
         Ok(Self {
             frames: frames.collect::<Result<_, _>>()?,
             planes: level_planes(&scene),
+            toy_file: Arc::new([]),
             scene,
             is_toy_there: false,
             hides_planes: false,
@@ -51,6 +72,30 @@ impl Feed {
             n_delivered: 0,
             time_ns: 0,
         })
+    }
+
+    /// All frames of a session that is stored somewhere, and its toy's file.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn of_stored(stored: Stored) -> anyhow::Result<Self> {
+        let index: Index = serde_json::from_slice(&stored.read(SESSION_FILE, MAX_INDEX_BYTES)?)?;
+        let toy_file = stored.read(&index.toy.file, MAX_TOY_BYTES)?;
+        Ok(Self {
+            toy_file: toy_file.into(),
+            ..Self::of(&Capture::open(stored)?)?
+        })
+    }
+
+    /// The toy's file; empty where the session came without it.
+    #[must_use]
+    pub fn toy_file(&self) -> Arc<[u8]> {
+        Arc::clone(&self.toy_file)
+    }
+
+    /// Another toy, whose file this is.
+    pub fn set_toy_file(&mut self, file: Vec<u8>) {
+        self.toy_file = file.into();
     }
 
     /// The next frame, `elapsed_s` after the one before.

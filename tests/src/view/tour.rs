@@ -18,6 +18,8 @@ const FRAME_S: f64 = 1.0 / 30.0;
 const N_SETTLE: usize = 4;
 /// Frames after which a step that did not come is not waited for.
 const N_PATIENCE: usize = 60;
+/// Frames that are recorded, and as many as screens take meanwhile.
+const N_RECORDED: usize = 24;
 /// How far off the simulated person leaves the ghost: in metres, and in radians.
 const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const GHOST_OFF_RAD: f64 = 0.1;
@@ -164,9 +166,32 @@ impl<'a> Tour<'a> {
         self.shoot("paused")?;
         self.press("More")?;
         self.shoot("menu")?;
-        self.press("Show times")?;
-        self.press("Close")?;
+        // Each of these changes what the sheet is made of, and with it where its buttons are.
+        for label in ["Show times", "Record the session", "Close", "Play"] {
+            self.press(label)?;
+            self.shoot_nothing()?;
+        }
         self.shoot("times")?;
+        self.record()
+    }
+
+    /// Ends the recording after a second, and shares it.
+    fn record(&mut self) -> Result<(), TourError> {
+        for _ in 0..N_RECORDED {
+            self.frame()?;
+        }
+        self.press("More")?;
+        self.shoot_nothing()?;
+        self.press("End the recording")?;
+        self.desk.wait_for_recording();
+        self.shoot("recorded")?;
+        self.press("Share log and recording")?;
+        self.shoot("shared")?;
+        // A picture is no toy.
+        self.desk.toy_to_pick = self.written.first().cloned();
+        self.press("Another toy")?;
+        self.shoot("toy_refused")?;
+        self.press("Close")?;
         Ok(())
     }
 

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use app_core::Core;
 use app_core::app::{Device, ShellEvent};
+use app_core::frame::Clock;
 use app_core::interface::{Insets, Screen, Touch, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -42,6 +43,10 @@ pub struct Options {
     pub hold: Option<u32>,
     /// Where photos go.
     pub out: std::path::PathBuf,
+    /// Quality of a recording's pictures; lossless without one.
+    pub jpeg_quality: Option<u8>,
+    /// What a person chooses where a toy is asked for.
+    pub toy_to_pick: Option<std::path::PathBuf>,
     /// Close by itself after so many seconds.
     pub seconds: Option<f64>,
 }
@@ -63,7 +68,17 @@ pub fn open(feed: Feed, options: Options) -> Result<()> {
         result: Ok(()),
     };
     event_loop.run_app(&mut app)?;
+    if let Some(Opened { desk, .. }) = &mut app.opened {
+        desk.close();
+    }
     app.result
+}
+
+/// The clock of a desktop.
+#[must_use]
+pub fn clock() -> Clock {
+    let start = Instant::now();
+    Clock::new(move || 1e3 * start.elapsed().as_secs_f64())
 }
 
 struct Opened {
@@ -96,7 +111,10 @@ impl Shell {
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
         self.options.hold.into_iter().for_each(|hold| live.hold(hold));
+        live.time_by(clock());
         let mut desk = Desk::new(live, feed, self.options.out.clone(), Jobs::Thread);
+        desk.jpeg_quality = self.options.jpeg_quality;
+        desk.toy_to_pick = self.options.toy_to_pick.clone();
         desk.tell(ShellEvent::Foreground(true));
         desk.tell(ShellEvent::Surface(Some(window.inner_size().into())));
         self.opened = Some(Opened { window, desk });
@@ -246,6 +264,11 @@ impl ApplicationHandler for Shell {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::KeyboardInput { event, .. } if event.logical_key == Key::Named(NamedKey::Escape) => {
                 event_loop.exit();
+            }
+            WindowEvent::DroppedFile(path) => {
+                if let Some(Opened { desk, .. }) = &mut self.opened {
+                    desk.pick(&path);
+                }
             }
             WindowEvent::Resized(size) => self.resize(size),
             WindowEvent::RedrawRequested => {

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod orders;
+mod recorded;
 mod screens;
 mod table;
 mod way;

@@ -1,11 +1,12 @@
 //! Whatever happens in whatever order, what the shell is asked for makes sense.
 
 use app_core::app::{
-    AlignJob, AlignedJob, App, ArSession, Device, Permission, Saved, ShellCommand, ShellEvent, Show, Step,
-    Thermal, Wish,
+    AlignJob, AlignedJob, App, ArSession, Device, Notice, Permission, Saved, ShellCommand, ShellEvent, Show,
+    Step, Thermal, Wish,
 };
 use app_core::camera_frame::Tracking;
 use app_core::frame::FrameInput;
+use app_core::recording::{Ending, Take};
 use glam::DVec2;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -14,7 +15,7 @@ use crate::world;
 
 /// Something that happens.
 #[derive(Clone, Debug)]
-enum Happening {
+pub(crate) enum Happening {
     Permission(Permission),
     Foreground(bool),
     Surface(bool),
@@ -34,6 +35,9 @@ enum Happening {
     AlignmentDies,
     OtherToy(bool),
     Saved(Saved),
+    /// The first or the last recording ends, asked or not.
+    RecordingEnds(bool),
+    FreeSpace(u64),
     Wish(Wish),
 }
 
@@ -83,6 +87,8 @@ fn happening() -> impl Strategy<Value = Happening> {
         1 => Just(Happening::AlignmentDies),
         1 => any::<bool>().prop_map(Happening::OtherToy),
         1 => saved.prop_map(Happening::Saved),
+        1 => any::<bool>().prop_map(Happening::RecordingEnds),
+        1 => select(vec![0, u64::MAX]).prop_map(Happening::FreeSpace),
         12 => wish().prop_map(Happening::Wish),
     ]
 }
@@ -134,6 +140,7 @@ struct Platform {
     time_ns: i64,
     world_epoch: u32,
     jobs: Vec<AlignJob>,
+    takes: Vec<Take>,
 }
 
 impl Platform {
@@ -184,6 +191,20 @@ impl Platform {
                 vec![ShellEvent::Toy(read)]
             }
             Happening::Saved(saved) => vec![ShellEvent::Saved(saved)],
+            Happening::RecordingEnds(is_last) => {
+                let place = if is_last {
+                    self.takes.len().checked_sub(1)
+                } else {
+                    Some(0)
+                };
+                let place = place.filter(|place| *place < self.takes.len());
+                let ended = place.map(|place| self.takes.remove(place));
+                ended
+                    .map(|take| ShellEvent::Recorded(world::full(take)))
+                    .into_iter()
+                    .collect()
+            }
+            Happening::FreeSpace(free_bytes) => vec![ShellEvent::FreeSpace(free_bytes)],
             Happening::Wish(wish) => vec![ShellEvent::Wish(wish)],
         }
     }
@@ -209,7 +230,7 @@ impl Platform {
             ShellCommand::LockExposure(_) => !self.runs,
             ShellCommand::KeepAwake(is_on) => *is_on == self.is_awake,
             ShellCommand::Video(is_on) => *is_on == self.makes_video,
-            ShellCommand::Record(is_on) => *is_on == self.records,
+            ShellCommand::Record(take) => take.is_some() == self.records,
             _ => false,
         };
         if is_wrong {
@@ -223,7 +244,20 @@ impl Platform {
             ShellCommand::LockExposure(is_on) => self.is_locked = is_on,
             ShellCommand::KeepAwake(is_on) => self.is_awake = is_on,
             ShellCommand::Video(is_on) => self.makes_video = is_on,
-            ShellCommand::Record(is_on) => self.records = is_on,
+            ShellCommand::Record(take) => {
+                self.records = take.is_some();
+                // One after the other, each with a number of its own.
+                if let Some(take) = take {
+                    if self
+                        .takes
+                        .last()
+                        .is_some_and(|last| last.number() >= take.number())
+                    {
+                        return Err("a recording's number comes again".to_owned());
+                    }
+                    self.takes.push(*take);
+                }
+            }
             ShellCommand::Align(job) => self.jobs.push(*job),
             _ => {}
         }
@@ -258,7 +292,14 @@ impl Platform {
                 self.makes_video && !(self.runs && step == Step::Play),
                 "a video of nothing",
             ),
-            (self.records && !self.runs, "a recording of nothing"),
+            (
+                self.records && !(self.runs && step == Step::Play),
+                "a recording of nothing",
+            ),
+            (
+                self.records != app.is_recording(),
+                "the app is wrong about its recording",
+            ),
             (
                 is_toy && step != Step::Play,
                 "the effect is shown before the toy was found",
@@ -300,8 +341,13 @@ fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
     Ok((app, platform))
 }
 
+/// The app after all of it.
+pub(crate) fn happen(happenings: Vec<Happening>) -> App {
+    live_through(happenings).unwrap().0
+}
+
 /// What leads to a toy that moves.
-fn straight() -> Vec<Happening> {
+pub(crate) fn straight() -> Vec<Happening> {
     vec![
         Happening::Foreground(true),
         Happening::Device(Device::Ready),
@@ -371,6 +417,38 @@ fn the_effect_comes_and_goes_with_the_pose() {
 }
 
 #[test]
+fn a_recording_that_ended_late_leaves_the_next_one_alone() {
+    let (mut app, mut platform) = live_through(straight()).unwrap();
+    let wish = |app: &mut App, platform: &mut Platform, is_on| {
+        for command in app.event(ShellEvent::Wish(Wish::Record(is_on))) {
+            platform.obey(command).unwrap();
+        }
+    };
+    for is_on in [true, false, true] {
+        wish(&mut app, &mut platform, is_on);
+    }
+    let mut takes = std::mem::take(&mut platform.takes);
+    assert_eq!(takes.len(), 2);
+    let first = ShellEvent::Recorded(world::full(takes.remove(0)));
+    assert!(app.event(first).is_empty() && app.is_recording());
+    let second = ShellEvent::Recorded(world::full(takes.remove(0)));
+    let names: Vec<String> = app
+        .event(second)
+        .iter()
+        .map(|command| format!("{command:?}"))
+        .collect();
+    assert_eq!(names, ["Record(None)"]);
+    assert!(!app.is_recording());
+    assert!(
+        matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.taken.ending == Ending::NoRoom)
+    );
+    // With hardly anything free none begins.
+    let _ = app.event(ShellEvent::FreeSpace(1 << 20));
+    wish(&mut app, &mut platform, true);
+    assert!(!app.is_recording() && app.notice() == Some(&Notice::NoRoomToRecord));
+}
+
+#[test]
 fn a_recording_and_a_video_are_saved_before_the_camera_goes() {
     let (mut app, _) = live_through(straight()).unwrap();
     for wish in [Wish::Video(true), Wish::Record(true)] {
@@ -382,7 +460,7 @@ fn a_recording_and_a_video_are_saved_before_the_camera_goes() {
         names,
         [
             "Video(false)",
-            "Record(false)",
+            "Record(None)",
             "PauseTracking",
             "KeepAwake(false)"
         ]

@@ -4,35 +4,40 @@ use std::sync::Arc;
 
 use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, Verdict, Wish};
 use app_core::app::{Device, Permission};
+use app_core::recording::Take;
 use app_core::scene::Camera;
-use app_core::session::Capture;
 use glam::{DMat4, DVec2, DVec3};
-use harness::files::{BUNDLED_SESSION, Folder};
+use harness::files::BUNDLED_SESSION;
+use harness::stored::Stored;
 use harness::view::feed::Feed;
 
 /// How far off the ghost is left.
-const OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
+pub(crate) const OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const OFF_RAD: f64 = 0.1;
 
-struct Person {
-    app: App,
-    feed: Feed,
+pub(crate) struct Person {
+    pub(crate) app: App,
+    pub(crate) feed: Feed,
+    /// Recordings that wait to be written.
+    pub(crate) takes: Vec<Take>,
 }
 
 impl Person {
-    fn tell(&mut self, event: ShellEvent) {
+    pub(crate) fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
-            if let ShellCommand::Align(job) = command {
-                self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))));
+            match command {
+                ShellCommand::Align(job) => self.tell(ShellEvent::Aligned(Some(Box::new(job.run())))),
+                ShellCommand::Record(take) => self.takes.extend(take.map(|take| *take)),
+                _ => {}
             }
         }
     }
 
-    fn wish(&mut self, wish: Wish) {
+    pub(crate) fn wish(&mut self, wish: Wish) {
         self.tell(ShellEvent::Wish(wish));
     }
 
-    fn frames(&mut self, n: usize) {
+    pub(crate) fn frames(&mut self, n: usize) {
         for _ in 0..n {
             let frame = self.feed.next(0.033);
             self.tell(ShellEvent::Frame(Box::new(frame)));
@@ -57,11 +62,14 @@ fn facing_rad(world_from_object: &DMat4, camera: &Camera) -> f64 {
 }
 
 /// A person who has placed the ghost, as far off as told, and waits.
-fn placed(off_m: DVec3) -> Person {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let feed = Feed::of(&session).unwrap();
+pub(crate) fn placed(off_m: DVec3) -> Person {
+    let feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
     let app = App::new(Arc::clone(&feed.scene().toy));
-    let mut person = Person { app, feed };
+    let mut person = Person {
+        app,
+        feed,
+        takes: Vec::new(),
+    };
     for event in [
         ShellEvent::Foreground(true),
         ShellEvent::Device(Device::Ready),

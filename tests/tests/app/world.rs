@@ -3,9 +3,10 @@
 use std::sync::{Arc, OnceLock};
 
 use app_core::alignment::{Alignment, AlignmentReport, PoseAlignment, PoseDeviation};
-use app_core::app::App;
+use app_core::app::{App, Recorded};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::{FrameInput, NoLight};
+use app_core::recording::Take;
 use app_core::scene::{Image, Intrinsics};
 use app_core::toy::Toy;
 use glam::{DMat4, DVec2, DVec3};
@@ -16,11 +17,12 @@ pub(crate) const SIZE_PX: [u32; 2] = [64, 48];
 /// The toy, read once.
 pub(crate) fn toy() -> Arc<Toy> {
     static TOY: OnceLock<Arc<Toy>> = OnceLock::new();
-    let read = || {
-        let bytes = toy_glb(&World::boxes(), &ToyFile::default());
-        Arc::new(Toy::from_glb("toy.glb", &bytes).unwrap())
-    };
+    let read = || Arc::new(Toy::from_glb("toy.glb", &toy_file()).unwrap());
     Arc::clone(TOY.get_or_init(read))
+}
+
+pub(crate) fn toy_file() -> Vec<u8> {
+    toy_glb(&World::boxes(), &ToyFile::default())
 }
 
 pub(crate) fn app() -> App {
@@ -73,6 +75,14 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
         anchors: Arc::new([]),
         light_estimate: None,
         display: Display::default(),
+    }
+}
+
+/// A recording that found no room.
+pub(crate) fn full(take: Take) -> Recorded {
+    Recorded {
+        file: "full.mcap".to_owned(),
+        taken: take.without_file(&std::io::ErrorKind::StorageFull.into()),
     }
 }
 

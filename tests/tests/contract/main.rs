@@ -114,9 +114,11 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
         &SceneFacts {
             region,
             physical_toy: Some(region),
+            toy_box: Some(region),
             n_lights: 1,
             n_receivers: 1,
             is_plate_complete: true,
+            are_plates_scaled: false,
         },
         &BALANCED,
     )

@@ -177,7 +177,7 @@ impl App {
     }
 
     /// What the core draws on a target of a screen's size, red, green, blue and alpha.
-    fn shown(&self, [width, height]: [u32; 2], display: Display) -> Vec<u8> {
+    fn shown(&mut self, [width, height]: [u32; 2], display: Display) -> Vec<u8> {
         let size = wgpu::Extent3d {
             width,
             height,
@@ -220,6 +220,27 @@ impl App {
         let bytes = copy.get_mapped_range(..).unwrap();
         let rows = bytes.chunks_exact(row_bytes as usize);
         rows.flat_map(|row| row[..4 * width as usize].to_vec()).collect()
+    }
+}
+
+/// On a screen of its own size a picture is what is read of it, whether its effect is shown in whole or in part.
+#[test]
+fn a_screen_shows_the_region_over_the_camera_image() {
+    let (scene, input) = (scene(), first_input());
+    let mut app = App::open();
+    app.core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    for effect in [1.0, 0.4, 0.0] {
+        let input = FrameInput {
+            effect,
+            ..input.clone()
+        };
+        app.core.frame(&input).unwrap();
+        let shown = app.shown([scene.width_px, scene.height_px], Display::default());
+        let read = app.core.read_picture().unwrap().rgba8;
+        // Mixed before or after rounding.
+        assert!(worst(&shown, &read) <= 1, "effect {effect}");
+        let changed = worst(&shown, &input.image.rgba().rgba8);
+        assert_eq!(changed > 10, effect > 0.0, "effect {effect}: {changed}");
     }
 }
 

@@ -160,24 +160,24 @@ fn assert_held(n_lights: usize, preset: Preset, budgets: [Budget; 3], peak_mib: 
 fn frames_of_balanced_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
-        (Pose, 1_781_000, 4.7),
-        (Picture, 1_781_000, 6.7),
-        (View, 3_231_000, 8.5),
+        (Pose, 1_781_000, 2.4),
+        (Picture, 1_781_000, 3.4),
+        (View, 3_231_000, 4.6),
     ];
-    assert_held(1, Preset::Balanced, one, 85.0);
+    assert_held(1, Preset::Balanced, one, 48.0);
     let two = [
-        (Pose, 2_581_000, 5.4),
-        (Picture, 2_581_000, 7.5),
-        (View, 4_831_000, 9.9),
+        (Pose, 2_581_000, 2.8),
+        (Picture, 2_581_000, 3.8),
+        (View, 4_831_000, 5.3),
     ];
-    assert_held(2, Preset::Balanced, two, 98.0);
+    assert_held(2, Preset::Balanced, two, 60.0);
 }
 
 #[test]
 fn frames_of_the_baseline_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
-    let paper = [(Pose, 20_100, 6.1), (Picture, 20_100, 6.9), (View, 40_100, 8.1)];
-    assert_held(1, Preset::Paper, paper, 71.0);
+    let paper = [(Pose, 20_100, 5.1), (Picture, 20_100, 5.9), (View, 40_100, 7.1)];
+    assert_held(1, Preset::Paper, paper, 60.0);
 }
 
 /// A row of the ledger that costs more is found.
@@ -186,11 +186,11 @@ fn frames_of_the_baseline_stay_within_their_budgets() {
 fn a_planted_budget_is_broken() {
     use FrameKind::{Picture, Pose, View};
     let planted = [
-        (Pose, 1_781_000, 4.7),
-        (Picture, 1_781_000, 6.0),
-        (View, 3_231_000, 8.5),
+        (Pose, 1_781_000, 2.4),
+        (Picture, 1_781_000, 2.9),
+        (View, 3_231_000, 4.6),
     ];
-    assert_held(1, Preset::Balanced, planted, 85.0);
+    assert_held(1, Preset::Balanced, planted, 48.0);
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn triangles_that_cover_too_much_are_refused_with_the_number() {
     assert!(*covered_px > 4e9, "{covered_px}");
     assert!(told.unwrap().to_string().contains(&format!("{covered_px:.2e}")));
     let ran: Vec<&str> = report.ran.iter().map(|run| run.pass).collect();
-    assert_eq!(ran, ["present"], "the camera frame passes through");
+    assert!(ran.is_empty(), "the camera frame passes through: {ran:?}");
 }
 
 fn is_about_cost(warning: &Warning) -> bool {

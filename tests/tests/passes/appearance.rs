@@ -1,8 +1,7 @@
 //! `appearance` on scattered evidence of surfaces at several depths.
 
-use glam::{DVec3, DVec4, UVec2};
+use glam::{DVec4, UVec2};
 use harness::reference::appearance::{Seen, ToyPixel, clean};
-use harness::reference::fit::toy_radiance;
 use harness::reference::raster::Raster;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
@@ -26,7 +25,7 @@ struct Toy {
 }
 
 /// What is kept of a pixel in one output.
-type Part = fn(ToyPixel) -> DVec3;
+type Part = fn(ToyPixel) -> DVec4;
 
 /// Patches of surfaces; evidence is sparse enough that some pixels have none in reach.
 fn toy(size: UVec2) -> Toy {
@@ -59,8 +58,8 @@ fn errors(source: &str) -> Errors {
     let seen = Raster::from_fn(size, |at| Seen {
         pixel: ToyPixel {
             color: scene.image.at(scene.rect.origin_px + at).truncate(),
-            lit: toy_radiance::<f64>(&scene.solution, toy.normal.at(at).truncate(), toy.received.at(at)),
-            base: toy.base.at(at).truncate(),
+            received: toy.received.at(at),
+            base: toy.base.at(at).truncate().extend(0.5 + 0.5 * toy.normal.at(at).y),
         },
         depth: toy.depth.at(at),
         is_one_surface: toy.validity.at(at).y == 1.0,
@@ -83,20 +82,28 @@ fn errors(source: &str) -> Errors {
     let mut own: Bindings<'_> = views(0, &before);
     own.push((2, wgpu::BindingResource::TextureView(&depth)));
     own.extend(views(3, &after));
-    let outputs: [Part; 3] = [|pixel| pixel.color, |pixel| pixel.lit, |pixel| pixel.base];
+    let color: Part = |pixel| pixel.color.extend(1.0);
+    // Of a new picture colours alone are made, of the first three inputs.
+    let outputs: [(&str, usize, Part); 4] = [
+        ("fs_clean", 0, color),
+        ("fs_clean", 1, |pixel| pixel.received),
+        ("fs_clean", 2, |pixel| pixel.base),
+        ("fs_recolor", 0, color),
+    ];
     let mut pairs = Vec::new();
-    for (output, part) in outputs.into_iter().enumerate() {
+    for (fragment, output, part) in outputs {
         let draw = Draw {
             source,
-            fragment: "fs_clean",
+            fragment,
             constants: &[],
             output,
             size,
         };
-        let actual = device.draw(draw, [&buffers(0, &shared), &own]);
+        let own = if fragment == "fs_recolor" { &own[..3] } else { &own };
+        let actual = device.draw(draw, [&buffers(0, &shared[..1]), own]);
         let both = actual.texels().iter().zip(found.texels());
         pairs.extend(both.flat_map(|(actual, found)| {
-            let expected = found.map_or(DVec4::ZERO, |pixel| part(pixel).extend(1.0));
+            let expected = found.map_or(DVec4::ZERO, part);
             (0..4).map(move |k| (actual[k], expected[k]))
         }));
     }
@@ -114,16 +121,14 @@ fn a_fault_in_the_appearance_is_found() {
         ("REACH_PX: i32 = 3", "REACH_PX: i32 = 2"),
         ("OTHER_SURFACE: f32 = 1e-4", "OTHER_SURFACE: f32 = 2e-4"),
         ("DEPTH_STEP: f32 = 0.005", "DEPTH_STEP: f32 = 0.001"),
-        ("0).g == 0.0", "0).a == 0.0"),
+        ("0).g == 1.0", "0).a == 1.0"),
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
-        ("/ (", "/ sqrt("),
-        (
-            "> 0.0 {\n    return Appearance(",
-            "> 9.0 {\n    return Appearance(",
-        ),
-        ("part.x * fit.toy[0]", "part.y * fit.toy[0]"),
-        ("* received[i]", "* received[0]"),
-        ("fit.intensity[", "fit.toy["),
+        ("/ (distance_squared", "/ sqrt(distance_squared"),
+        ("a > 0.0 { return Appearance(", "a > 9.0 { return Appearance("),
+        ("e > 0.0 { return Appearance(", "e > 9.0 { return Appearance("),
+        ("> 0.0 { return color / color.a", "> 9.0 { return color / color.a"),
+        ("0.5 + 0.5 * normal.y", "0.5 - 0.5 * normal.y"),
+        ("received / color.a", "received"),
     ];
     check_faults("appearance", &faults, ALLOWED, errors);
 }

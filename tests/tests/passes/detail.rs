@@ -90,7 +90,7 @@ fn a_fault_in_the_separation_is_found() {
         ("SHADOW: f32 = 0.85", "SHADOW: f32 = 0.8"),
         ("LIT: f32 = 0.98", "LIT: f32 = 0.95"),
         ("(point) != ", "(point) + 9u == "),
-        ("0).r == 0.0", "0).b == 0.0"),
+        ("(texel).r == 0.0", "(texel).b == 0.0"),
         (".a < 1.0", ".a < 0.0"),
         ("DARKEST_USABLE: f32 = 0.00303527", "DARKEST_USABLE: f32 = 0.0"),
         ("largest(abs(", "smallest(abs("),

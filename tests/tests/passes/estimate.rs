@@ -143,7 +143,7 @@ fn a_fault_in_the_completion_is_found() {
         ("ESTIMATED: f32 = 0.25", "ESTIMATED: f32 = 0.3"),
         ("TELLS_ALL: f32 = 0.3", "TELLS_ALL: f32 = 0.31"),
         ("TELLS_NONE: f32 = 0.1", "TELLS_NONE: f32 = 0.09"),
-        ("0).b == 0.0", "0).r == 0.0"),
+        ("(texel)).b == 0.0", "(texel)).r == 0.0"),
         (".a == 1.0 ||", ".a > 0.0 ||"),
         ("!IS_FINAL ||", ""),
         ("_cells - 0.5", "_cells"),

@@ -89,7 +89,7 @@ fn lit_colours_are_pooled_onto_what_was_known() {
 fn a_fault_in_the_pooling_is_found() {
     let faults = [
         ("LIT_POWER: f32 = 8.0", "LIT_POWER: f32 = 7.0"),
-        ("0).b;", "0).r;"),
+        ("(texel)).b;", "(texel)).r;"),
         ("fit.gain.rgb * ", ""),
         ("= smallest(", "= largest("),
         ("FULL_SHARE: f32 = 0.25", "FULL_SHARE: f32 = 0.24"),

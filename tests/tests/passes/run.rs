@@ -85,7 +85,9 @@ impl Run {
         let (origin, size) = (plan.region.origin_px, plan.region.size_px);
         let map = |map| Ok::<_, CoreError>(raster(&core.read_map(map)?.expect("the toy moves")));
         let visible = |map: Raster<DVec4>| map.map(|texel| texel.x);
-        let seen_by_shader = |code: u8| decoded[usize::from(code)];
+        let as_decoded =
+            |color: DVec3| DVec3::from(color.to_array().map(|linear| decoded[usize::from(code(linear))]));
+        let plate = map(Map::Plate)?.map(DVec4::truncate);
         let validity = map(Map::Validity)?;
         let base = map(Map::GbufferBase)?;
         let fit = core.read_fit()?.expect("the toy moves");
@@ -95,16 +97,20 @@ impl Run {
             region: stand.region(&plan.region),
             pictures: Pictures {
                 frame: crop(&frame, &plan.region, decoded),
-                plate: map(Map::Plate)?.map(DVec4::truncate),
+                plate: plate.map(|texel| {
+                    if plan.is_plate_fine {
+                        texel
+                    } else {
+                        as_decoded(texel)
+                    }
+                }),
                 seen: validity.map(|texel| texel.x),
                 visibility: map(Map::PhysicalVisibility)?,
                 ambient: visible(map(Map::PhysicalAmbient)?),
             },
             validity,
             // The map is decoded by the standard, the shader by the driver.
-            gbuffer_base: base.map(|texel| {
-                DVec3::from([texel.x, texel.y, texel.z].map(|linear| seen_by_shader(code(linear))))
-            }),
+            gbuffer_base: base.map(|texel| as_decoded(texel.truncate())),
             gbuffer_received: map(Map::GbufferReceived)?,
             shown_visibility: map(Map::Visibility)?,
             shown_ambient: visible(map(Map::Ambient)?),

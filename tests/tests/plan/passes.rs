@@ -30,9 +30,11 @@ fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
     let facts = SceneFacts {
         region,
         physical_toy: Some(region),
+        toy_box: Some(region),
         n_lights,
         n_receivers: 2,
         is_plate_complete: false,
+        are_plates_scaled: false,
     };
     Plan::new(&facts, &BALANCED)
 }
@@ -45,10 +47,11 @@ fn leaves_out(plan: &Plan, what: &str) -> bool {
 #[test]
 fn a_new_pose_costs_the_frame_path_alone() {
     let plan = plan([640, 360], 2);
-    let light = ["occlusion", "visibility"];
+    let light = ["occlusion", "occlusion", "visibility"];
+    let ambient = ["occlusion", "visibility"];
     let drawn = ["self_shadow", "moved_mask", "toy", "coverage", "composite"];
-    // A light each, and the ambient light.
-    let frame = [light, light, light].concat().into_iter().chain(drawn);
+    // Both lights, and the ambient light.
+    let frame = light.into_iter().chain(ambient).chain(drawn);
     let frame: Vec<_> = frame.map(|pass| (Path::Frame, pass)).collect();
     assert_eq!(planned_by_model(&plan, Change::Pose), frame);
     for change in Change::ALL {

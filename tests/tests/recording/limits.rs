@@ -98,7 +98,7 @@ fn a_sink_that_refuses_ends_the_recording_and_leaves_what_was_flushed() {
         .unwrap();
     assert!(matches!(
         error.downcast().unwrap(),
-        WriteError::Stopped(Stop::Sink(_))
+        WriteError::Stopped(Stop::Full)
     ));
     let n_frames = writer.flushed().n_frames;
     assert!(writer.finish().is_err());

@@ -1,6 +1,6 @@
 //! Colours of a toy where it is plain from which pixel they are.
 
-use glam::{DVec3, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 use harness::reference::appearance::{OTHER_SURFACE, REACH_PX, Seen, ToyPixel, clean};
 use harness::reference::raster::Raster;
 
@@ -9,8 +9,8 @@ const SIZE: UVec2 = UVec2::new(17, 11);
 fn pixel(value: f64) -> ToyPixel {
     ToyPixel {
         color: DVec3::splat(value),
-        lit: DVec3::splat(2.0 * value),
-        base: DVec3::splat(3.0 * value),
+        received: DVec4::splat(2.0 * value),
+        base: DVec4::splat(3.0 * value),
     }
 }
 
@@ -36,11 +36,14 @@ fn scene(depth: f64, known: &[(UVec2, f64, f64)]) -> Raster<Seen> {
 fn color(seen: &Raster<Seen>, at: UVec2) -> Option<f64> {
     let found = clean(seen, at)?;
     assert!(
-        (found.lit - 2.0 * found.color).abs().max_element() < 1e-12,
+        (found.received.truncate() - 2.0 * found.color)
+            .abs()
+            .max_element()
+            < 1e-12,
         "{found:?}"
     );
     assert!(
-        (found.base - 3.0 * found.color).abs().max_element() < 1e-12,
+        (found.base.truncate() - 3.0 * found.color).abs().max_element() < 1e-12,
         "{found:?}"
     );
     Some(found.color.x)

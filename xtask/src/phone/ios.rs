@@ -124,6 +124,8 @@ fn link(toolchain: &Toolchain, shell: &Path, folder: &Path, imports: &Imports) -
             .join(IOS.target)
             .join("release/libapp_ios.a"),
     );
+    // Every missing name at once.
+    link.arg("--error-limit=0");
     // By their paths, so that each is loaded whether or not a name of it is imported.
     command::run(link.args(libraries))?;
     Ok(program)

@@ -3,27 +3,26 @@
 use wgpu::TextureFormat;
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::gbuffer::{self, BASE_FORMAT};
-use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
+use crate::model::capture::gbuffer::{self, BASE_FORMAT, RECEIVED_FORMAT};
+use crate::model::parts::HEMISPHERES;
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
-use crate::passes::globals::GLOBALS;
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::{DEPTH, FULLSCREEN};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
-    &FIT,
     &HEMISPHERES,
-    &TOY_RADIANCE,
     &DEPTH,
     &FULLSCREEN,
     &part!("capture/appearance", constants: [REACH_PX]),
 ]);
+/// Frame, validity and depth, of which colours are made, then what is the same for all pictures of a view.
 const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
@@ -34,39 +33,40 @@ const SLOTS: &[Slot] = &[
 ];
 /// Format of the colours: as the camera's, so that its codes come through unrounded.
 const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// Format of the light that they were seen under.
-const LIT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Slots of what colours are made of.
+const N_COLOR_SLOTS: usize = 3;
 
 /// How far past the toy its colours are extrapolated.
 const REACH_PX: u32 = 3;
 
 pub(crate) struct Pass {
-    draw: Draw,
+    all: Draw,
+    colors: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
-    pub(crate) scene: Scene<'a>,
+    pub(crate) globals: &'a Buffer,
     pub(crate) frame: &'a TextureView,
     pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
-/// Of the region's size.
+/// Of the toy box's size.
 pub(crate) struct Targets {
     pub(crate) color: Texture,
-    /// Fitted radiance over base colour at the pixels that a colour is from.
-    pub(crate) lit: Texture,
-    /// Base colour of these pixels.
+    /// Each light's cosine times its visibility at the pixels that a colour is from.
+    pub(crate) received: Texture,
+    /// Base colour of these pixels, and how far they face upwards.
     pub(crate) base: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label, format| Texture::target(gpu, label, plan.region.size_px, format);
+        let target = |label, format| Texture::target(gpu, label, plan.toy_box.size_px, format);
         Self {
             color: target("appearance", COLOR_FORMAT),
-            lit: target("appearance lit", LIT_FORMAT),
+            received: target("appearance received", RECEIVED_FORMAT),
             base: target("appearance base", BASE_FORMAT),
         }
     }
@@ -74,14 +74,24 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
-        let targets = [COLOR_FORMAT, LIT_FORMAT, BASE_FORMAT];
+        let draw = |fragment, slots, targets| {
+            let groups = [GLOBALS_GROUP, slots, &[], &[]];
+            gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, targets))
+        };
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_clean", groups, &targets)),
+            all: draw("fs_clean", SLOTS, &[COLOR_FORMAT, RECEIVED_FORMAT, BASE_FORMAT]),
+            colors: draw("fs_recolor", &SLOTS[..N_COLOR_SLOTS], &[COLOR_FORMAT]),
         }
     }
 
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+    /// Of a new view all, of a new picture of a known one the colours alone.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        is_new_view: bool,
+        targets: &Targets,
+    ) {
         let gbuffer = inputs.gbuffer;
         let textures = [
             inputs.frame,
@@ -91,13 +101,22 @@ impl Pass {
             &gbuffer.received.view,
             &gbuffer.base.view,
         ];
-        let groups = [
-            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind(&self.draw, GROUP_PASS, &textures.map(Into::into)),
-        ];
-        let colors = [&targets.color, &targets.lit, &targets.base];
-        let colors = colors.map(|texture| Some(cleared(&texture.view)));
+        let written = [&targets.color, &targets.received, &targets.base];
+        let bound = |draw, n_textures: usize| {
+            [
+                recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]),
+                recorder.bind(draw, GROUP_PASS, &textures.map(Into::into)[..n_textures]),
+            ]
+        };
+        // Of a new view as well, so that the pictures of it that follow make no objects.
+        let of_colors = bound(&self.colors, N_COLOR_SLOTS);
+        let (draw, groups, n_written) = if is_new_view {
+            (&self.all, bound(&self.all, textures.len()), written.len())
+        } else {
+            (&self.colors, of_colors, 1)
+        };
+        let written = written.map(|texture| Some(cleared(&texture.view)));
         let near = inputs.plan.near_physical_toy(REACH_PX);
-        recorder.fullscreen_within(&self.draw, &groups, &colors, near);
+        recorder.fullscreen_within(draw, &groups, &written[..n_written], near);
     }
 }

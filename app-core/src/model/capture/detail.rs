@@ -13,7 +13,7 @@ use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, PIXEL};
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -22,6 +22,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &PIXEL,
     &CHANNELS,
     &FULLSCREEN,
+    &MARKS,
     &part!("capture/detail"),
 ]);
 const SLOTS: &[Slot] = &[

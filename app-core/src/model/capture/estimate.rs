@@ -13,8 +13,8 @@ use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN};
-use crate::passes::plate::PLATE_FORMAT;
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS};
+use crate::passes::plate::FINE_FORMAT;
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -25,6 +25,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &BETWEEN_CELLS,
     &CELLS,
     &FULLSCREEN,
+    &MARKS,
     &part!("capture/estimate"),
 ]);
 const SLOTS: &[Slot] = &[
@@ -73,7 +74,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = || Texture::target(gpu, "photographed plate", plan.region.size_px, PLATE_FORMAT);
+        let target = || Texture::target(gpu, "photographed plate", plan.region.size_px, FINE_FORMAT);
         Self {
             photographed: is_needed(plan).then(target),
         }
@@ -86,7 +87,7 @@ impl Pass {
         let draw = |is_final| {
             gpu.draw(&DrawSpec {
                 constants: vec![("IS_FINAL", is_final)],
-                ..DrawSpec::fullscreen(&SHADER, "fs_complete", groups, &[PLATE_FORMAT])
+                ..DrawSpec::fullscreen(&SHADER, "fs_complete", groups, &[FINE_FORMAT])
             })
         };
         Self {

@@ -16,7 +16,7 @@ use crate::model::parts::{HEMISPHERES, MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::PIXEL;
+use crate::passes::parts::{MARKS, PIXEL};
 
 /// One step of the iteratively reweighted least squares.
 pub(crate) const FIT_STEP: Part = part!(
@@ -32,6 +32,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &HEMISPHERES,
     &TOY_RADIANCE,
     &PIXEL,
+    &MARKS,
     &part!("capture/fit"),
 ]);
 const SLOTS: &[Slot] = &[

@@ -30,20 +30,21 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the normals.
 const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Format of each light's cosine times its visibility.
-const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of each light's cosine times its visibility, which is from 0 to 1.
+pub(crate) const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Pass {
     draw: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
     pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) self_shadow: &'a self_shadow::Targets,
 }
 
-/// Of the region's size.
+/// Of the toy box's size.
 pub(crate) struct Targets {
     pub(crate) base: Texture,
     pub(crate) normal: Texture,
@@ -53,7 +54,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label, format| Texture::target(gpu, label, plan.region.size_px, format);
+        let target = |label, format| Texture::target(gpu, label, plan.toy_box.size_px, format);
         Self {
             base: target("gbuffer base", BASE_FORMAT),
             normal: target("gbuffer normal", NORMAL_FORMAT),
@@ -87,6 +88,7 @@ impl Pass {
         let colors = [&targets.base, &targets.normal, &targets.received];
         let colors = colors.map(|texture| Some(cleared(&texture.view)));
         let mut render = recorder.render(SHADER.name, &colors, Some(&targets.depth.view), StoreOp::Store);
+        render.part_of(inputs.plan.part_drawn());
         render.begin(&self.draw, &groups);
         let toy = inputs.toy;
         toy.draw_parts(&mut render, &[&toy.physical], &materials);

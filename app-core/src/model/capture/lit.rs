@@ -12,7 +12,7 @@ use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::FIT;
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::CHANNELS;
+use crate::passes::parts::{CHANNELS, MARKS};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -22,6 +22,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &GRID,
     &ACCUMULATED,
     &POOL,
+    &MARKS,
     &part!("capture/lit"),
 ]);
 const SLOTS: &[Slot] = &[

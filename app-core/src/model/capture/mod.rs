@@ -20,7 +20,7 @@ use crate::model::state::grids::CellBuffers;
 use crate::model::state::solution::Scene;
 use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
-use crate::passes::plate::{self, PLATE_FORMAT};
+use crate::passes::plate::{self, FINE_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
 
 passes!(Plan:
@@ -41,14 +41,16 @@ impl CaptureTargets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
             light: LightMaps::new(gpu, plan),
-            plate: Texture::target(gpu, "plate", plan.region.size_px, PLATE_FORMAT),
+            plate: Texture::target(gpu, "plate", plan.region.size_px, plan.plate_format()),
             by_pass: Targets::new(gpu, plan),
         }
     }
 
     /// Whether the targets suffice for `plan`, of a region of the same size.
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
-        !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some()
+        let has_photographed = !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some();
+        // A finer plate will do where codes would.
+        has_photographed && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
     }
 }
 
@@ -74,11 +76,9 @@ impl CapturePath<'_> {
             Step::Gbuffer => passes
                 .gbuffer
                 .encode(recorder, &self.gbuffer_inputs(), &of.gbuffer),
-            Step::Validity => passes.validity.encode(
-                recorder,
-                (&of.gbuffer.depth.view, &self.region.plan),
-                &of.validity,
-            ),
+            Step::Validity => passes
+                .validity
+                .encode(recorder, &self.validity_inputs(), &of.validity),
             Step::Plate => self.plate(recorder),
             Step::Withhold => {
                 let marks = &of.validity.marks;
@@ -97,10 +97,11 @@ impl CapturePath<'_> {
                 .tint
                 .encode(recorder, &self.tint_inputs(), &self.state.tints),
             Step::TintFill => passes.tint_fill.encode(recorder, &self.state.tints),
-            Step::Appearance => {
+            Step::Appearance { is_new_view } => {
+                let inputs = self.appearance_inputs();
                 passes
                     .appearance
-                    .encode(recorder, &self.appearance_inputs(), &of.appearance);
+                    .encode(recorder, &inputs, is_new_view, &of.appearance);
             }
         }
     }
@@ -127,7 +128,7 @@ impl CapturePath<'_> {
         let target = photographed
             .filter(|_| is_completed)
             .unwrap_or(&self.captured.plate);
-        self.plate.encode(recorder, &inputs, &target.view);
+        self.plate.encode(recorder, &inputs, target);
     }
 
     fn estimate(&self, recorder: &mut Recorder<'_>, fineness: Fineness) {
@@ -177,9 +178,17 @@ impl CapturePath<'_> {
 
     fn gbuffer_inputs(&self) -> gbuffer::Inputs<'_> {
         gbuffer::Inputs {
+            plan: &self.region.plan,
             globals: &self.region.globals,
             toy: self.toy,
             self_shadow: &self.captured.light.self_shadow,
+        }
+    }
+
+    fn validity_inputs(&self) -> validity::Inputs<'_> {
+        validity::Inputs {
+            plan: &self.region.plan,
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
         }
     }
 
@@ -227,7 +236,7 @@ impl CapturePath<'_> {
     fn appearance_inputs(&self) -> appearance::Inputs<'_> {
         appearance::Inputs {
             plan: &self.region.plan,
-            scene: self.scene(),
+            globals: &self.region.globals,
             frame: self.pictures.frame,
             validity: self.validity(),
             gbuffer: &self.captured.by_pass.gbuffer,
@@ -259,6 +268,7 @@ impl CapturePath<'_> {
         PoolGrids {
             scene: self.scene(),
             grids: &self.state.grids,
+            layout: &self.state.layout,
             cells,
             n_receivers: self.region.plan.n_receivers,
         }

@@ -32,7 +32,9 @@ pub(crate) enum Step {
     Detail,
     Tint,
     TintFill,
-    Appearance,
+    Appearance {
+        is_new_view: bool,
+    },
 }
 
 impl Step {
@@ -53,7 +55,7 @@ impl Step {
             Self::Detail => &["detail"],
             Self::Tint => &["tint"],
             Self::TintFill => &["tint_fill"],
-            Self::Appearance => &["appearance"],
+            Self::Appearance { .. } => &["appearance"],
         }
     }
 }
@@ -94,7 +96,8 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
     }
     steps.extend([Step::Residual, Step::FillResidual]);
     add_if(&mut steps, detail::is_needed(plan), [Step::Detail]);
-    steps.extend([Step::Tint, Step::TintFill, Step::Appearance]);
+    let is_new_view = change >= Change::View;
+    steps.extend([Step::Tint, Step::TintFill, Step::Appearance { is_new_view }]);
     steps
 }
 

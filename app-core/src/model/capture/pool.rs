@@ -7,11 +7,13 @@ use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::texture::TextureView;
-use crate::model::state::grids::CellBuffers;
+use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::{SCENE_SLOTS, Scene};
 
 /// Sample points of a cell, and its accumulation.
-pub(crate) const POOL: Part = part!("common/pool");
+pub(crate) const POOL: Part = part!("common/pool", constants: [N_POINTS]);
+/// Points of a cell along each side.
+const N_POINTS: u32 = 8;
 /// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
 const WORKGROUPS: u32 = 8;
 
@@ -23,6 +25,8 @@ pub(crate) struct Pool {
 pub(crate) struct PoolGrids<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) grids: &'a Buffer,
+    /// Contents of `grids`.
+    pub(crate) layout: &'a Grids,
     pub(crate) cells: &'a CellBuffers,
     pub(crate) n_receivers: u32,
 }
@@ -52,6 +56,8 @@ impl Pool {
             recorder.bind(&self.compute, GROUP_SCENE, &on.scene.resources()),
             recorder.bind(&self.compute, GROUP_PASS, &resources),
         ];
-        recorder.compute(&self.compute, &groups, [WORKGROUPS, WORKGROUPS, on.n_receivers]);
+        let n_points = (u64::from(N_POINTS * N_POINTS) * on.layout.n_cells()).min(recorder.n_pixels);
+        let workgroups = [WORKGROUPS, WORKGROUPS, on.n_receivers];
+        recorder.compute_over(&self.compute, &groups, workgroups, n_points);
     }
 }

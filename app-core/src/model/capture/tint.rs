@@ -13,7 +13,7 @@ use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{CHANNELS, PIXEL};
+use crate::passes::parts::{CHANNELS, MARKS, PIXEL};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -24,6 +24,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &CHANNELS,
     &TINT_GRID,
     &TINT_CELL,
+    &MARKS,
     &part!("capture/tint"),
 ]);
 /// The sampling stride, in region pixels; then the grid, the sums and their inputs.
@@ -84,7 +85,8 @@ impl Pass {
             recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
             recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
         ];
-        let size_px = inputs.plan.region.size_px;
+        // As many steps as can begin in the box.
+        let size_px = inputs.plan.toy_box.size_px;
         let sampled_px = size_px.map(|side_px| side_px.div_ceil(stride_px));
         let workgroups = sampled_px.map(|side_px| side_px.div_ceil(WORKGROUP_PX)).extend(1);
         recorder.compute_over(

@@ -23,18 +23,18 @@ pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Farthest that the toy is looked for around a pixel.
 const BLEED_PX: u32 = 8;
 /// Marks of pixels farther from it.
-const FAR: Color = Color {
-    r: 1.0,
-    g: 0.0,
-    b: 1.0,
-    a: 1.0,
-};
+pub(crate) const FAR_MARKS: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 
 pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Of the region's size.
+pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) gbuffer_depth: &'a TextureView,
+}
+
+/// Of the toy box's size.
 pub(crate) struct Targets {
     pub(crate) marks: Texture,
 }
@@ -42,7 +42,7 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            marks: Texture::target(gpu, "validity", plan.region.size_px, FORMAT),
+            marks: Texture::target(gpu, "validity", plan.toy_box.size_px, FORMAT),
         }
     }
 }
@@ -55,15 +55,12 @@ impl Pass {
         }
     }
 
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        (gbuffer_depth, plan): (&TextureView, &Plan),
-        targets: &Targets,
-    ) {
-        let own = recorder.bind(&self.draw, GROUP_PASS, &[gbuffer_depth.into()]);
-        let marks = Some(cleared_to(&targets.marks.view, FAR));
-        let near = plan.near_physical_toy(BLEED_PX);
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let own = recorder.bind(&self.draw, GROUP_PASS, &[inputs.gbuffer_depth.into()]);
+        let [r, g, b, a] = FAR_MARKS.map(f64::from);
+        let far = Color { r, g, b, a };
+        let marks = Some(cleared_to(&targets.marks.view, far));
+        let near = inputs.plan.near_physical_toy(BLEED_PX);
         recorder.fullscreen_within(&self.draw, &[own], &[marks], near);
     }
 }

@@ -15,8 +15,9 @@ use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::passes::finished::Picture;
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, PIXEL};
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
 use crate::passes::present::REGION_FORMAT;
 
 pub(crate) const SHADER: Shader = Shader::new(&[
@@ -30,6 +31,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &CHANNELS,
     &COVERED,
     &FULLSCREEN,
+    &MARKS,
     &part!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]),
 ]);
 const SLOTS: &[Slot] = &[
@@ -93,7 +95,7 @@ pub(crate) struct Inputs<'a> {
 pub(crate) struct Targets {
     pub(crate) picture: Texture,
     /// View of its sRGB codes, not decoded.
-    pub(crate) codes: TextureView,
+    codes: TextureView,
 }
 
 impl Targets {
@@ -102,6 +104,14 @@ impl Targets {
         Self {
             codes: picture.codes(gpu),
             picture,
+        }
+    }
+
+    /// Both views of the picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        Picture {
+            light: &self.picture.view,
+            codes: &self.codes,
         }
     }
 }

@@ -3,12 +3,12 @@
 use wgpu::{CompareFunction, Face, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
-use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
 use crate::model::plan::Plan;
+use crate::model::region::Region;
 use crate::passes::counting::{CountingTargets, counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
@@ -25,16 +25,17 @@ pub(crate) const N_POSITIONS: u32 = 32;
 pub(crate) const COVERED_CODES: u32 = 7;
 
 pub(crate) struct Pass {
-    draw: Draw,
+    /// Draws both sides of each triangle, or the one that faces the camera.
+    draws: [Draw; 2],
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a Buffer,
+    pub(crate) region: &'a Region,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) camera_in_anchor: glam::Vec3,
 }
 
-/// Of the region's size.
+/// Of the toy box's size.
 pub(crate) struct Targets {
     pub(crate) covered: CountingTargets,
 }
@@ -42,7 +43,7 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            covered: CountingTargets::new(gpu, "coverage", plan.region.size_px),
+            covered: CountingTargets::new(gpu, "coverage", plan.toy_box.size_px),
         }
     }
 }
@@ -50,27 +51,29 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, &[], &[], &[]];
+        let spec = |culled| DrawSpec {
+            vertex: "vs_move",
+            streams: STREAMS,
+            targets: vec![counting()],
+            depth: Some(ordered(CompareFunction::Greater)),
+            culled,
+            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
+        };
         Self {
-            draw: gpu.draw(&DrawSpec {
-                vertex: "vs_move",
-                streams: STREAMS,
-                targets: vec![counting()],
-                depth: Some(ordered(CompareFunction::Greater)),
-                culled: Some(Face::Back),
-                ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
-            }),
+            draws: [None, Some(Face::Back)].map(|culled| gpu.draw(&spec(culled))),
         }
     }
 
     /// Draws the shown toy once for each position in a pixel.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let group = recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]);
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
-        let is_within = pose.around.holds(inputs.camera_in_anchor.as_dvec3().extend(1.0));
-        let triangles = toy.shadow_ranges.seen_from(is_within);
+        let camera = inputs.camera_in_anchor.as_dvec3().extend(1.0);
+        let is_culled = toy.is_culled(pose, std::iter::once(camera));
+        let draw = &self.draws[usize::from(is_culled)];
+        let group = recorder.bind(draw, GROUP_SCENE, &[(&inputs.region.globals).into()]);
         let mut render = targets.covered.render(recorder, SHADER.name);
-        render.begin(&self.draw, &[group]);
-        toy.bind_positions(&mut render, &pose.positions);
-        render.draw_indexed(triangles, 0..N_POSITIONS);
+        render.part_of(inputs.region.plan.part_drawn());
+        render.begin(draw, &[group]);
+        toy.draw_positions(&mut render, &pose.positions, 0..N_POSITIONS);
     }
 }

@@ -83,10 +83,8 @@ impl FramePath<'_> {
         match step {
             Step::Lighting(step) => self.light(recorder, step),
             Step::MovedMask => {
-                let globals = &self.region.globals;
-                passes
-                    .moved_mask
-                    .encode(recorder, globals, self.toy, &of.moved_mask);
+                let drawn = (self.region, self.toy);
+                passes.moved_mask.encode(recorder, drawn, &of.moved_mask);
             }
             Step::Toy => passes.toy.encode(recorder, &self.toy_inputs(), &of.toy),
             Step::Coverage => passes
@@ -112,6 +110,7 @@ impl FramePath<'_> {
 
     fn toy_inputs(&self) -> toy::Inputs<'_> {
         toy::Inputs {
+            plan: &self.region.plan,
             scene: self.scene(),
             toy: self.toy,
             appearance: &self.captured.by_pass.appearance,
@@ -123,7 +122,7 @@ impl FramePath<'_> {
 
     fn coverage_inputs(&self) -> coverage::Inputs<'_> {
         coverage::Inputs {
-            globals: &self.region.globals,
+            region: self.region,
             toy: self.toy,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
         }

@@ -3,13 +3,13 @@
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
-use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
+use crate::model::region::Region;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::{BEHIND, MOVED};
 use crate::passes::toy_mesh::ToyMesh;
@@ -26,7 +26,7 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Of the region's size: two multisampled ones that are never stored, and the mask.
+/// Of the toy box's size: two multisampled ones that are never stored, and the mask.
 pub(crate) struct Targets {
     samples: Texture,
     depth: Texture,
@@ -35,7 +35,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let size_px = plan.region.size_px;
+        let size_px = plan.toy_box.size_px;
         let samples = |label, format| Texture::samples(gpu, label, size_px, (format, N_SAMPLES));
         Self {
             samples: samples("moved_mask samples", MOVED_FORMAT),
@@ -62,14 +62,14 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        globals: &Buffer,
-        toy: &ToyMesh,
+        (region, toy): (&Region, &ToyMesh),
         targets: &Targets,
     ) {
-        let group = recorder.bind(&self.draw, GROUP_SCENE, &[globals.into()]);
+        let group = recorder.bind(&self.draw, GROUP_SCENE, &[(&region.globals).into()]);
         let colors = [Some(resolved(&targets.samples.view, &targets.moved.view))];
         let depth = Some(&targets.depth.view);
         let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
+        render.part_of(region.plan.part_drawn());
         render.begin(&self.draw, &[group]);
         render.set_vertices(1, &toy.shown.positions);
         toy.draw_positions(&mut render, &toy.physical.positions, 0..1);

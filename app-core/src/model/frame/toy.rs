@@ -59,8 +59,10 @@ const STREAMS: &[Stream] = &[
     (4, VertexFormat::Float32x3),
     (5, VertexFormat::Float32x3),
 ];
-/// Format of premultiplied radiance: the resolve averages linear light, and a rim has as many steps as the inside.
-const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of premultiplied radiance where it is drawn once: the resolve averages linear light, and the picture has no more codes.
+const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// And where draws are still to be averaged.
+const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 const N_SAMPLES: u32 = 4;
 /// Offsets of the draws: the multisample positions at half their size around the pixel's centre. The 16 samples of four
 /// draws then lie in rows and columns of their own and leave no hole. RMS error of the area that a straight edge of any
@@ -73,10 +75,12 @@ const OFFSETS_PX: [Vec2; 4] = [
 ];
 
 pub(crate) struct Pass {
-    draw: Draw,
+    coded: Draw,
+    fine: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
     pub(crate) scene: Scene<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
@@ -86,7 +90,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) tints: &'a Tints,
 }
 
-/// Of the region's size: two multisampled ones that stay on the chip, and one for each draw.
+/// Of the toy box's size: two multisampled ones that stay on the chip, and one for each draw.
 pub(crate) struct Targets {
     samples: Texture,
     depth: Texture,
@@ -98,14 +102,15 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let size_px = plan.region.size_px;
+        let size_px = plan.toy_box.size_px;
         let samples = |label, format| Texture::samples(gpu, label, size_px, (format, N_SAMPLES));
         let n_draws = plan.n_toy_draws.max(1);
+        let format = if n_draws > 1 { FINE_FORMAT } else { CODED_FORMAT };
         Self {
-            samples: samples("toy samples", FORMAT),
+            samples: samples("toy samples", format),
             depth: samples("toy depth", TextureFormat::Depth32Float),
             drawn: (0..n_draws)
-                .map(|_| Texture::target(gpu, "toy", size_px, FORMAT))
+                .map(|_| Texture::target(gpu, "toy", size_px, format))
                 .collect(),
             moved_samples: samples("toy moved samples", MOVED_FORMAT),
             moved: Texture::target(gpu, "toy moved", size_px, MOVED_FORMAT),
@@ -127,22 +132,28 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SCENE_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
-        Self {
-            draw: gpu.draw(&DrawSpec {
+        let draw = |format| {
+            gpu.draw(&DrawSpec {
                 vertex: "vs_toy",
                 streams: STREAMS,
                 n_samples: N_SAMPLES,
                 depth: Some(nearest_surface()),
-                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[FORMAT, MOVED_FORMAT])
-            }),
+                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
+            })
+        };
+        Self {
+            coded: draw(CODED_FORMAT),
+            fine: draw(FINE_FORMAT),
         }
     }
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let is_fine = targets.samples.format() == FINE_FORMAT;
+        let draw = if is_fine { &self.fine } else { &self.coded };
         let [shown, physical] = inputs.self_shadow;
         let maps = shown.resources(recorder.gpu, physical);
-        let materials = inputs.toy.bind_materials(recorder, &self.draw);
+        let materials = inputs.toy.bind_materials(recorder, draw);
         let offsets: &[Vec2] = if targets.drawn.len() == 1 {
             &[Vec2::ZERO]
         } else {
@@ -157,14 +168,15 @@ impl Pass {
                 discarded(moved_samples)
             };
             let groups = [
-                recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
-                recorder.bind_with(&self.draw, GROUP_PASS, offset_px, &inputs.resources()),
-                recorder.bind(&self.draw, GROUP_SELF_SHADOW, &maps),
+                recorder.bind(draw, GROUP_SCENE, &inputs.scene.resources()),
+                recorder.bind_with(draw, GROUP_PASS, offset_px, &inputs.resources()),
+                recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
             ];
             let colors = [Some(resolved(&targets.samples.view, &drawn.view)), Some(moved)];
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
-            render.begin(&self.draw, &groups);
+            render.part_of(inputs.plan.part_drawn());
+            render.begin(draw, &groups);
             let toy = inputs.toy;
             toy.draw_parts(&mut render, &[&toy.shown, &toy.physical], &materials);
         }
@@ -178,7 +190,7 @@ impl<'a> Inputs<'a> {
             (&self.appearance.color.view).into(),
             self.gbuffer_depth.into(),
             (&self.appearance.base.view).into(),
-            (&self.appearance.lit.view).into(),
+            (&self.appearance.received.view).into(),
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
         ]

@@ -22,8 +22,10 @@ passes!(occlusion, visibility, self_shadow);
 pub(crate) enum Step {
     /// The toy's shadow on itself.
     SelfShadow,
-    /// Visibility of one light.
+    /// Hidden points of one light.
     Light(usize),
+    /// Visibility of the lights.
+    Lights,
     /// Visibility of the ambient light.
     Ambient,
 }
@@ -31,14 +33,17 @@ pub(crate) enum Step {
 impl Step {
     /// The steps that compute the visibilities of a plan's lights.
     pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
-        (0..plan.n_lights).map(Self::Light).chain([Self::Ambient])
+        let lights = (0..plan.n_lights).map(Self::Light);
+        lights.chain([Self::Lights, Self::Ambient])
     }
 
     /// The passes that it runs, in order.
     pub(crate) fn passes(self) -> &'static [&'static str] {
         match self {
             Self::SelfShadow => &["self_shadow"],
-            Self::Light(_) | Self::Ambient => &["occlusion", "visibility"],
+            Self::Light(_) => &["occlusion"],
+            Self::Lights => &["visibility"],
+            Self::Ambient => &["occlusion", "visibility"],
         }
     }
 }
@@ -115,31 +120,42 @@ impl Lighting {
     ) {
         match step {
             Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
-            Step::Light(channel) => {
-                let targets = (&self.occlusion.lights, &maps.visibility.lights);
-                if let Some(light) = self.lights.get(channel) {
-                    self.encode_visibility(recorder, passes, (posed, light), channel, targets);
-                }
-                if channel + 1 == self.lights.len()
-                    && let Some(injected) = &maps.injected
+            Step::Light(index) => {
+                if let (Some(light), Some(counted)) =
+                    (self.lights.get(index), self.occlusion.lights.get(index))
                 {
-                    recorder.copy(injected, &maps.visibility.lights);
+                    self.count(recorder, passes, (posed, light), counted);
+                }
+            }
+            Step::Lights => {
+                let counted: Vec<_> = (self.lights.iter().zip(&self.occlusion.lights))
+                    .map(|(light, counted)| (&counted.count.view, light.n_points))
+                    .collect();
+                let (inputs, map) = (visibility::Inputs { counted: &counted }, &maps.visibility.lights);
+                passes.visibility.encode(recorder, &inputs, map);
+                if let Some(injected) = &maps.injected {
+                    recorder.copy(injected, map);
                 }
             }
             Step::Ambient => {
-                let targets = (&self.occlusion.ambient, &maps.visibility.ambient);
-                self.encode_visibility(recorder, passes, (posed, &self.ambient), 0, targets);
+                let counted = &self.occlusion.ambient;
+                self.count(recorder, passes, (posed, &self.ambient), counted);
+                let counted = [(&counted.count.view, self.ambient.n_points)];
+                let inputs = visibility::Inputs { counted: &counted };
+                passes
+                    .visibility
+                    .encode(recorder, &inputs, &maps.visibility.ambient);
             }
         }
     }
 
-    fn encode_visibility(
+    /// Counts the hidden points of a light.
+    fn count(
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
         (posed, light): (Posed<'_>, &LightPointsBuffer),
-        channel: usize,
-        (counted, map): (&CountingTargets, &Texture),
+        counted: &CountingTargets,
     ) {
         let Posed { globals, toy, pose } = posed;
         let inputs = occlusion::Inputs {
@@ -150,11 +166,6 @@ impl Lighting {
             light,
         };
         passes.occlusion.encode(recorder, &inputs, counted);
-        let inputs = visibility::Inputs {
-            hidden: &counted.count.view,
-            n_points: light.n_points,
-        };
-        passes.visibility.encode(recorder, &inputs, (map, channel));
     }
 
     fn encode_self_shadow(

@@ -1,7 +1,5 @@
 //! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
 
-use std::ops::Range;
-
 use glam::{UVec2, Vec4};
 use wgpu::{CompareFunction, Face, VertexFormat};
 
@@ -97,23 +95,26 @@ impl LightPointsBuffer {
     }
 }
 
-/// Counts of hidden points: all lights use the same target, one after the other.
+/// Counts of hidden points, of each light and of the ambient light.
 pub(crate) struct Targets {
-    pub(crate) lights: CountingTargets,
+    pub(crate) lights: Vec<CountingTargets>,
     pub(crate) ambient: CountingTargets,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            lights: CountingTargets::new(gpu, "occlusion", plan.region.size_px),
+            lights: (0..plan.n_lights)
+                .map(|_| CountingTargets::new(gpu, "occlusion", plan.region.size_px))
+                .collect(),
             ambient: CountingTargets::new(gpu, "occlusion", plan.ambient_px),
         }
     }
 }
 
 pub(crate) struct Pass {
-    cover: Draw,
+    /// Draws both sides of each triangle, or the one that faces the light.
+    cover: [Draw; 2],
     /// Masks pixels that show another receiver, where there are several.
     route: Draw,
 }
@@ -130,13 +131,12 @@ pub(crate) struct Inputs<'a> {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
-        let cover = DrawSpec {
+        let cover = |culled| DrawSpec {
             vertex: "vs_flatten",
             streams: STREAMS,
             targets: vec![counting()],
             depth: Some(ordered(CompareFunction::Greater)),
-            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
-            culled: Some(Face::Back),
+            culled,
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
         let route = DrawSpec {
@@ -146,19 +146,21 @@ impl Pass {
             ..DrawSpec::fullscreen(&SHADER, "fs_route", groups, &[])
         };
         Self {
-            cover: gpu.draw(&cover),
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            cover: [None, Some(Face::Back)].map(|culled| gpu.draw(&cover(culled))),
             route: gpu.draw(&route),
         }
     }
 
     /// Draws the caster from the light's points on each receiver, and counts the hidden points in the target.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
+        let is_culled = inputs.is_culled();
+        let cover = &self.cover[usize::from(is_culled)];
         let groups = [
-            recorder.bind(&self.cover, GROUP_SCENE, &[inputs.globals.into()]),
-            recorder.bind(&self.cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
+            recorder.bind(cover, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
         ];
         let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
-        let triangles = inputs.triangles();
         let mut render = targets.render(recorder, SHADER.name);
         inputs.toy.bind_positions(&mut render, &inputs.pose.positions);
         for receiver in 0..n_receivers {
@@ -166,18 +168,17 @@ impl Pass {
                 render.begin(&self.route, &groups);
                 render.draw(0..3, receiver..receiver + 1);
             }
-            render.begin(&self.cover, &groups);
+            render.begin(cover, &groups);
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            render.draw_indexed(triangles.clone(), instances);
+            inputs.toy.draw_shadow(&mut render, instances);
         }
     }
 }
 
 impl Inputs<'_> {
-    /// Range of indices to draw, of which triangles that face away from the light are culled.
-    fn triangles(&self) -> Range<u32> {
-        let is_within = |point: &Vec4| self.pose.around.holds(point.as_dvec4());
-        let is_any = self.light.in_anchor().iter().any(is_within);
-        self.toy.shadow_ranges.seen_from(is_any)
+    /// Whether triangles that face away from the light are left out.
+    fn is_culled(&self) -> bool {
+        let points = self.light.in_anchor().iter().map(|point| point.as_dvec4());
+        self.toy.is_culled(self.pose, points)
     }
 }

@@ -44,6 +44,14 @@ shared_struct! {
     }
 }
 
+impl Grids {
+    /// Cells of the finest levels.
+    pub(crate) fn n_cells(&self) -> u64 {
+        let sizes = self.grids.iter().map(|grid| grid.size.map(u64::from));
+        sizes.map(|[width, height]| width * height).sum()
+    }
+}
+
 /// Lays a grid of square cells over each rectangle, pyramid after pyramid in one buffer.
 #[must_use]
 pub fn grids_over(rects: &[PlaneRect]) -> Grids {

@@ -1,0 +1,153 @@
+//! Recordings: a thread of the shell's writes them into files that people get at.
+
+use std::fs::{self, File};
+use std::path::Path;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use app_core::app::{Recorded, Saved};
+use app_core::frame::Clock;
+use app_core::live::Live;
+use app_core::recording::{Limits, PictureCodec, Take, TakeOptions};
+
+use crate::save;
+
+/// Writes a recording of an app whose toy's file is `toy` into `folder` until it ends.
+#[must_use]
+pub fn write(take: Take, toy: &[u8], folder: &Path) -> Recorded {
+    // A clock that is set before 1970 makes every recording the same file.
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let name = format!("recording_{}.mcap", since.as_millis());
+    let file = fs::create_dir_all(folder).and_then(|()| File::create(folder.join(&name)));
+    let told = [
+        ("system", std::env::consts::OS),
+        ("architecture", std::env::consts::ARCH),
+        ("app", concat!("app-android ", env!("CARGO_PKG_VERSION"))),
+    ];
+    let device = told.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let taken = match file {
+        Ok(file) => take.run(
+            file,
+            TakeOptions {
+                toy,
+                codec: PictureCodec::PHONE,
+                device: device.into(),
+                limits: Limits::APP,
+            },
+        ),
+        Err(error) => take.without_file(&error),
+    };
+    Recorded { file: name, taken }
+}
+
+/// Log and times, beside the recordings, as files that people hand on.
+#[must_use]
+pub fn share(live: &Live, folder: &Path) -> Saved {
+    let log = save::bytes(folder, "log.txt", live.app().log().text().as_bytes());
+    let times = live.times().map(serde_json::to_vec);
+    match (log, times) {
+        (Saved::Done, Some(Ok(times))) => save::bytes(folder, "profile.json", &times),
+        (Saved::Done, Some(Err(_))) => Saved::Failed,
+        (saved, _) => saved,
+    }
+}
+
+/// What is free where a folder is, in bytes.
+#[must_use]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let told = rustix::fs::statvfs(folder).ok()?;
+    told.f_bavail.checked_mul(told.f_frsize)
+}
+
+/// The phone's clock for times of frames.
+#[must_use]
+pub fn clock() -> Clock {
+    let start = Instant::now();
+    Clock::new(move || 1e3 * start.elapsed().as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use app_core::camera_frame::CameraImage;
+    use app_core::recording::{Ending, Item, LiveFrame, Recording};
+    use app_core::scene::{Camera, Image, Intrinsics, Pose, Receiver, Scene, Surface, Uncertainty};
+    use app_core::session::{Capture, Session};
+    use app_core::toy::Toy;
+    use glam::{DMat4, DVec2, DVec3};
+
+    use super::*;
+
+    const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
+
+    fn live(world_from_object: DMat4) -> (Scene, LiveFrame) {
+        let intrinsics = Intrinsics {
+            fx_px: 20.0,
+            fy_px: 20.0,
+            cx_px: 8.0,
+            cy_px: 8.0,
+        };
+        let image = Image {
+            width_px: 16,
+            height_px: 16,
+            rgba8: [90, 120, 60, 255].repeat(256),
+        };
+        let scene = Scene {
+            name: String::new(),
+            width_px: 16,
+            height_px: 16,
+            toy: Arc::new(Toy::from_glb("toy.glb", TOY).expect("the bundled toy")),
+            world_from_object,
+            physical_pose: Pose::Authored,
+            receivers: vec![Receiver {
+                name: "table".to_owned(),
+                world_from_plane: DMat4::IDENTITY,
+                half_extent_m: DVec2::ONE,
+                surface: Surface::Textured,
+            }],
+            lights: Vec::new(),
+            plates: Vec::new(),
+            probe: None,
+            uncertainty: Uncertainty::default(),
+        };
+        let live = LiveFrame {
+            image: CameraImage::from(image),
+            camera: Camera {
+                intrinsics,
+                world_from_camera: DMat4::from_translation(DVec3::Y),
+            },
+            world_from_object,
+            exposure: 1.0,
+            light_estimate: None,
+            shown_pose: Pose::Authored,
+        };
+        (scene, live)
+    }
+
+    #[test]
+    fn a_recording_is_a_file_that_is_read_as_a_session_or_is_told_as_missing() {
+        let folder = std::env::temp_dir().join(format!("app-android-recording-{}", std::process::id()));
+        let (scene, live) = live(DMat4::from_scale(DVec3::splat(0.1)));
+        let (inlet, take) = Take::new(7, scene.clone(), live.camera.intrinsics);
+        inlet
+            .offer(0, Item::Live(Box::new(live.clone())))
+            .expect("room in the queue");
+        drop(inlet);
+        let Recorded { file, taken } = write(take, TOY, &folder);
+        assert_eq!((taken.n_frames, &taken.ending), (1, &Ending::Asked));
+        let path = folder.join(file);
+        let recording = Recording::open(fs::read(&path).expect("a file")).expect("a recording");
+        assert!(recording.losses().is_empty());
+        let read = Capture::open(recording)
+            .expect("a session")
+            .frame(0)
+            .expect("a frame");
+        let codes = read.image.rgba8.iter().zip(&live.image.rgba().rgba8);
+        assert!(codes.fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= 2);
+        assert!(free_bytes(&folder).is_some_and(|free| free > 0));
+        let (_, take) = Take::new(8, scene, live.camera.intrinsics);
+        let refused = write(take, TOY, &path);
+        assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+}

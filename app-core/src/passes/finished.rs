@@ -1,0 +1,34 @@
+//! A finished picture as the passes at its end read it: the camera image, and the region's picture to lay over it.
+
+use glam::UVec2;
+
+use crate::geometry::rect::PixelRect;
+use crate::gpu::texture::TextureView;
+
+/// A picture that was made or taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Finished<'a> {
+    pub(crate) frame: Picture<'a>,
+    /// None where the camera image passes through.
+    pub(crate) region: Option<Laid<'a>>,
+    /// Of the camera image.
+    pub(crate) size_px: UVec2,
+}
+
+/// Two views of an sRGB texture.
+#[derive(Clone, Copy)]
+pub(crate) struct Picture<'a> {
+    /// Decoded where it is read.
+    pub(crate) light: &'a TextureView,
+    /// Its codes.
+    pub(crate) codes: &'a TextureView,
+}
+
+/// The region's picture over the camera image.
+#[derive(Clone, Copy)]
+pub(crate) struct Laid<'a> {
+    pub(crate) picture: Picture<'a>,
+    pub(crate) rect: PixelRect,
+    /// Part of it that is shown, the rest being the camera image: from 0 to 1.
+    pub(crate) effect: f32,
+}
