@@ -100,7 +100,7 @@ pub mod toy;
 mod baseline;
 mod disjoint;
 mod geometry;
-mod lens;
+pub mod lens;
 mod model;
 mod passes;
 mod plan;

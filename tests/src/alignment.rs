@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use app_core::alignment::{Aligner, Alignment, AlignmentReport, RatioAlignment};
+use app_core::alignment::{Aligner, Alignment, AlignmentReport, LensAlignment, RatioAlignment};
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Scene};
@@ -31,7 +31,7 @@ pub enum Source {
     /// The session.
     #[default]
     Given,
-    /// The pictures, within 3 % of what the session says.
+    /// The pictures; numbers within 3 % of what the session says.
     Found,
 }
 
@@ -56,9 +56,18 @@ pub struct RatioArgs {
     /// Look for the scale of the world in place of it, as by a tracker whose metre is none: the toy's model has the right size
     #[arg(long, value_enum, default_value_t, conflicts_with = "focal_length")]
     world_scale: Source,
+    /// Look for two radial terms of the lens's distortion, in place of those that the session says
+    #[arg(long, value_enum, default_value_t)]
+    lens: Source,
 }
 
 impl RatioArgs {
+    /// Where the lens comes from.
+    #[must_use]
+    pub fn lens(&self) -> Source {
+        self.lens
+    }
+
     /// The number that they ask for.
     #[must_use]
     pub fn asked(&self) -> Ratio {
@@ -86,6 +95,8 @@ pub struct Alignments {
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
     moved_plates: Vec<(usize, Camera)>,
+    /// Of the lens, where it was looked for.
+    lens: Option<LensAlignment>,
 }
 
 /// Of one frame.
@@ -148,7 +159,21 @@ impl Alignments {
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
+            lens: None,
         }
+    }
+
+    /// With what was found of the lens when the session was opened.
+    #[must_use]
+    pub fn with_lens(mut self, lens: Option<LensAlignment>) -> Self {
+        self.lens = lens;
+        self
+    }
+
+    /// What was found of the lens that photographs are freed of; none where nobody asked.
+    #[must_use]
+    pub fn lens(&self) -> Option<&LensAlignment> {
+        self.lens.as_ref()
     }
 
     /// Aligns frames one after the other.
@@ -156,10 +181,7 @@ impl Alignments {
     /// # Errors
     /// When a frame cannot be read or aligned.
     pub fn find(session: &dyn Session, frames: Range<usize>, asked: Asked) -> Result<Self, ReplayError> {
-        let mut known = session.scene().clone();
-        if asked.lights == Lights::Found {
-            known.probe = None;
-        }
+        let known = asked.lights.known(session.scene());
         let aligner = match asked.ratio {
             Ratio::Given => Aligner::new(known),
             Ratio::FocalLength => Aligner::new(known).with_unknown_focal_length(),
@@ -214,6 +236,7 @@ impl Alignments {
             first: frames.start,
             found,
             moved_plates: moved_plates(session.scene(), aligner.scene()),
+            lens: None,
         })
     }
 
@@ -321,7 +344,16 @@ impl Lights {
         }
     }
 
-    fn input(self, frame: &SessionFrame) -> FrameInput {
+    /// A scene without what is put aside of it.
+    pub(crate) fn known(self, scene: &Scene) -> Scene {
+        let mut known = scene.clone();
+        if self == Self::Found {
+            known.probe = None;
+        }
+        known
+    }
+
+    pub(crate) fn input(self, frame: &SessionFrame) -> FrameInput {
         let input = FrameInput::from(frame);
         match self {
             Self::Given => input,

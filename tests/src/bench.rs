@@ -178,6 +178,7 @@ fn replay_options(options: &Options) -> replay::Options {
         is_aligned: options.is_aligned,
         lights: options.lights,
         ratio: options.ratio,
+        lens: None,
     }
 }
 

@@ -17,6 +17,7 @@ pub mod heap;
 pub mod import;
 mod lights_drawn;
 pub mod metrics;
+pub mod opened;
 pub mod output;
 pub mod page;
 pub mod photographer;

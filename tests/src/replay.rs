@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use app_core::alignment::AlignError;
+use app_core::alignment::{AlignError, LensAlignment};
 use app_core::core::{Core, CoreError};
 use app_core::internals::PixelRect;
 use app_core::internals::{Inspect, Map};
@@ -23,7 +23,7 @@ use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole
 use crate::page::pictures::Pictures;
 use crate::page::{self, MAPS_FOLDER, PAGE_FILE};
 use crate::progress::Progress;
-use crate::report::alignment::AlignmentEntry;
+use crate::report::alignment::{AlignmentEntry, LensEntry};
 use crate::report::{FitEntry, FrameEntry, MapEntry, Mean, Report, pass_entries};
 
 /// File name of the report in the output folder.
@@ -46,6 +46,8 @@ pub struct Options {
     pub lights: Lights,
     /// The number that is looked for then.
     pub ratio: Ratio,
+    /// What was found of the lens that the session was opened with; none where nobody asked.
+    pub lens: Option<LensAlignment>,
 }
 
 impl Default for Options {
@@ -57,6 +59,7 @@ impl Default for Options {
             is_aligned: true,
             lights: Lights::default(),
             ratio: Ratio::default(),
+            lens: None,
         }
     }
 }
@@ -130,7 +133,8 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
             lights: options.lights,
             ratio: options.ratio,
         };
-        Alignments::find(session, frames_of(session, options)?, asked)
+        let found = Alignments::find(session, frames_of(session, options)?, asked)?;
+        Ok(found.with_lens(options.lens))
     } else {
         Ok(Alignments::none())
     }
@@ -249,6 +253,7 @@ impl Run<'_> {
             is_software: self.core.gpu().is_software(),
             size_px: [scene.width_px, scene.height_px],
             warnings: warnings_of(self.session, self.core)?,
+            lens: self.alignments.lens().map(LensEntry::from),
             mean: Mean::of(&frames),
             fit: self
                 .core

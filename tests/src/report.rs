@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 
 use crate::metrics::flicker::{Flicker, mean_flicker};
 use crate::metrics::{Score, Scores};
-use crate::report::alignment::AlignmentEntry;
+use crate::report::alignment::{AlignmentEntry, LensEntry};
 
 pub mod alignment;
 
@@ -27,6 +27,8 @@ pub struct Report {
     pub size_px: [u32; 2],
     /// What was odd about the session as a whole.
     pub warnings: Vec<String>,
+    /// The lens that photographs were freed of; none where nobody asked for it.
+    pub lens: Option<LensEntry>,
     /// Means over frames.
     pub mean: Mean,
     /// What was learned from the real shadow, as of the last frame; none where nothing was learned.

@@ -11,7 +11,8 @@
 //! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
 //! ```
 //!
-//! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`).
+//! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
+//! before all else the distortion of the **lens** ([`Aligner::lens`]), of which photographs are freed.
 //!
 //! What is held fixed, since pictures do not tell it from the rest: the first plate's camera, to which all others are relative, the
 //! principal point, and the receivers.
@@ -61,8 +62,8 @@ pub use directions::LightSearch;
 pub use error::AlignError;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, LightAlignment, LightDeviation, PoseAlignment,
-    PoseDeviation, RatioAlignment, RatioOutcome,
+    AlignmentReport, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment, LightDeviation,
+    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome,
 };
 
 /// Each plate takes as long as a frame; more than so many stay as they are given.
@@ -244,6 +245,21 @@ impl Aligner {
             world_from_object: self.ratio.pose(&input.world_from_object),
             ..input.clone()
         })
+    }
+
+    /// Looks for the distortion of the lens that a frame and the plates were taken with, as if they were of a pinhole: two radial terms.
+    /// All photographs are to be freed of it before they are aligned ([`crate::session::Capture::open_with_lens`]).
+    ///
+    /// # Errors
+    /// As [`Self::align`].
+    pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
+        error::check(&self.scene, input)?;
+        let given = input
+            .lights
+            .clone()
+            .unwrap_or_else(|| self.scene.lights.as_slice().into());
+        let lights = self.about(&given, input)?;
+        Ok(ratio::find_lens(&self.scene, input, &lights))
     }
 
     /// About where the lights are: as given, or as they are found with the focal length given.

@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec3;
 
 use crate::frame::NoLight;
+use crate::lens::Distortion;
 use crate::probe::ProbeReport;
 use crate::scene::Light;
 
@@ -172,7 +173,29 @@ impl RatioAlignment {
     }
 }
 
-/// What was done with a focal length, or with the scale of a world.
+/// The distortion of a lens, by toy and shadow together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensAlignment {
+    /// What was done with it.
+    pub outcome: RatioOutcome,
+    /// As found; none where none was.
+    pub distortion: Distortion,
+    /// How far what the lens adds at the picture's farthest corner may be off, in parts of the corner's distance from the principal
+    /// point, before the error of the shadows has risen by what errors of the model are taken for; infinite where none was found.
+    pub deviation: f64,
+    /// Error of the shadows without a lens and with what was found: as those of a [`RatioAlignment`].
+    pub errors: Option<[f64; 2]>,
+}
+
+impl LensAlignment {
+    /// Whether photographs are to be freed of it.
+    #[must_use]
+    pub fn is_applied(&self) -> bool {
+        self.outcome == RatioOutcome::Corrected
+    }
+}
+
+/// What was done with a focal length, the scale of a world, or a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RatioOutcome {
     /// It is corrected, in this frame and in all others.

@@ -25,14 +25,17 @@ const LAST_STEP: f64 = 1e-13;
 /// At the place `(x, y) = ((u - cx) / fx, (v - cy) / fy)` of a pinhole's picture, with `r2 = x x + y y`, is seen what the photograph
 /// has at `(1 + k1 r2 + k2 r2 r2) (x, y)`. Negative is a barrel, positive a cushion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Distortion {
+pub struct Distortion {
     /// Of `r2`.
-    pub(crate) k1: f64,
+    pub k1: f64,
     /// Of `r2 r2`.
-    pub(crate) k2: f64,
+    pub k2: f64,
 }
 
 impl Distortion {
+    /// That of a pinhole.
+    pub const NONE: Self = Self { k1: 0.0, k2: 0.0 };
+
     /// Refuses a lens that shows two places of a picture's field of view at one.
     pub(crate) fn check(&self, intrinsics: &Intrinsics, size_px: [u32; 2]) -> Result<(), FieldError> {
         let Intrinsics {

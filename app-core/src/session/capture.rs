@@ -94,11 +94,21 @@ impl Capture {
     /// When `capture.json`, the toy, a plate or a picture of the probe is missing, damaged or breaks a
     /// rule of the format. The error names the file, the field and the reason.
     pub fn open(files: impl Files + 'static) -> Result<Self, SessionError> {
-        let bytes = files
-            .read(INDEX_FILE, MAX_INDEX_BYTES)
-            .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
-        let record = parse_index(&bytes)?;
-        convert::capture_from_record(Box::new(files), record)
+        let record = read_index(&files)?;
+        let distortion = convert::distortion(&record)?;
+        convert::capture_from_record(Box::new(files), record, distortion)
+    }
+
+    /// Opens the capture as taken with a lens, or by a pinhole, whatever its index says of one.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and where the lens folds a picture.
+    pub fn open_with_lens(
+        files: impl Files + 'static,
+        distortion: Option<Distortion>,
+    ) -> Result<Self, SessionError> {
+        let record = read_index(&files)?;
+        convert::capture_from_record(Box::new(files), record, distortion)
     }
 
     fn frame_at(&self, index: usize) -> Result<&Frame, SessionError> {
@@ -235,6 +245,13 @@ impl PictureStore {
         let bytes = read_named(self.files.as_ref(), path, field, self.size.max_file_bytes())?;
         decode(&bytes, self.size).map_err(|error| SessionError::new(path, field, error))
     }
+}
+
+fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
+    let bytes = files
+        .read(INDEX_FILE, MAX_INDEX_BYTES)
+        .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
+    parse_index(&bytes)
 }
 
 /// Checks format and version first: another version may break every other rule.

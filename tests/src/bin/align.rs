@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use clap::Parser;
-use harness::alignment::{Alignments, Asked, RatioArgs};
+use harness::alignment::{Alignments, Asked, Lights, RatioArgs};
 use harness::check::aligned_session;
-use harness::program::{exit_code, open_session};
+use harness::opened::{self, Opened};
+use harness::program::exit_code;
 use harness::stored::Stored;
 
 /// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it is.
@@ -29,17 +30,17 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let session = open_session(&args.session)?;
-    let capture =
-        Capture::open(Stored::open(&args.session)?).with_context(|| args.session.display().to_string())?;
+    let opened = opened::open(&args.session, args.ratio.lens(), Lights::Given);
+    let Opened { capture, lens } = opened.with_context(|| args.session.display().to_string())?;
     let asked = Asked {
         ratio: args.ratio.asked(),
         ..Asked::default()
     };
-    let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?;
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
+    let session = Stored::open(&args.session)?;
     let n_corrected = aligned_session::write(&session, &args.out, &alignments)?;
     println!(
-        "{n_corrected} of {} frames have a corrected camera, focal length, pose, scale or lights: {}",
+        "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}",
         capture.n_frames(),
         args.out.display()
     );

@@ -17,6 +17,7 @@ use harness::bench::{
     Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, rebuild, rebuilt_table, table,
 };
 use harness::files::BUNDLED_SESSION;
+use harness::opened::{self, Opened};
 use harness::output::{make_folder, remove_file, write_png, write_whole};
 use harness::program::{exit_code, open_session};
 use harness::sized::{SizePx, parse_size};
@@ -51,10 +52,10 @@ struct Args {
     #[arg(long)]
     exact: bool,
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale"])]
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "lens"])]
     withheld: bool,
     /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "withheld", "as_given", "presets", "adapter"])]
+    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
     basin: bool,
     /// Where the directions of these disturbances are drawn from
     #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
@@ -63,7 +64,7 @@ struct Args {
     #[arg(long, value_name = "N", default_value_t = 24, requires = "basin", value_parser = clap::value_parser!(u16).range(1..))]
     draws: u16,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
-    #[arg(long, conflicts_with_all = ["focal_length", "world_scale"])]
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
@@ -170,7 +171,7 @@ fn presets(args: &Args) -> Vec<Preset> {
 }
 
 fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
-    let capture = Capture::open(open_session(folder)?)?;
+    let Opened { capture, .. } = opened::open(folder, args.ratio.lens(), args.lights)?;
     let options = Options {
         presets: presets(args),
         n_repeats: usize::from(args.repeats),

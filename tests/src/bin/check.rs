@@ -41,8 +41,8 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     let results = || package.parent().unwrap_or(package).join(RESULTS);
     let out = args.out.clone().unwrap_or_else(results);
     make_folder(&out)?;
-    let findings =
-        check(&args.session, &out, args.ratio.asked()).with_context(|| args.session.display().to_string())?;
+    let findings = check(&args.session, &out, (args.ratio.asked(), args.ratio.lens()))
+        .with_context(|| args.session.display().to_string())?;
     for line in &findings.facts {
         println!("{line}");
     }

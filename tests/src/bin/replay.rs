@@ -9,13 +9,13 @@ use anyhow::Context;
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
 use harness::alignment::{Lights, RatioArgs};
 use harness::files::BUNDLED_SESSION;
+use harness::opened::{self, Opened};
 use harness::page::PAGE_FILE;
-use harness::program::{exit_code, open_session};
+use harness::program::exit_code;
 use harness::progress::{Progress, Quiet, on_stderr};
 use harness::replay::{Options, REPORT_FILE, replay};
 use harness::report::Report;
@@ -43,7 +43,7 @@ struct Args {
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
-    #[arg(long, conflicts_with_all = ["focal_length", "world_scale"])]
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
     as_given: bool,
     /// Put the session's list of lights aside, and find them by their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
@@ -65,7 +65,8 @@ fn run(args: &Args) -> anyhow::Result<()> {
         Some(out) => out.clone(),
         None => default_out(folder)?,
     };
-    let capture = Capture::open(open_session(folder)?).with_context(|| folder.display().to_string())?;
+    let opened = opened::open(folder, args.ratio.lens(), args.lights);
+    let Opened { capture, lens } = opened.with_context(|| folder.display().to_string())?;
     let adapter = args
         .adapter
         .clone()
@@ -78,6 +79,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         is_aligned: !args.as_given,
         lights: args.lights,
         ratio: args.ratio.asked(),
+        lens,
     };
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
     let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
@@ -148,6 +150,12 @@ fn summary_of(report: &Report) -> Vec<String> {
             .iter()
             .map(|warning| format!("warning: {warning}")),
     );
+    if let Some(lens) = &report.lens {
+        lines.push(format!(
+            "lens k1 {:.4}, k2 {:.4}: {}",
+            lens.k1, lens.k2, lens.outcome
+        ));
+    }
     if let Some(scores) = report.mean.scores {
         let regions = [
             ("shadow", scores.shadow),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::Context;
+use app_core::alignment::{LensAlignment, RatioOutcome};
 use app_core::scene::Light;
 use app_core::session::Files;
 use glam::DMat4;
@@ -31,6 +32,7 @@ pub fn write(from: &Stored, to: &Path, alignments: &Alignments) -> anyhow::Resul
 
 fn correct(index: &mut Value, alignments: &Alignments) -> usize {
     let mut n_corrected = 0;
+    let has_other_lens = set_lens(index, alignments.lens());
     let focal_ratio = alignments.focal_ratio();
     lengthen(index, focal_ratio);
     for (plate, camera) in alignments.moved_plates() {
@@ -59,12 +61,29 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             }
             index["lights"] = entries.into();
         }
-        let is_lengthened = focal_ratio != 1.0;
+        let is_other_camera = focal_ratio != 1.0 || has_other_lens;
         n_corrected += usize::from(
-            is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_lengthened,
+            is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_other_camera,
         );
     }
     n_corrected
+}
+
+/// Writes the lens that was found, or that there is none. Whether that is another than before.
+fn set_lens(index: &mut Value, found: Option<&LensAlignment>) -> bool {
+    let lens = match found {
+        Some(found) if found.is_applied() => {
+            json!({ "k1": found.distortion.k1, "k2": found.distortion.k2 })
+        }
+        Some(found) if found.outcome == RatioOutcome::AsGiven => Value::Null,
+        _ => return false,
+    };
+    let before = index.get("lens").cloned().unwrap_or_default();
+    if before != lens {
+        index["lens"] = lens;
+        return true;
+    }
+    false
 }
 
 /// Scales the focal length of the session, and those that plates and frames have of their own.

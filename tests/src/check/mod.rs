@@ -11,13 +11,15 @@ use std::path::{Path, PathBuf};
 
 use app_core::alignment::{Alignment, Outlines};
 use app_core::frame::FrameInput;
+use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
 use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Alignments, Asked, Ratio};
+use crate::alignment::{Alignments, Asked, Lights, Ratio, Source};
 use crate::gizmo::{self, Gizmo};
+use crate::opened::{self, Opened};
 use crate::output::{remove_file, write_png};
 use crate::stored::Stored;
 
@@ -41,7 +43,7 @@ pub struct Findings {
 ///
 /// # Errors
 /// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
-pub fn check(session: &Path, out: &Path, ratio: Ratio) -> anyhow::Result<Findings> {
+pub fn check(session: &Path, out: &Path, (ratio, lens): (Ratio, Source)) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
@@ -59,6 +61,10 @@ pub fn check(session: &Path, out: &Path, ratio: Ratio) -> anyhow::Result<Finding
             findings.wrong.push(error.to_string());
             return Ok(findings);
         }
+    };
+    let capture = match lens {
+        Source::Given => capture,
+        Source::Found => findings.freed_of_lens(session)?,
     };
     findings.wrong.extend(told(capture.warnings()));
     findings.facts.extend(sense::without(capture.scene()));
@@ -113,6 +119,23 @@ impl Findings {
             &mut self.facts
         };
         list.push(told);
+    }
+
+    /// The session with the lens that its pictures tell.
+    fn freed_of_lens(&mut self, session: &Path) -> anyhow::Result<Capture> {
+        let Opened { capture, lens } = opened::open(session, Source::Found, Lights::Given)?;
+        if let Some(found) = lens {
+            let Distortion { k1, k2 } = found.distortion;
+            let told = match found.errors {
+                Some(_) => format!(
+                    "lens: toy and shadow tell k1 {k1:.4} and k2 {k2:.4}: {}",
+                    found.outcome
+                ),
+                None => format!("lens: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        Ok(capture)
     }
 
     fn aligned(&mut self, alignment: &Alignment) {

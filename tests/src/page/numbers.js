@@ -101,6 +101,8 @@ function showAlignment() {
   const { focal_length, world_scale, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
   const rows = [];
+  const { lens } = data.presets[0].report;
+  if (lens) rows.push(row("the lens", [verdict(lens), `k1 ${lens.k1.toFixed(4)}, k2 ${lens.k2.toFixed(4)}`, lens.outcome]));
   if (focal_length) rows.push(row("the focal length", [verdict(focal_length), `\u00d7 ${focal_length.ratio.toFixed(4)} \u00b1 ${focal_length.deviation?.toFixed(4) ?? "?"}`,
     focal_length.outcome]));
   if (world_scale) rows.push(row("the world's scale", [verdict(world_scale), `\u00d7 ${world_scale.ratio.toFixed(4)} \u00b1 ${world_scale.deviation?.toFixed(4) ?? "?"}`,

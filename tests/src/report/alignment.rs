@@ -1,6 +1,8 @@
 //! What alignment found, as it stands in `report.json`: in millimetres and degrees.
 
-use app_core::alignment::{CameraAlignment, DiscoveredLight, LightAlignment, PoseAlignment, RatioAlignment};
+use app_core::alignment::{
+    CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment, PoseAlignment, RatioAlignment,
+};
 use app_core::probe::{ProbeReport, TrackedLight};
 use app_core::scene::Light;
 use serde::Serialize;
@@ -111,6 +113,23 @@ pub struct ErrorEntry {
     pub distance_ratio: Option<f64>,
     /// Found angular radius over the listed; none for a point light.
     pub size_ratio: Option<f64>,
+}
+
+/// A lens.
+#[derive(Clone, Debug, Serialize)]
+pub struct LensEntry {
+    /// Whether photographs are freed of it.
+    pub is_applied: bool,
+    /// What was done with it, and why.
+    pub outcome: String,
+    /// Radial terms of its distortion.
+    pub k1: f64,
+    /// The second of them.
+    pub k2: f64,
+    /// Of what it adds at the farthest corner, in parts of the corner's distance from the principal point; none where nothing tells it.
+    pub deviation: Option<f64>,
+    /// Error of the shadows without and with it.
+    pub errors: Option<[f64; 2]>,
 }
 
 /// The focal length, or the scale of the world.
@@ -277,6 +296,19 @@ impl DiscoveredEntry {
             nearness_deviation_per_m: told(light.deviation.nearness_per_m),
             angular_radius_deviation_deg: told(light.deviation.angular_radius_rad.to_degrees()),
             against_listed: ErrorEntry::nearest(&found, listed),
+        }
+    }
+}
+
+impl From<&LensAlignment> for LensEntry {
+    fn from(found: &LensAlignment) -> Self {
+        Self {
+            is_applied: found.is_applied(),
+            outcome: found.outcome.to_string(),
+            k1: found.distortion.k1,
+            k2: found.distortion.k2,
+            deviation: told(found.deviation),
+            errors: found.errors,
         }
     }
 }

@@ -11,7 +11,7 @@ use std::{fs, process};
 use app_core::scene::Camera;
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::{Alignments, Asked, Ratio};
+use harness::alignment::{Alignments, Asked, Ratio, Source};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
@@ -55,7 +55,9 @@ fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
 
 fn wrong(session: &Path) -> Vec<String> {
     let out = Temporary::new("drawing");
-    check(session, &out.0, Ratio::Given).unwrap().wrong
+    check(session, &out.0, (Ratio::Given, Source::Given))
+        .unwrap()
+        .wrong
 }
 
 fn matrix(value: &Value) -> DMat4 {
@@ -77,7 +79,7 @@ fn off(index: &mut Value) {
 #[test]
 fn a_good_session_has_nothing_wrong_and_is_drawn() {
     let out = Temporary::new("good");
-    let findings = check(Path::new(BUNDLED_SESSION), &out.0, Ratio::Given).unwrap();
+    let findings = check(Path::new(BUNDLED_SESSION), &out.0, (Ratio::Given, Source::Given)).unwrap();
     assert_eq!(findings.wrong, Vec::<String>::new());
     let drawing = image::open(findings.drawing.unwrap()).unwrap().into_rgba8();
     let greens = drawing

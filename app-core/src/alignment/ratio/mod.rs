@@ -7,53 +7,31 @@
 //! given, and one picture suffices, since the toy's size is known and its shadow tells how far it is from the receiver.
 //!
 //! So such numbers are tried, each with the pose that fits the outline best and the lights that fit the shadow best (`trials`),
-//! until the shadow's loss is least (`minimum`): in a small picture, and around what that tells in a larger one.
+//! until the shadow's loss is least (`optimum`, `minimum`): in a small picture, and around what that tells in a larger one.
 //!
 //! All else is held. A toy that is larger than its model, or a table that is nearer than listed, moves the shadow's foot as another
 //! focal length does; the outline tells them apart by perspective. Where that fits worse, nothing is applied. By a scale no outline
 //! changes: a focal length that is off is taken for one.
 
+mod lens;
 mod minimum;
+mod optimum;
 mod trials;
+mod unknown;
 
 use glam::{DMat4, DVec3};
 
 use super::report::{RatioAlignment, RatioOutcome};
 use crate::frame::{FrameInput, Warning};
 use crate::scene::{Camera, Light, Scene, check};
-use minimum::{Parabola, Span, least};
-use trials::{Trial, Trials, Unseen};
+use optimum::searched;
+use trials::Unseen;
 
-/// Logarithms of ratios that are tried first: how far apart, and the largest.
-const COARSE: Span = Span {
-    start: 0.0,
-    step: 0.01,
-    most: 0.04,
-    n_finer: 0,
-};
-/// The same in the larger picture: where the loss is nearly a parabola.
-const FINE: Span = Span {
-    step: 0.002,
-    n_finer: 1,
-    ..COARSE
-};
-/// A ratio is applied where the loss falls to less than this part of that of the given one: as lights are.
-const GAIN: f64 = 0.96;
-/// A logarithm whose deviation is larger is not told.
-const MOST_DEVIATION: f64 = 0.004;
-/// A smaller one does not show: a sixth of a millimetre along the view at the distance of an arm.
-const LEAST: f64 = 5e-4;
-/// Deviations that it must differ by.
-const TOLD: f64 = 2.0;
-/// What the outline's distance may rise to, over that with what was given.
-const WORSE_OUTLINE: f64 = 1.015;
+pub(super) use lens::find_lens;
+pub(super) use unknown::Unknown;
 
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unknown {
-    FocalLength,
-    WorldScale,
-}
+/// Largest logarithm of a ratio.
+const MOST: f64 = 0.04;
 
 /// One number that is the same for all frames and plates of a scene, if any is asked for.
 #[derive(Debug, Default)]
@@ -89,6 +67,8 @@ impl Ratio {
         (!is_told).then_some(match self.unknown? {
             Unknown::FocalLength => Warning::FocalLengthNotTold,
             Unknown::WorldScale => Warning::WorldScaleNotTold,
+            // Looked for before all else, and reported by itself.
+            Unknown::Lens(_) => return None,
         })
     }
 
@@ -129,54 +109,21 @@ impl Ratio {
 }
 
 fn find(unknown: Unknown, scene: &Scene, input: &FrameInput, lights: &[Light]) -> RatioAlignment {
-    let report = searched(unknown, scene, input, lights).unwrap_or_else(|Unseen| none(RatioOutcome::Unseen));
-    let camera = input.camera.with_focal_length(report.ratio);
+    let found = match searched(unknown, MOST, (scene, input, lights)) {
+        Ok(Some(found)) => found,
+        Ok(None) => return none(RatioOutcome::NotTold),
+        Err(Unseen) => return none(RatioOutcome::Unseen),
+    };
+    let ratio = found.at.exp();
+    let camera = input.camera.with_focal_length(ratio);
     if unknown == Unknown::FocalLength && check::camera("camera", &camera).is_err() {
-        none(RatioOutcome::NotTold)
-    } else {
-        report
+        return none(RatioOutcome::NotTold);
     }
-}
-
-fn searched(
-    unknown: Unknown,
-    scene: &Scene,
-    input: &FrameInput,
-    lights: &[Light],
-) -> Result<RatioAlignment, Unseen> {
-    let mut trials = Trials::new(unknown, scene, input, lights)?;
-    let Some(about) = least(COARSE, |at| Ok(trials.at(at)?.loss))? else {
-        return Ok(none(RatioOutcome::NotTold));
-    };
-    trials.enlarge()?;
-    let around = Span {
-        start: about.at,
-        ..FINE
-    };
-    let Some(found) = least(around, |at| Ok(trials.at(at)?.loss))? else {
-        return Ok(none(RatioOutcome::NotTold));
-    };
-    let given = trials.at(0.0)?;
-    let outline_px = trials.outline_px(found.at).ok_or(Unseen)?;
-    Ok(RatioAlignment {
-        outcome: outcome(&found, &given, outline_px),
-        ratio: found.at.exp(),
-        deviation: deviation(&found),
-        errors: Some([given.loss, found.loss]),
-    })
-}
-
-fn outcome(found: &Parabola, given: &Trial, outline_px: f64) -> RatioOutcome {
-    let deviation = deviation(found);
-    let is_as_given = found.at.abs() < LEAST.max(TOLD * deviation) || found.loss > GAIN * given.loss;
-    if deviation > MOST_DEVIATION {
-        RatioOutcome::NotTold
-    } else if is_as_given {
-        RatioOutcome::AsGiven
-    } else if outline_px > WORSE_OUTLINE * given.outline_px {
-        RatioOutcome::OutlineDisagrees
-    } else {
-        RatioOutcome::Corrected
+    RatioAlignment {
+        outcome: found.outcome,
+        ratio,
+        deviation: found.deviation,
+        errors: Some(found.errors),
     }
 }
 
@@ -187,10 +134,4 @@ fn none(outcome: RatioOutcome) -> RatioAlignment {
         deviation: f64::INFINITY,
         errors: None,
     }
-}
-
-/// How far the logarithm may be off before the loss has risen by what errors of the model are taken for: noise alone would promise ten
-/// times as much.
-fn deviation(found: &Parabola) -> f64 {
-    ((1.0 / GAIN - 1.0) * found.loss / found.bend).sqrt()
 }

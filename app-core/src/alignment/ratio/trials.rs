@@ -1,8 +1,8 @@
-//! One ratio after the other, each with the pose and the lights that fit it best.
+//! One number after the other, each with the pose and the lights that fit it best.
 
 use glam::{DMat4, DVec3};
 
-use super::Unknown;
+use super::unknown::{Taken, Unknown};
 use crate::alignment::camera::Finder;
 use crate::alignment::lights::{Around, Followed};
 use crate::alignment::photograph::{MOST_OUTLINE_PX, Photograph};
@@ -75,7 +75,8 @@ impl<'a> Trials<'a> {
             ..scene.clone()
         };
         let mut cameras = Finder::default();
-        let (photograph, camera) = photograph(&mut scene, &given, (&mut cameras, input), 0.0);
+        let taken = unknown.taken(0.0, &given, input).ok_or(Unseen)?;
+        let (photograph, camera) = photograph(&mut scene, &mut cameras, taken);
         let (world_from_object, outline_px) =
             posed(&scene, &photograph, (&input.world_from_object, Start::Given))?;
         let shape = photograph.shape(&scene, &world_from_object).map_err(|_| Unseen)?;
@@ -115,8 +116,8 @@ impl<'a> Trials<'a> {
             level,
             around,
         } = self;
-        let focal_length = unknown.focal_length(at);
-        let (photograph, camera) = photograph(scene, given, (cameras, input), focal_length);
+        let taken = unknown.taken(at, given, input).ok_or(Unseen)?;
+        let (photograph, camera) = photograph(scene, cameras, taken);
         let near = nearest_to(tried, at).ok_or(Unseen)?;
         let (world_from_object, outline_px) = if tried[near].at == at {
             (tried[near].world_from_object, tried[near].outline_px)
@@ -158,7 +159,8 @@ impl<'a> Trials<'a> {
         let first = self.tried.first().ok_or(Unseen)?;
         let followed = first.followed.clone();
         let world_from_object = first.world_from_object;
-        let (photograph, _) = photograph(&mut self.scene, &self.given, (&mut self.cameras, self.input), 0.0);
+        let taken = self.unknown.taken(0.0, &self.given, self.input).ok_or(Unseen)?;
+        let (photograph, _) = photograph(&mut self.scene, &mut self.cameras, taken);
         let shape = photograph
             .shape(&self.scene, &world_from_object)
             .map_err(|_| Unseen)?;
@@ -185,18 +187,10 @@ impl Tried {
                 DMat4::from_translation(DVec3::new(0.0, 0.0, z_m))
             }
             Unknown::WorldScale => DMat4::from_scale(DVec3::splat(ratio)),
+            // What a lens moves differs from place to place: the pose starts where it was.
+            Unknown::Lens(_) => DMat4::IDENTITY,
         };
         camera.world_from_camera * slide * camera_from_object
-    }
-}
-
-impl Unknown {
-    /// Logarithm of the focal length over that given.
-    fn focal_length(self, at: f64) -> f64 {
-        match self {
-            Self::FocalLength => at,
-            Self::WorldScale => 0.0,
-        }
     }
 }
 
@@ -205,22 +199,18 @@ fn nearest_to(tried: &[Tried], at: f64) -> Option<usize> {
     (0..tried.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// The frame with a focal length, and the camera: that of a frame that no plate was taken with is found by the plate.
-fn photograph(
-    scene: &mut Scene,
-    given: &Plate,
-    (cameras, input): (&mut Finder, &FrameInput),
-    at: f64,
-) -> (Photograph, Camera) {
-    let mut camera = input.camera.with_focal_length(at.exp());
-    let of_plate = given.camera.with_focal_length(at.exp());
-    for plate in &mut scene.plates {
-        plate.camera = of_plate;
-    }
-    let pose = of_plate.world_from_camera;
-    if !pose.abs_diff_eq(camera.world_from_camera, SAME_CAMERA) {
+/// A frame with a number, and its camera: where no plate was taken from there, it is found by the plate.
+fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photograph, Camera) {
+    let Taken { plate, frame } = taken;
+    let mut camera = frame.camera;
+    let is_same = plate
+        .camera
+        .world_from_camera
+        .abs_diff_eq(camera.world_from_camera, SAME_CAMERA);
+    scene.plates = vec![plate];
+    if !is_same {
         let found = cameras.find(
-            (input.image.rgba(), &camera, None),
+            (frame.image.rgba(), &camera, None),
             (&scene.plates, &scene.receivers),
             &scene.uncertainty.camera,
         );
@@ -228,10 +218,7 @@ fn photograph(
             camera.world_from_camera = found.world_from_camera;
         }
     }
-    let seen = FrameInput {
-        camera,
-        ..input.clone()
-    };
+    let seen = FrameInput { camera, ..frame };
     (Photograph::new(scene, &seen, None), camera)
 }
 

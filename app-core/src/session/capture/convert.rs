@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex};
 use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
 use super::light_estimate::light_estimate;
 use super::light_probe::probe;
-use super::place::{camera, distortion, intrinsics, light, plates, receiver};
+use super::place::{self, camera, intrinsics, light, plates, receiver};
 use super::record::{CaptureRecord, FrameRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles, uncertainty};
+use crate::lens::Distortion;
 use crate::scene::{Intrinsics, Pose, Scene, check};
 use crate::session::SessionWarning;
 use crate::session::error::SessionError;
@@ -22,10 +23,10 @@ const MAX_TOY_BYTES: u64 = 256 << 20;
 pub(super) fn capture_from_record(
     files: Box<dyn Files>,
     record: CaptureRecord,
+    distortion: Option<Distortion>,
 ) -> Result<Capture, SessionError> {
     let size = picture_size(&record)?;
     let intrinsics = intrinsics("intrinsics", &record.intrinsics)?;
-    let distortion = record.lens.as_ref().map(distortion).transpose()?;
     let world_from_object = at(
         "toy.world_from_object",
         check::similarity(record.toy.world_from_object),
@@ -87,6 +88,11 @@ pub(super) fn capture_from_record(
         frames,
         last_picture: Mutex::new(None),
     })
+}
+
+/// That of the index, if it has any.
+pub(super) fn distortion(record: &CaptureRecord) -> Result<Option<Distortion>, SessionError> {
+    record.lens.as_ref().map(place::distortion).transpose()
 }
 
 fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
