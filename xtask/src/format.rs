@@ -20,12 +20,18 @@ pub(crate) fn rustfmt(toolchain: &Toolchain, args: &[&str]) -> Result<Command> {
     Ok(rustfmt)
 }
 
+/// What a build leaves, such as that of the fuzz targets, is no source.
+const BUILD: &str = "target";
+
 /// All files of Rust in a folder and those below it, in an order that stays.
 fn sources(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in folder.read_dir().with_context(|| folder.display().to_string())? {
         let path = entry.with_context(|| folder.display().to_string())?.path();
         if path.is_dir() {
+            if path.ends_with(BUILD) {
+                continue;
+            }
             found.extend(sources(&path)?);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
