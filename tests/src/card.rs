@@ -34,7 +34,7 @@ const ARM_M: f64 = 0.005;
 const LINE_M: f64 = 0.000_35;
 
 /// Leaves a square metre, and their radii.
-const LEAVES_PER_M2: f64 = 60_000.0;
+const LEAVES_PER_M2: f64 = 300_000.0;
 const RADII_M: [f64; 2] = [0.001, 0.005];
 const SEED: u64 = 13;
 /// The grey of a leaf: far apart, and more black and white than between.
