@@ -163,4 +163,8 @@ impl Phone for Activity {
             .external_data_path()
             .or_else(|| self.app.internal_data_path())
     }
+
+    fn own_folder(&self) -> Option<PathBuf> {
+        self.app.internal_data_path()
+    }
 }

@@ -22,6 +22,7 @@ pub mod phone;
 pub mod record;
 pub mod save;
 pub mod shell;
+pub mod starts;
 
 #[cfg(target_os = "android")]
 mod java;

@@ -28,6 +28,8 @@ pub trait Phone {
     fn keep_awake(&mut self, is_awake: bool);
     /// Where files go that people get at, with a computer at least.
     fn folder(&self) -> Option<PathBuf>;
+    /// Where files go that are the app's own.
+    fn own_folder(&self) -> Option<PathBuf>;
 }
 
 /// The camera's permission by what Android says: whether it is granted, whether it was asked for since the app was started,

@@ -15,7 +15,7 @@ use app_core::toy::{Toy, ToyError};
 use crate::arcore::feed::Feed;
 use crate::arcore::tracker::{Geometry, Run};
 use crate::phone::Phone;
-use crate::{record, save};
+use crate::{record, save, starts};
 
 /// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
 const LANDSCAPE: i32 = 1;
@@ -165,6 +165,15 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::PickToy => {
                     let reason = "toys cannot be chosen on Android yet".to_owned();
                     self.tell(ShellEvent::Toy(Err(reason)));
+                }
+                ShellCommand::Remember(text) => {
+                    let kept = self
+                        .phone
+                        .own_folder()
+                        .map(|folder| starts::store(&folder, &text));
+                    if let Some(Err(error)) = kept {
+                        eprintln!("app-android: the start is not kept: {error}");
+                    }
                 }
                 ShellCommand::Announce(step) => eprintln!("app-android: {step:?}"),
                 // ARCore keeps exposure and frame rate to itself.

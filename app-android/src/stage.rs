@@ -16,7 +16,9 @@ use crate::arcore::feed::Feed;
 use crate::arcore::library;
 use crate::input::screen;
 use crate::java::Activity;
+use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
+use crate::starts;
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -71,12 +73,17 @@ impl Stage {
                 shell.live().core_mut().resume(surface, size)?;
             }
             None => {
+                let phone = Activity::new(self.app.clone());
+                // Before a driver is asked for anything.
+                let starts = phone.own_folder().map(|folder| starts::begin(&folder));
                 let core = core_on(&self.instance, &window)?;
                 let live = Live::new(core, bundled_toy()?, Preset::default());
                 let api = library::load();
                 let api = api.inspect_err(|error| eprintln!("app-android: no ARCore: {error}"));
-                let phone = Activity::new(self.app.clone());
                 let mut shell = Shell::new(live, phone, Feed::new(api.ok()));
+                if let Some(starts) = starts {
+                    shell.tell(ShellEvent::Started(starts));
+                }
                 shell.set_foreground(self.is_foreground);
                 self.shell = Some(shell);
             }

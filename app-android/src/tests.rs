@@ -21,6 +21,7 @@ use crate::shell::{Shell, bundled_toy};
 #[derive(Default)]
 pub(crate) struct Desk {
     allows: bool,
+    own_folder: Option<PathBuf>,
 }
 
 impl Phone for Desk {
@@ -46,6 +47,10 @@ impl Phone for Desk {
 
     fn folder(&self) -> Option<PathBuf> {
         None
+    }
+
+    fn own_folder(&self) -> Option<PathBuf> {
+        self.own_folder.clone()
     }
 }
 

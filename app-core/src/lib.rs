@@ -94,6 +94,7 @@ pub mod probe;
 pub mod profile;
 pub mod recording;
 pub mod scene;
+pub mod self_test;
 pub mod session;
 pub mod toy;
 

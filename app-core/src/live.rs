@@ -21,6 +21,7 @@ use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::preset::Preset;
 use crate::profile::{About, Profile};
 use crate::scene::Image;
+use crate::self_test;
 use crate::toy::Toy;
 
 use profiler::Profiler;
@@ -30,6 +31,9 @@ pub struct Live {
     app: App,
     interface: Interface,
     core: Core,
+    /// As the shell has it.
+    chosen: Preset,
+    /// That which is used.
     preset: Preset,
     /// What is still to be compiled: a pass a picture.
     warm_up: Option<WarmUp>,
@@ -38,7 +42,8 @@ pub struct Live {
     version: Option<u64>,
     display: Display,
     warnings: Vec<Warning>,
-    /// Where frames a second are to be held.
+    /// Frames a second that are to be held.
+    hold: Option<u32>,
     governor: Option<Governor>,
     profiler: Profiler,
     /// Of the latest picture.
@@ -54,11 +59,13 @@ impl Live {
             interface: Interface::default(),
             warm_up: Some(core.warm_up(preset)),
             core,
+            chosen: preset,
             preset,
             painter: None,
             version: None,
             display: Display::default(),
             warnings: Vec::new(),
+            hold: None,
             governor: None,
             profiler: Profiler::default(),
             time_s: 0.0,
@@ -68,9 +75,8 @@ impl Live {
     /// Holds so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
     /// stay as they are.
     pub fn hold(&mut self, frames_per_second: u32) {
-        if self.preset == Preset::Balanced {
-            self.governor = Some(Governor::new(BALANCED_FRONT, frames_per_second));
-        }
+        self.hold = Some(frames_per_second);
+        self.govern_preset();
     }
 
     /// Times frames by a clock of the shell's from now on: for [`Live::times`], for what is shown of times, and for recordings.
@@ -200,14 +206,17 @@ impl Live {
 
     /// What the interface wants, and the picture below it.
     fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
-        let mut commands = self.compile_next()?;
+        let mut commands = self.follow_preset();
+        commands.extend(self.compile_next()?);
         let profile = self.profile();
         let (wishes, painting) = self.interface.run(&self.app, screen, time_s, &profile);
         for wish in wishes {
             commands.extend(self.app.event(ShellEvent::Wish(wish)));
         }
         self.govern(time_s)?;
-        self.make_picture()?;
+        if self.make_picture()? {
+            commands.extend(self.app.event(ShellEvent::Drawn));
+        }
         Ok((commands, painting))
     }
 
@@ -220,7 +229,41 @@ impl Live {
             return Ok(Vec::new());
         }
         self.warm_up = None;
-        Ok(self.app.event(ShellEvent::Device(Device::Ready)))
+        let mut commands = self.test_device();
+        commands.extend(self.app.event(ShellEvent::Device(Device::Ready)));
+        Ok(commands)
+    }
+
+    /// Uses another preset where the app wants one.
+    fn follow_preset(&mut self) -> Vec<ShellCommand> {
+        let preset = self.app.preset(self.chosen);
+        if preset == self.preset {
+            return Vec::new();
+        }
+        self.preset = preset;
+        self.warm_up = Some(self.core.warm_up(preset));
+        self.version = None;
+        self.govern_preset();
+        self.app.event(ShellEvent::Device(Device::Starting))
+    }
+
+    /// The governor of the preset that is used.
+    fn govern_preset(&mut self) {
+        let hold = self.hold.filter(|_| self.preset == Preset::Balanced);
+        self.governor = hold.map(|hold| Governor::new(BALANCED_FRONT, hold));
+    }
+
+    /// Has the device draw its test picture, once for each driver and version of this crate.
+    fn test_device(&mut self) -> Vec<ShellCommand> {
+        let version = env!("CARGO_PKG_VERSION");
+        let device = format!("{version} {} {}", self.preset, self.core.gpu().adapter_name());
+        if self.core.gpu().opened.is_none() || !self.app.wants_self_test(&device) {
+            return Vec::new();
+        }
+        let tested = self_test::run(&mut self.core, self.preset);
+        self.version = None;
+        let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
+        self.app.event(ShellEvent::SelfTested { device, outcome })
     }
 
     /// Turns settings down or up by how long pictures take while the toy moves.
@@ -242,7 +285,8 @@ impl Live {
         Ok(())
     }
 
-    fn make_picture(&mut self) -> Result<(), CoreError> {
+    /// Whether it is one of the moving toy.
+    fn make_picture(&mut self) -> Result<bool, CoreError> {
         match self.app.show() {
             Show::Nothing => {}
             Show::Camera(frame) => {
@@ -280,9 +324,10 @@ impl Live {
                 if let Some(times) = self.profiler.latest() {
                     self.app.record_profile(&times);
                 }
+                return Ok(true);
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     fn profile(&self) -> String {

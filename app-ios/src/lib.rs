@@ -22,6 +22,7 @@ mod guard;
 pub mod inbox;
 pub mod jobs;
 pub mod record;
+pub mod starts;
 
 #[cfg(target_os = "ios")]
 mod camera;

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant, SystemTime};
 
-use app_core::app::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal};
+use app_core::app::{
+    ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Starts, Thermal,
+};
 use app_core::interface::Screen;
 use app_core::recording::{Take, Taken};
 use objc2::MainThreadMarker;
@@ -16,7 +18,7 @@ use crate::arkit::session::Session;
 use crate::inbox::{Inbox, Told};
 use crate::jobs::{Jobs, save_picture};
 use crate::stage::{Fitted, Stage, StageError, TOY};
-use crate::{camera, convert, record};
+use crate::{camera, convert, record, starts};
 
 /// Time after which free space is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
@@ -36,6 +38,8 @@ pub(crate) struct Shell {
     looked: Option<Instant>,
     wants_device: bool,
     frames_per_s: u32,
+    /// For an app that is about to be made.
+    starts: Option<Starts>,
 }
 
 impl Shell {
@@ -53,15 +57,23 @@ impl Shell {
             looked: None,
             wants_device: false,
             frames_per_s: 60,
+            starts: None,
         }
     }
 
     /// Lets the app draw on `layer`, and tells it.
     pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
+        if self.stage.live().is_none() && self.starts.is_none() {
+            // Before a driver is asked for anything.
+            self.starts = Some(starts::begin(&own_folder()));
+        }
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
             // Another app than the one that threads worked for, and that was told.
             self.jobs = Jobs::default();
             (self.permission, self.thermal) = (None, None);
+            if let Some(starts) = self.starts.take() {
+                self.inbox.tell(ShellEvent::Started(starts));
+            }
             self.inbox.tell(ShellEvent::Foreground(true));
             if !Session::is_supported() {
                 self.inbox.tell(ShellEvent::ArSession(ArSession::Unsupported));
@@ -192,6 +204,11 @@ impl Shell {
                 ShellCommand::Record(Some(take)) => self.record(*take),
                 // None can be made yet, which is told as a failure.
                 ShellCommand::Video(true) => self.saved(Saved::Failed),
+                ShellCommand::Remember(text) => {
+                    if let Err(error) = starts::store(&own_folder(), &text) {
+                        eprintln!("app-ios: the start is not kept: {error}");
+                    }
+                }
                 ShellCommand::PickToy => {
                     let reason = "this app has one toy so far".to_owned();
                     self.inbox.tell(ShellEvent::Toy(Err(reason)));
@@ -244,6 +261,11 @@ impl Shell {
         // SAFETY: without options and without a handler there is nothing that could be of a wrong type.
         unsafe { application.openURL_options_completionHandler(&url, &NSDictionary::new(), None) };
     }
+}
+
+/// The folder of what is the app's own; a system makes it with the app's home.
+fn own_folder() -> PathBuf {
+    PathBuf::from(NSHomeDirectory().to_string()).join("Library")
 }
 
 /// The folder that Files shows.

@@ -2,6 +2,7 @@
 
 pub mod alignment;
 pub mod bench;
+pub mod card;
 pub mod check;
 pub mod compare;
 pub mod convert;

@@ -95,6 +95,13 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Write a card to print and to lay beside the toy (`card --help` tells more)
+    #[command(disable_help_flag = true)]
+    Card {
+        /// Handed on to the harness
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Rewrite the golden pictures and the schema of sessions (`bless --help` tells more)
     #[command(disable_help_flag = true)]
     Bless {
@@ -193,6 +200,7 @@ fn run(command: Command) -> anyhow::Result<ExitCode> {
         Command::Profile { args } => return harness::run(&toolchain, "profile", &args),
         Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
         Command::View { args } => return harness::run(&toolchain, "view", &args),
+        Command::Card { args } => return harness::run_on_processor(&toolchain, "card", &args),
         Command::Bless { args } => return bless(&toolchain, &args),
         Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
         Command::Test => test::run(&toolchain)?,

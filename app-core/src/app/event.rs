@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::aligning::{AlignJob, AlignedJob};
+use super::starts::Starts;
 use super::step::Step;
 use crate::camera_frame::CameraFrame;
 use crate::recording::{Take, Taken};
@@ -122,6 +123,8 @@ pub enum Wish {
     PickToy,
     /// The log, and the latest recording and profile.
     Share,
+    /// The preset that the shell has chosen, in place of the simplest.
+    RestorePreset,
 }
 
 /// What a shell tells.
@@ -153,6 +156,17 @@ pub enum ShellEvent {
     Recorded(Recorded),
     /// What is free where recordings go, in bytes; once a second.
     FreeSpace(u64),
+    /// What was kept from start to start, once this one has [begun](Starts::begin): before anything else.
+    Started(Starts),
+    /// Whether a device, named with its driver, has drawn its test picture as it should; [`Live`](crate::live::Live) tells.
+    SelfTested {
+        /// Its name.
+        device: String,
+        /// What is wrong.
+        outcome: Result<(), String>,
+    },
+    /// A picture of the moving toy was drawn; [`Live`](crate::live::Live) tells.
+    Drawn,
     /// What a person wishes.
     Wish(Wish),
 }
@@ -201,6 +215,8 @@ pub enum ShellCommand {
     PickToy,
     /// Hand log, recording and profile to whoever the person chooses.
     Share,
+    /// Keep this text for the next start, at once: see [`Starts`].
+    Remember(String),
     /// Say it to those who do not see the screen.
     Announce(Step),
 }

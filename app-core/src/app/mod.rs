@@ -18,6 +18,8 @@ mod pose_filter;
 mod recorder;
 mod recordings;
 mod show;
+mod start;
+mod starts;
 mod step;
 mod wishes;
 
@@ -32,6 +34,7 @@ use ghost::Ghost;
 use ghost_shape::GhostShape;
 use platform::{Captures, Commanded, Platform};
 use recorder::Recorder;
+use start::Start;
 
 pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
@@ -42,6 +45,7 @@ pub use platform::Obstacle;
 pub use playback::Playback;
 pub use pose_filter::{PoseFilter, PoseNoise, PoseStep};
 pub use show::Show;
+pub use starts::{N_GOOD_FRAMES, N_UNFINISHED, Simplified, Starts};
 pub use step::{Cause, Step};
 
 use notice::Notices;
@@ -83,6 +87,8 @@ pub struct App {
     playback: Playback,
     notices: Notices,
     log: Log,
+    /// None where the shell keeps nothing from start to start.
+    start: Option<Start>,
 }
 
 impl App {
@@ -118,6 +124,7 @@ impl App {
             n_places: 0,
             notices: Notices::default(),
             log: Log::default(),
+            start: None,
         }
     }
 
@@ -128,7 +135,7 @@ impl App {
         let mut commands = Vec::new();
         match event {
             ShellEvent::Permission(permission) => self.permission(permission),
-            ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground),
+            ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground, &mut commands),
             ShellEvent::Surface(size_px) => self.platform.surface_px = size_px,
             ShellEvent::Device(device) => self.device(device, &mut commands),
             ShellEvent::ArSession(ar_session) => self.ar_session(ar_session),
@@ -140,6 +147,9 @@ impl App {
             ShellEvent::Saved(saved) => self.saved(saved),
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
+            ShellEvent::Started(starts) => self.started(starts),
+            ShellEvent::SelfTested { device, outcome } => self.self_tested(&device, outcome, &mut commands),
+            ShellEvent::Drawn => self.drawn(&mut commands),
             ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
         }
         let wanted = Commanded::wanted(self.step, &self.platform, self.captures);

@@ -1,6 +1,7 @@
 //! What a person should hear of, for some seconds.
 
 use super::event::{Recorded, Saved};
+use super::starts::Simplified;
 
 /// How long it stands, in seconds.
 const SHOWN_S: f64 = 6.0;
@@ -33,6 +34,8 @@ pub enum Notice {
     NoRoomToRecord,
     /// Memory is short: what was being kept was ended.
     MemoryLow,
+    /// The simplest preset is used.
+    Simplified(Simplified),
 }
 
 /// The latest notice.

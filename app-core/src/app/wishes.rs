@@ -54,6 +54,7 @@ impl App {
             Wish::ShowProfile(is_on) => self.shows_profile = is_on,
             Wish::PickToy => commands.push(ShellCommand::PickToy),
             Wish::Share => commands.push(ShellCommand::Share),
+            Wish::RestorePreset => self.restore_preset(commands),
         }
     }
 
@@ -119,8 +120,9 @@ impl App {
         }
     }
 
-    pub(super) fn foreground(&mut self, is_foreground: bool) {
+    pub(super) fn foreground(&mut self, is_foreground: bool, commands: &mut Vec<ShellCommand>) {
         self.platform.is_foreground = is_foreground;
+        self.follow_start(is_foreground, commands);
         // What comes after a pause is far from what was before it: no pose of then is drawn over it.
         self.fade = crate::camera_frame::Fade::default();
     }

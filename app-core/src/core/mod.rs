@@ -195,6 +195,12 @@ impl Core {
         Ok(())
     }
 
+    /// Goes back to where no scene was set.
+    pub(crate) fn forget_scene(&mut self) {
+        self.stage = None;
+        self.gpu.release_groups();
+    }
+
     /// Turns settings of the model down from the next frame on, or up again: those that a
     /// [`Governor`](crate::governor::Governor) has [turned down](crate::governor::Governor::turned_down). What was learned of the
     /// place stays; the next frame learns as from a new view. Until another scene is set; the baseline has no such settings.

@@ -11,6 +11,9 @@ pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut
         let words = egui::RichText::new(text::of_verdict(verdict));
         ui.label(words.small().color(style::MUTED));
     }
+    if app.simplified().is_some() {
+        ui.label(egui::RichText::new(text::SIMPLE).small());
+    }
     if app.is_recording() {
         ui.label(egui::RichText::new(text::RECORDING).small());
     }
@@ -98,7 +101,8 @@ fn menu(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
         (text::START_OVER, Wish::StartOver),
     ];
     ui.horizontal_wrapped(|ui| {
-        for (label, wish) in entries {
+        let restore = app.simplified().map(|_| (text::RESTORE, Wish::RestorePreset));
+        for (label, wish) in entries.into_iter().chain(restore) {
             if other(ui, label) {
                 wishes.push(wish);
             }

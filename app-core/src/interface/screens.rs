@@ -9,8 +9,7 @@ use crate::app::{App, Obstacle, Step, Wish};
 /// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
 pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut Vec<Wish>) {
     let area = ui.ctx().content_rect();
-    let (align, offset, width) = if area.width() > 1.2 * area.height() {
-        let width = (0.4 * area.width()).clamp(style::NARROW_POINTS[0], style::NARROW_POINTS[1]);
+    let (align, offset, width) = if let Some(width) = width_at_right(area) {
         (Align2::RIGHT_CENTER, vec2(-12.0, 0.0), width)
     } else {
         let width = (area.width() - 24.0).min(style::SHEET_POINTS);
@@ -92,14 +91,22 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, wishes: &mut Vec<Wish>
     wishes.extend(way_back);
 }
 
-/// What happened, at the top; the place that it takes.
+/// Width of a sheet that stands at the right, on a wide screen.
+fn width_at_right(area: Rect) -> Option<f32> {
+    let width = (0.4 * area.width()).clamp(style::NARROW_POINTS[0], style::NARROW_POINTS[1]);
+    (area.width() > 1.2 * area.height()).then_some(width)
+}
+
+/// What happened, at the top and beside a sheet at the right; the place that it takes.
 pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
     let notice = app.notice()?;
-    let width = (ui.ctx().content_rect().width() - 24.0).min(style::SHEET_POINTS);
+    let area = ui.ctx().content_rect();
+    let taken = width_at_right(area).map_or(0.0, |width| width + 12.0);
+    let width = (area.width() - taken - 24.0).min(style::SHEET_POINTS);
     let shown = Area::new(Id::unique("notice"))
         .order(Order::Foreground)
         .interactable(false)
-        .anchor(Align2::CENTER_TOP, vec2(0.0, 12.0))
+        .anchor(Align2::CENTER_TOP, vec2(-0.5 * taken, 12.0))
         .show(ui.ctx(), |ui| {
             style::card().show(ui, |ui| {
                 ui.set_max_width(width - 32.0);

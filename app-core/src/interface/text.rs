@@ -1,6 +1,8 @@
 //! Every word of the interface, in one place.
 
-use crate::app::{App, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Step, Verdict};
+use crate::app::{
+    App, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Simplified, Step, Verdict,
+};
 use crate::camera_frame::Tracking;
 use crate::recording::{Ending, Taken};
 
@@ -85,7 +87,22 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::NothingRecorded => "Nothing was recorded: no frame came with a place.".to_owned(),
         Notice::RecordingDrops => "Writing is too slow: the recording lacks some frames.".to_owned(),
         Notice::NoRoomToRecord => "Nothing is recorded: there is too little room left.".to_owned(),
+        Notice::Simplified(simplified) => of_simplified(simplified),
         Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
+    }
+}
+
+/// Why the shadow is the simplest.
+pub(super) fn of_simplified(simplified: &Simplified) -> String {
+    match simplified {
+        Simplified::Starts => {
+            "The app ended unexpectedly, so it uses a simple shadow. The full one is in the menu.".to_owned()
+        }
+        Simplified::SelfTest(reason) => {
+            format!(
+                "This phone's graphics fail a test, so the shadow is a simple one: {reason}. The full one is in the menu."
+            )
+        }
     }
 }
 
@@ -152,6 +169,8 @@ pub(super) const PROFILE: &str = "Show times";
 pub(super) const REPLACE: &str = "Move the outline";
 pub(super) const RETAKE: &str = "Photograph the empty place";
 pub(super) const PICK_TOY: &str = "Another toy";
+pub(super) const SIMPLE: &str = "Simple shadow";
+pub(super) const RESTORE: &str = "Full shadow";
 pub(super) const SHARE: &str = "Share log and recording";
 
 /// How far the photograph of the empty place is, from 0 to 1, and what helps.

@@ -1,5 +1,5 @@
 //! Makes the picture that each preset makes now the one that is expected of it, and the schema that the session reader
-//! has now the one that is kept. Never ends in success.
+//! has now the one that is kept; for the self-test the means of blocks. Never ends in success.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -8,10 +8,11 @@ use anyhow::{Context, ensure};
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
+use app_core::self_test;
 use app_core::wgpu;
 use clap::Parser;
 use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
-use harness::output::write_whole;
+use harness::output::{make_folder, write_png, write_whole};
 use harness::session_format::{SCHEMA_FILE, SCHEMA_NAME, schema_text};
 
 /// Rewrite the golden pictures from what the presets make on the software adapter, and session.schema.json.
@@ -59,10 +60,28 @@ fn bless_pictures(named: Vec<(Preset, String)>) -> anyhow::Result<()> {
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))
         .context("goldens are made on the software adapter alone")?;
     let goldens = Goldens::of_project();
+    for &(preset, _) in &named {
+        bless_self_test(&mut core, preset)?;
+    }
     for (preset, name) in named {
         let rendered = render(&mut core, preset).with_context(|| name.clone())?;
         goldens.write(&name, &rendered.golden)?;
         eprintln!("{}", goldens.path(&name).display());
     }
+    Ok(())
+}
+
+/// What the core is to expect of a preset in its self-test, and the picture to look at.
+fn bless_self_test(core: &mut Core, preset: Preset) -> anyhow::Result<()> {
+    let picture = self_test::render(core, preset).with_context(|| preset.name())?;
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let kept = top.join(format!("app-core/src/self_test/golden/{preset}.txt"));
+    write_whole(&kept, self_test::kept(&picture).as_bytes())?;
+    let looked_at = top.join("target/self_test");
+    make_folder(&looked_at)?;
+    write_png(&looked_at.join("photograph.png"), &self_test::photograph()?)?;
+    let drawn = looked_at.join(format!("{preset}.png"));
+    write_png(&drawn, &picture)?;
+    eprintln!("{} of {}", kept.display(), drawn.display());
     Ok(())
 }

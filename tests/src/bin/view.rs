@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use app_core::Core;
+use app_core::app::{ShellEvent, Starts};
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
@@ -90,6 +91,9 @@ fn run(args: Args) -> Result<()> {
             },
         );
     }
+    // A tour begins as the first start does.
+    let mut starts = Starts::default();
+    starts.begin();
     let core = pollster::block_on(Core::headless(
         &wgpu::Instance::default(),
         &AdapterChoice::Fastest,
@@ -98,6 +102,7 @@ fn run(args: Args) -> Result<()> {
     args.hold.into_iter().for_each(|hold| live.hold(hold));
     live.time_by(window::clock());
     let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
+    desk.tell(ShellEvent::Started(starts));
     desk.jpeg_quality = args.jpeg;
     desk.toy_to_pick = args.toy;
     #[allow(

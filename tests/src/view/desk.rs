@@ -178,6 +178,7 @@ impl Desk {
                         }
                     }
                 }
+                ShellCommand::Remember(text) => kept::store_starts(&self.out, &text),
                 ShellCommand::ReopenDevice => self.wants_device = true,
                 ShellCommand::Record(Some(take)) => {
                     let kept = kept::Recording {

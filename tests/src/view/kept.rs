@@ -9,7 +9,7 @@ use std::sync::mpsc::Sender;
 use std::thread::{self, JoinHandle};
 
 use anyhow::Context;
-use app_core::app::{Recorded, ShellEvent};
+use app_core::app::{Recorded, ShellEvent, Starts};
 use app_core::live::Live;
 use app_core::recording::{Limits, PictureCodec, Take, TakeOptions};
 use app_core::toy::Toy;
@@ -20,6 +20,26 @@ use crate::output::{make_folder, write_whole};
 
 /// Where what is shared goes, in the folder of photos.
 pub const SHARED: &str = "shared";
+
+/// What is kept from start to start, in the folder of photos.
+pub const STARTS: &str = "starts.txt";
+
+/// Reads what was kept, and stores that another start begins.
+#[must_use]
+pub fn begin_start(folder: &Path) -> Starts {
+    let mut starts = Starts::read(&fs::read_to_string(folder.join(STARTS)).unwrap_or_default());
+    starts.begin();
+    store_starts(folder, &starts.text());
+    starts
+}
+
+/// Keeps it; where that fails the next start knows of nothing.
+pub(super) fn store_starts(folder: &Path, text: &str) {
+    let stored = make_folder(folder).and_then(|()| write_whole(&folder.join(STARTS), text.as_bytes()));
+    if let Err(error) = stored {
+        eprintln!("the start is not kept: {error}");
+    }
+}
 
 /// A recording that is about to be written.
 pub(super) struct Recording {

@@ -23,6 +23,10 @@ const N_RECORDED: usize = 24;
 /// How far off the simulated person leaves the ghost: in metres, and in radians.
 const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const GHOST_OFF_RAD: f64 = 0.1;
+/// Drags after which a button that is still out of sight is touched where it is.
+const N_SCROLLS: usize = 6;
+/// What a sheet leaves free below what can be touched in it, in points.
+const SHEET_MARGIN_POINTS: f64 = 28.0;
 /// What a step of the wheel turns, in radians, as the interface has it.
 const WHEEL_RAD: f64 = 0.05;
 
@@ -264,8 +268,41 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Touches a button by what a screen reader calls it.
+    /// Touches a button by what a screen reader calls it, which may have to be scrolled to.
     fn press(&mut self, label: &str) -> Result<(), TourError> {
+        for _ in 0..N_SCROLLS {
+            let [left, _, right, bottom] = self.button(label)?;
+            let height = f64::from(self.screen.size_px[1]);
+            let beyond_px = bottom - (height - SHEET_MARGIN_POINTS * self.screen.pixels_per_point);
+            if beyond_px <= 0.0 {
+                break;
+            }
+            self.drag_up([0.5 * (left + right), 0.7 * height], beyond_px.min(0.4 * height))?;
+        }
+        let [left, top, right, bottom] = self.button(label)?;
+        self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
+    }
+
+    /// Scrolls what is below a finger, which then rests for a while so that nothing rolls on.
+    fn drag_up(&mut self, [x, y]: [f64; 2], by_px: f64) -> Result<(), TourError> {
+        let phases = [
+            (TouchPhase::Began, 0.0),
+            (TouchPhase::Moved, 0.5),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Ended, 1.0),
+        ];
+        for (phase, part) in phases {
+            let at_px = [x, y - part * by_px];
+            self.desk.live.touch(Touch { id: 1, phase, at_px });
+            self.frame()?;
+        }
+        self.shoot_nothing()
+    }
+
+    /// Left, top, right and bottom of a button, in pixels.
+    fn button(&self, label: &str) -> Result<[f64; 4], TourError> {
         let widgets = self.desk.live.widgets();
         let button = widgets
             .iter()
@@ -278,8 +315,7 @@ impl<'a> Tour<'a> {
                 found: buttons.map(|widget| widget.label.clone()).collect(),
             });
         };
-        let [left, top, right, bottom] = button.bounds_px;
-        self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
+        Ok(button.bounds_px)
     }
 
     fn wait_for(&mut self, step: Step, after: &str) -> Result<(), TourError> {

@@ -21,6 +21,7 @@ use winit::window::{Window, WindowId};
 use super::desk::{Desk, Jobs};
 use super::fault::Fault;
 use super::feed::Feed;
+use super::kept;
 
 /// Time between two camera frames.
 const FRAME: Duration = Duration::from_millis(33);
@@ -108,6 +109,8 @@ impl Shell {
             .with_title("Shadow retargeting")
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
+        // Before a driver is asked for anything.
+        let starts = kept::begin_start(&self.options.out);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
         self.options.hold.into_iter().for_each(|hold| live.hold(hold));
@@ -115,6 +118,7 @@ impl Shell {
         let mut desk = Desk::new(live, feed, self.options.out.clone(), Jobs::Thread);
         desk.jpeg_quality = self.options.jpeg_quality;
         desk.toy_to_pick = self.options.toy_to_pick.clone();
+        desk.tell(ShellEvent::Started(starts));
         desk.tell(ShellEvent::Foreground(true));
         desk.tell(ShellEvent::Surface(Some(window.inner_size().into())));
         self.opened = Some(Opened { window, desk });

@@ -5,6 +5,7 @@
 mod orders;
 mod recorded;
 mod screens;
+mod starts;
 mod table;
 mod way;
 mod world;

@@ -115,6 +115,7 @@ fn wish() -> impl Strategy<Value = Wish> {
         Wish::ShowProfile(true),
         Wish::PickToy,
         Wish::Share,
+        Wish::RestorePreset,
     ];
     prop_oneof![
         8 => select(plain),

@@ -10,6 +10,7 @@ const ROOMS: &[&str] = &[
     "live",
     "interface",
     "app",
+    "self_test",
     "core",
     "stage",
     "model",

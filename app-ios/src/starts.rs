@@ -1,0 +1,30 @@
+//! What is kept from start to start, in a file of the app's own.
+
+use std::path::Path;
+use std::{fs, io};
+
+use app_core::app::Starts;
+
+/// Its name.
+const FILE: &str = "starts.txt";
+
+/// Reads what was kept, and stores that another start begins. What cannot be stored is as if nothing was kept.
+#[must_use]
+pub fn begin(folder: &Path) -> Starts {
+    let mut starts = Starts::read(&fs::read_to_string(folder.join(FILE)).unwrap_or_default());
+    starts.begin();
+    if let Err(error) = store(folder, &starts.text()) {
+        eprintln!("app-ios: the start is not kept: {error}");
+    }
+    starts
+}
+
+/// Keeps it, whole or not at all.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn store(folder: &Path, text: &str) -> io::Result<()> {
+    let whole = folder.join("starts.new");
+    fs::write(&whole, text)?;
+    fs::rename(whole, folder.join(FILE))
+}
