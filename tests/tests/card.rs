@@ -1,10 +1,18 @@
 //! The printed card: its lengths, its pattern, its file.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "dots of a page"
+)]
 
 use app_core::internals::png_chunks;
 use glam::DVec2;
 use harness::card::{CROSSES_M, DOTS_PER_M, Gray, PATTERN_M, Paper, REFERENCE_PX, page, reference};
+
+/// Where a place of a square picture is turned or mirrored to, in dots; the last of a side comes after it.
+type Turn = fn([usize; 2], usize) -> [usize; 2];
 
 fn code(gray: &Gray, [x, y]: [usize; 2]) -> f64 {
     f64::from(gray.codes[y * gray.size_px[0] as usize + x])
@@ -77,7 +85,7 @@ fn the_pattern_looks_like_none_of_its_turns_and_has_edges_everywhere() {
     let pattern = reference();
     assert_eq!(pattern.size_px, [REFERENCE_PX; 2]);
     let last = REFERENCE_PX as usize - 1;
-    let turns: [fn([usize; 2], usize) -> [usize; 2]; 7] = [
+    let turns: [Turn; 7] = [
         |[x, y], last| [last - y, x],
         |[x, y], last| [last - x, last - y],
         |[x, y], last| [y, last - x],
