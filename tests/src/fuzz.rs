@@ -169,6 +169,15 @@ fn check_capture(capture: &Capture) {
 pub fn check_toy(toy: &Toy) {
     let _ = toy.bounds_of_pose(&Pose::Authored);
     pose(toy, &Pose::Authored, &DMat4::IDENTITY);
+    for caster in toy.casters() {
+        assert!(caster.error.is_finite());
+        assert!(
+            caster
+                .indices
+                .iter()
+                .all(|index| (*index as usize) < toy.n_vertices())
+        );
+    }
     for name in toy.clip_names().iter().take(4) {
         let Ok(clip) = toy.find_clip(name) else { continue };
         let end_secs = toy.clips()[clip.index()].duration_secs;

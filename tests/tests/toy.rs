@@ -4,6 +4,8 @@
 
 #[path = "toy/builder.rs"]
 mod builder;
+#[path = "toy/casters.rs"]
+mod casters;
 #[path = "toy/hard.rs"]
 mod hard;
 #[path = "toy/out_of_range.rs"]

@@ -36,6 +36,12 @@ impl View {
             .truncate()
     }
 
+    /// What a pixel is across at a distance, where it is smallest.
+    #[must_use]
+    pub fn pixel_m(&self, distance_m: f64) -> f64 {
+        distance_m / self.intrinsics.fx_px.max(self.intrinsics.fy_px)
+    }
+
     /// Whether the camera's centre is before a receiver, which then shows its front.
     #[must_use]
     pub fn sees_front_of(&self, world_from_plane: &DMat4) -> bool {

@@ -6,8 +6,6 @@ use crate::preset::ModelSettings;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Knob {
-    /// Points of each light from which the toy's shadow on itself is drawn.
-    SelfShadowPoints,
     /// Region pixels per texel of the ambient map, along each side.
     AmbientDivisor,
     /// Directions of ambient light.
@@ -37,12 +35,6 @@ pub struct Step {
 /// the ledger says of triangles and of bytes, for a new pose, one light and 10,000 triangles; where it was taken once, the
 /// governor knows better.
 pub const BALANCED_FRONT: &[Step] = &[
-    Step {
-        knob: Knob::SelfShadowPoints,
-        value: 4,
-        gain: 0.92,
-        what: "the toy's shadow on itself is drawn from 4 points of each light",
-    },
     Step {
         knob: Knob::AmbientDivisor,
         value: 8,
@@ -86,9 +78,6 @@ impl Step {
     pub fn apply(&self, settings: &mut ModelSettings) {
         let points = self.value as usize;
         match self.knob {
-            Knob::SelfShadowPoints => {
-                settings.n_self_shadow_points = settings.n_self_shadow_points.min(points);
-            }
             Knob::AmbientDivisor => settings.ambient_divisor = settings.ambient_divisor.max(self.value),
             Knob::AmbientDirections => {
                 settings.n_ambient_directions = settings.n_ambient_directions.min(points);

@@ -127,6 +127,7 @@ impl Model {
         if is_alike && self.captured.serves(&plan) {
             self.captured.light.injected = None;
             self.drawn.light.injected = None;
+            self.lighting.cast_by(plan.casters);
             self.region.follow(gpu, plan, globals);
             return self;
         }

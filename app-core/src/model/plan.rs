@@ -8,6 +8,7 @@ use wgpu::TextureFormat;
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
+use crate::passes::toy_mesh::Detail;
 use crate::plan::{LeftOut, SceneFacts};
 use crate::preset::ModelSettings;
 use crate::scene::MAX_LIGHTS;
@@ -26,8 +27,37 @@ pub(crate) const MAX_FIT_ROWS: u32 = 64;
 /// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
 /// where the real shadow is some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
+/// The farthest that what casts a light's shadow is from the toy's shape, in pixels at the toy: a shadow is seen from farther away.
+const CASTER_PX: f64 = 1.0;
+/// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
+const N_AMBIENT_TRIANGLES: u32 = 1000;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
+
+/// The shapes that cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Casters {
+    /// Of the lights, also on the toy itself.
+    pub light: Detail,
+    /// Of the ambient light.
+    pub ambient: Detail,
+}
+
+impl Casters {
+    fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
+        if settings.are_casters_simplified {
+            Self {
+                light: Detail::Within(CASTER_PX * facts.pixel_in_object),
+                ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
+            }
+        } else {
+            Self {
+                light: Detail::Own,
+                ambient: Detail::Own,
+            }
+        }
+    }
+}
 
 /// Sizes and numbers of all that is allocated and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +91,8 @@ pub struct Plan {
     pub is_shadow_withheld: bool,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
+    /// What casts shadows.
+    pub casters: Casters,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -97,6 +129,7 @@ impl Plan {
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
             self_shadow: self_shadow(n_lights, settings),
+            casters: Casters::new(facts, settings),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,

@@ -11,7 +11,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
-use crate::toy::{PosedMesh, Toy};
+use crate::toy::{Caster, PosedMesh, Toy};
 
 /// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
 pub(crate) const LOOK_STREAMS: [Stream; 4] = [
@@ -63,11 +63,36 @@ struct Run {
     look: usize,
 }
 
+/// Which of the shapes near the toy's casts a shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// The toy's own.
+    Own,
+    /// The coarsest that is as near, in units of the toy's file.
+    Within(f64),
+    /// The finest of as many triangles, or the coarsest.
+    AtMost(u32),
+}
+
+/// Corners of a shape near the toy's.
+struct CasterRange {
+    /// How far it is from the toy's, in units of its file.
+    error: f64,
+    indices: Range<u32>,
+}
+
+impl CasterRange {
+    fn n_triangles(&self) -> u32 {
+        (self.indices.end - self.indices.start) / 3
+    }
+}
+
 /// The toy's buffers.
 pub(crate) struct ToyMesh {
     indices: Buffer,
     shadow_indices: Buffer,
-    n_shadow_indices: u32,
+    /// Within them, ever coarser; at least the first, which is the toy's own shape.
+    casters: Vec<CasterRange>,
     /// Whether it is made of closed pieces alone.
     is_closed: bool,
     uvs: Buffer,
@@ -81,8 +106,10 @@ pub(crate) struct ToyMesh {
 }
 
 impl ToyMesh {
-    pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh) -> Self {
+    /// `simplified` are shapes that may cast shadows in place of the toy's.
+    pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh, simplified: &[Caster]) -> Self {
         let materials = Materials::new(gpu, toy);
+        let (casters, shadow_indices) = casters(toy, simplified);
         Self {
             indices: gpu.buffer(
                 "indices",
@@ -91,10 +118,10 @@ impl ToyMesh {
             ),
             shadow_indices: gpu.buffer(
                 "shadow indices",
-                bytemuck::cast_slice(&toy.shadow_indices().indices),
+                bytemuck::cast_slice(&shadow_indices),
                 BufferUsages::INDEX,
             ),
-            n_shadow_indices: u32::try_from(toy.shadow_indices().indices.len()).unwrap_or(u32::MAX),
+            casters,
             is_closed: toy.shadow_indices().is_closed(),
             uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
             colors: gpu.buffer(
@@ -127,18 +154,28 @@ impl ToyMesh {
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
     pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
         self.bind_positions(render, positions);
-        self.draw_shadow(render, instances);
+        self.draw_caster(render, instances, Detail::Own);
     }
 
-    /// Binds what [`ToyMesh::draw_shadow`] draws; positions are in slot 0.
+    /// Binds what [`ToyMesh::draw_caster`] draws; positions are in slot 0.
     pub(crate) fn bind_positions(&self, render: &mut Render<'_>, positions: &Buffer) {
         render.set_vertices(0, positions);
         render.set_indices(&self.shadow_indices);
     }
 
-    /// Draws each triangle once for each instance.
-    pub(crate) fn draw_shadow(&self, render: &mut Render<'_>, instances: Range<u32>) {
-        render.draw_indexed(0..self.n_shadow_indices, instances);
+    /// Draws each triangle of a shape once for each instance.
+    pub(crate) fn draw_caster(&self, render: &mut Render<'_>, instances: Range<u32>, detail: Detail) {
+        let mut casters = self.casters.iter();
+        let caster = match detail {
+            Detail::Own => casters.next(),
+            Detail::Within(error) => casters.take_while(|caster| caster.error <= error).last(),
+            Detail::AtMost(n) => casters
+                .find(|caster| caster.n_triangles() <= n)
+                .or(self.casters.last()),
+        };
+        if let Some(caster) = caster {
+            render.draw_indexed(caster.indices.clone(), instances);
+        }
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
@@ -161,6 +198,25 @@ impl ToyMesh {
             render.draw_indexed(run.indices.clone(), run.material..run.material + 1);
         }
     }
+}
+
+/// The toy's own shape and those near it, one after the other, and their corners.
+fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
+    let mut all = toy.shadow_indices().indices.clone();
+    let n = |indices: &[u32]| u32::try_from(indices.len()).unwrap_or(u32::MAX);
+    let mut ranges = vec![CasterRange {
+        error: 0.0,
+        indices: 0..n(&all),
+    }];
+    for caster in simplified {
+        let first = n(&all);
+        all.extend(&caster.indices);
+        ranges.push(CasterRange {
+            error: caster.error,
+            indices: first..n(&all),
+        });
+    }
+    (ranges, all)
 }
 
 /// The draws of a toy, those with the same material as one where they follow one another.

@@ -35,7 +35,7 @@ use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
 use crate::scene::{Camera, Image, Scene};
-use crate::toy::{self, PosedMesh, ToyError};
+use crate::toy::{self, Caster, PosedMesh, Toy, ToyError};
 
 use camera_texture::CameraTexture;
 use footprint::Footprint;
@@ -105,6 +105,14 @@ struct MethodState {
     is_placement_outdated: bool,
 }
 
+/// Shapes that cast shadows in place of the toy's; none with a preset that takes none.
+fn simplified(toy: &Toy, preset: Preset) -> &[Caster] {
+    match preset.settings() {
+        Settings::Model(settings) if settings.are_casters_simplified => toy.casters(),
+        _ => &[],
+    }
+}
+
 impl Stage {
     pub(crate) fn new(
         gpu: &Gpu,
@@ -133,7 +141,7 @@ impl Stage {
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
-            toy: ToyMesh::new(gpu, &scene.toy, &posed),
+            toy: ToyMesh::new(gpu, &scene.toy, &posed, simplified(&scene.toy, preset)),
             posed,
             camera: CameraTexture::new(gpu, size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),

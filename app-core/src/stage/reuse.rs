@@ -216,11 +216,22 @@ impl Stage {
                 .view
                 .image_rect(&world_from_anchor, &self.physical_bounds),
             toy_box: toy_box_in(&region, footprint, known_box_px),
+            pixel_in_object: self.pixel_in_object(footprint),
             n_lights: self.lights.used.len(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),
             are_plates_scaled: footprint.plate_views.are_scaled(),
         }
+    }
+
+    /// What a pixel is across at the nearest part of the toy.
+    fn pixel_in_object(&self, footprint: &Footprint) -> f64 {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let camera = footprint.view.camera_in(&world_from_anchor);
+        let (min, max) = (self.physical_bounds.min, self.physical_bounds.max);
+        let from_nearest_m = camera.distance(camera.clamp(min, max));
+        let metres_per_unit = self.world_from_object.x_axis.truncate().length();
+        footprint.view.pixel_m(from_nearest_m) / metres_per_unit
     }
 
     /// One plate or several show all of the region, which may be larger than the frame asks for.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::OnceLock;
 
 use glam::DAffine3;
 use gltf::json::mesh::{Mesh, Primitive};
@@ -51,6 +52,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
         file: file.to_owned(),
         rig,
         shadow_indices,
+        casters: OnceLock::new(),
         geometries,
         surfaces,
         draws,

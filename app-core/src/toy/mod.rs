@@ -1,7 +1,8 @@
 //! The toy: a glTF file as one posable mesh.
 //!
 //! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
-//! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`).
+//! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`), also with fewer of
+//! them (`casters`, `simplify`).
 //! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph weights
 //! (`rig`), the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
@@ -11,6 +12,7 @@
 mod accessor;
 mod assemble;
 mod bounds;
+mod casters;
 mod check;
 mod clip;
 mod component;
@@ -27,6 +29,7 @@ mod pieces;
 mod pose;
 mod rig;
 mod shadow_indices;
+mod simplify;
 mod skin;
 mod surface;
 mod texture;
@@ -34,8 +37,10 @@ mod topology;
 mod track;
 
 use std::fmt;
+use std::sync::OnceLock;
 
 pub use bounds::Bounds;
+pub use casters::Caster;
 pub use clip::{Clip, ClipId};
 pub use error::{ToyError, ToyProblem, ToyWarning};
 pub use graph::Trs;
@@ -58,6 +63,7 @@ pub struct Toy {
     surfaces: Vec<Surface>,
     draws: Draws,
     shadow_indices: ShadowIndices,
+    casters: OnceLock<Vec<Caster>>,
     materials: Vec<Material>,
     textures: Vec<Texture>,
     warnings: Vec<ToyWarning>,

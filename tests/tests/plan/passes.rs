@@ -31,6 +31,7 @@ fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
         region,
         physical_toy: Some(region),
         toy_box: Some(region),
+        pixel_in_object: 0.0,
         n_lights,
         n_receivers: 2,
         is_plate_complete: false,

@@ -29,7 +29,7 @@ fn faceted(faces: &[[usize; 3]]) -> Toy {
 }
 
 /// How often each edge is passed one way more than the other.
-fn unmatched(corners: &[u32]) -> usize {
+pub(crate) fn unmatched(corners: &[u32]) -> usize {
     let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
     for &[a, b, c] in corners.as_chunks().0 {
         for [from, to] in [[a, b], [b, c], [c, a]] {

@@ -10,10 +10,10 @@ use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
 use crate::model::lighting::occlusion::LightPointsBuffer;
-use crate::model::plan::Plan;
+use crate::model::plan::{Casters, Plan};
 use crate::passes::counting::CountingTargets;
 use crate::passes::list::passes;
-use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
 
 passes!(occlusion, visibility, self_shadow);
 
@@ -71,6 +71,7 @@ pub(crate) struct Lighting {
     lights: Vec<LightPointsBuffer>,
     ambient: LightPointsBuffer,
     n_receivers: u32,
+    casters: Casters,
     atlas: ShadowAtlas,
     occlusion: occlusion::Targets,
 }
@@ -98,9 +99,15 @@ impl Lighting {
                 .collect(),
             ambient: on_device(directions, ambient_px),
             occlusion: occlusion::Targets::new(gpu, plan),
+            casters: plan.casters,
             atlas: plan.self_shadow.clone(),
             n_receivers,
         }
+    }
+
+    /// Takes the shapes that cast shadows in another view.
+    pub(crate) fn cast_by(&mut self, casters: Casters) {
+        self.casters = casters;
     }
 
     /// Moves the lights: `points` are as many as before.
@@ -124,7 +131,7 @@ impl Lighting {
                 if let (Some(light), Some(counted)) =
                     (self.lights.get(index), self.occlusion.lights.get(index))
                 {
-                    self.count(recorder, passes, (posed, light), counted);
+                    self.count(recorder, passes, (posed, light, self.casters.light), counted);
                 }
             }
             Step::Lights => {
@@ -139,7 +146,8 @@ impl Lighting {
             }
             Step::Ambient => {
                 let counted = &self.occlusion.ambient;
-                self.count(recorder, passes, (posed, &self.ambient), counted);
+                let light = (posed, &self.ambient, self.casters.ambient);
+                self.count(recorder, passes, light, counted);
                 let counted = [(&counted.count.view, self.ambient.n_points)];
                 let inputs = visibility::Inputs { counted: &counted };
                 passes
@@ -154,7 +162,7 @@ impl Lighting {
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
-        (posed, light): (Posed<'_>, &LightPointsBuffer),
+        (posed, light, caster): (Posed<'_>, &LightPointsBuffer, Detail),
         counted: &CountingTargets,
     ) {
         let Posed { globals, toy, pose } = posed;
@@ -164,6 +172,7 @@ impl Lighting {
             toy,
             pose,
             light,
+            caster,
         };
         passes.occlusion.encode(recorder, &inputs, counted);
     }
@@ -181,6 +190,7 @@ impl Lighting {
             pose: posed.pose,
             light_points: &light_points,
             atlas: &self.atlas,
+            caster: self.casters.light,
         };
         passes.self_shadow.encode(recorder, &inputs, &maps.self_shadow);
     }

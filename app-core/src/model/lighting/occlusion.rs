@@ -14,7 +14,7 @@ use crate::model::plan::Plan;
 use crate::passes::counting::{CountingTargets, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
 use crate::scene::MAX_RECEIVERS;
 
 /// Increment per hidden light point.
@@ -126,6 +126,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
     pub(crate) light: &'a LightPointsBuffer,
+    /// What casts the shadow.
+    pub(crate) caster: Detail,
 }
 
 impl Pass {
@@ -170,7 +172,7 @@ impl Pass {
             }
             render.begin(cover, &groups);
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            inputs.toy.draw_shadow(&mut render, instances);
+            inputs.toy.draw_caster(&mut render, instances, inputs.caster);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::passes::globals::GLOBALS;
-use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
 use crate::scene::MAX_LIGHTS;
 
 /// Cosine of the toy's surface to a light.
@@ -115,6 +115,8 @@ pub(crate) struct Inputs<'a> {
     /// Those of each light, in anchor space.
     pub(crate) light_points: &'a [&'a [Vec4]],
     pub(crate) atlas: &'a ShadowAtlas,
+    /// What casts the shadow.
+    pub(crate) caster: Detail,
 }
 
 impl Pass {
@@ -137,8 +139,7 @@ impl Pass {
         let mut render = recorder.render(SHADER.name, &[], Some(&targets.depth.view), StoreOp::Store);
         render.begin(&self.draw, &[group]);
         let n_tiles = tiles.n_tiles.iter().sum();
-        inputs
-            .toy
-            .draw_positions(&mut render, &inputs.pose.positions, 0..n_tiles);
+        inputs.toy.bind_positions(&mut render, &inputs.pose.positions);
+        inputs.toy.draw_caster(&mut render, 0..n_tiles, inputs.caster);
     }
 }

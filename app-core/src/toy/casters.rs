@@ -1,0 +1,120 @@
+//! What casts the toy's shadow, with ever fewer triangles.
+//!
+//! A shadow needs no finer shape than its map has pixels, and the most of a frame's triangles are drawn for shadows: the toy once for
+//! each point of a light and each direction of ambient light. So the shape is simplified once, and each pass takes the coarsest
+//! that is near enough.
+
+use std::ops::RangeInclusive;
+
+use glam::{DMat4, Vec3};
+
+use super::Toy;
+use super::moment::Pose;
+use super::pose::PosedMesh;
+use super::simplify::{Collapse, collapses};
+
+/// Moments of each clip that count beside the authored pose, in parts of its duration: the first of all clips, then the next.
+const MOMENTS: [f64; 5] = [0.5, 0.0, 1.0, 0.25, 0.75];
+/// Poses in all, fewer of toys with many triangles: in each of them 200,000 take about a second.
+const N_POSES: RangeInclusive<usize> = 3..=16;
+/// Triangles in all poses, where more of these than the least are taken.
+const MOST_POSED_TRIANGLES: usize = 500_000;
+/// The farthest that a shape is from the toy's, in parts of its radius.
+const MOST_ERROR: f64 = 0.05;
+/// Fewer triangles gain nothing.
+const LEAST_TRIANGLES: usize = 64;
+/// Triangles of a shape, in parts of those of the next finer one.
+const STEP: f64 = 0.7;
+
+/// A shape near the toy's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Caster {
+    /// How far it is from the toy's, in units of the file.
+    pub error: f64,
+    /// Corners of triangles, as those of [`super::ShadowIndices`].
+    pub indices: Vec<u32>,
+}
+
+impl Toy {
+    /// Shapes with fewer triangles than [`Toy::shadow_indices`], finest first. Made at the first call.
+    pub fn casters(&self) -> &[Caster] {
+        self.casters.get_or_init(|| casters(self))
+    }
+}
+
+fn casters(toy: &Toy) -> Vec<Caster> {
+    let triangles = toy.shadow_indices().indices.as_chunks::<3>().0;
+    let n_poses = MOST_POSED_TRIANGLES / triangles.len().max(1);
+    let poses = poses(toy, n_poses.clamp(*N_POSES.start(), *N_POSES.end()));
+    let Some(radius) = poses.first().map(|places| radius(triangles, places)) else {
+        return Vec::new();
+    };
+    let made = collapses(triangles, &poses, (MOST_ERROR * radius, LEAST_TRIANGLES));
+    let mut levels = Vec::new();
+    let mut n_before = triangles.len();
+    let mut moved: Vec<u32> = (0..).take(toy.n_vertices()).collect();
+    for (index, collapse) in made.iter().enumerate() {
+        moved[collapse.from as usize] = collapse.to;
+        let is_step = fewer(n_before) >= collapse.n_left;
+        // All collapses of one error are made together.
+        let is_whole = made.get(index + 1).is_none_or(|next| next.error > collapse.error);
+        if is_step && is_whole {
+            levels.push(caster(triangles, &mut moved, collapse));
+            n_before = collapse.n_left;
+        }
+    }
+    levels
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "a part of a number of triangles"
+)]
+fn fewer(n_triangles: usize) -> usize {
+    (STEP * n_triangles as f64) as usize
+}
+
+fn caster(triangles: &[[u32; 3]], moved: &mut [u32], collapse: &Collapse) -> Caster {
+    let mut place_of = |corner: u32| {
+        let mut at = corner;
+        while moved[at as usize] != at {
+            // Vertices that were moved onto one that was moved on are moved at once from now on.
+            moved[at as usize] = moved[moved[at as usize] as usize];
+            at = moved[at as usize];
+        }
+        at
+    };
+    let corners = triangles.iter().map(|corners| corners.map(&mut place_of));
+    let left = corners.filter(|[a, b, c]| a != b && b != c && c != a);
+    Caster {
+        error: collapse.error,
+        indices: left.flatten().collect(),
+    }
+}
+
+/// Positions in the authored pose, and at moments of clips.
+fn poses(toy: &Toy, n_poses: usize) -> Vec<Vec<Vec3>> {
+    let of_clips = MOMENTS.into_iter().flat_map(|part| {
+        toy.clip_ids().map(move |clip| Pose::Clip {
+            clip,
+            time_secs: part * toy.clips()[clip.index()].duration_secs,
+        })
+    });
+    let poses = std::iter::once(Pose::Authored).chain(of_clips).take(n_poses);
+    let places = poses.filter_map(|pose| {
+        let mut posed = PosedMesh::default();
+        toy.pose(&pose, &DMat4::IDENTITY, &mut posed).ok()?;
+        Some(posed.positions)
+    });
+    places.collect()
+}
+
+/// Of a ball around the corners' box.
+fn radius(triangles: &[[u32; 3]], places: &[Vec3]) -> f64 {
+    let corners = || triangles.iter().flatten().map(|corner| places[*corner as usize]);
+    let least = corners().fold(Vec3::INFINITY, Vec3::min);
+    let most = corners().fold(Vec3::NEG_INFINITY, Vec3::max);
+    0.5 * (most - least).as_dvec3().length()
+}

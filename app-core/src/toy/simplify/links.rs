@@ -1,0 +1,119 @@
+//! Which triangles are around which vertex, while edges are collapsed.
+
+use std::collections::HashMap;
+
+/// Triangles and what they share. A collapsed one has no corners in any list.
+pub(super) struct Links {
+    triangles: Vec<[u32; 3]>,
+    /// Of each vertex, those that it is a corner of.
+    around: Vec<Vec<u32>>,
+    /// By edge, lower index first, whether it is not passed as often one way as the other.
+    borders: HashMap<[u32; 2], i32>,
+    /// Whether a vertex was an end of a border at first.
+    is_on_border: Vec<bool>,
+    n_triangles: usize,
+}
+
+impl Links {
+    pub(super) fn new(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
+        let mut around = vec![Vec::new(); n_vertices];
+        let mut borders: HashMap<[u32; 2], i32> = HashMap::new();
+        for (index, &[a, b, c]) in (0..).zip(triangles) {
+            for corner in [a, b, c] {
+                around[corner as usize].push(index);
+            }
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                *borders.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+        borders.retain(|_, passes| *passes != 0);
+        let mut is_on_border = vec![false; n_vertices];
+        for end in borders.keys().flatten() {
+            is_on_border[*end as usize] = true;
+        }
+        Self {
+            triangles: triangles.to_vec(),
+            around,
+            borders,
+            is_on_border,
+            n_triangles: triangles.len(),
+        }
+    }
+
+    pub(super) fn n_triangles(&self) -> usize {
+        self.n_triangles
+    }
+
+    /// Whether an edge was one at first with a surface at one side alone.
+    pub(super) fn is_border(&self, [a, b]: [u32; 2]) -> bool {
+        self.borders.contains_key(&[a.min(b), a.max(b)])
+    }
+
+    /// Corners of the triangles around a vertex.
+    pub(super) fn triangles_of(&self, vertex: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let around = self.around[vertex as usize].iter();
+        around.map(|index| self.triangles[*index as usize])
+    }
+
+    /// Other corners of the triangles around a vertex, in order.
+    pub(super) fn neighbours(&self, vertex: u32) -> Vec<u32> {
+        let corners = self.triangles_of(vertex).flatten();
+        let mut neighbours: Vec<u32> = corners.filter(|corner| *corner != vertex).collect();
+        neighbours.sort_unstable();
+        neighbours.dedup();
+        neighbours
+    }
+
+    /// Whether a vertex may be moved onto another: both see no vertices together but those of the triangles that go, of which there
+    /// are one at a border and else two. A border's vertex is only moved along it.
+    pub(super) fn may_collapse(&self, from: u32, to: u32) -> bool {
+        let n_shared = self
+            .triangles_of(from)
+            .filter(|corners| corners.contains(&to))
+            .count();
+        let [of_from, of_to] = [from, to].map(|end| self.neighbours(end));
+        let n_common = of_from
+            .iter()
+            .filter(|one| of_to.binary_search(one).is_ok())
+            .count();
+        let is_edge = (1..=2).contains(&n_shared) && n_common == n_shared;
+        let is_along = !self.is_on_border[from as usize] || n_shared == 1;
+        is_edge && is_along && self.leaves_all(from, to)
+    }
+
+    /// Whether a piece of the shape is left, and no two of its triangles have the same corners: a leaf of two triangles becomes one, and
+    /// a pyramid stays.
+    fn leaves_all(&self, from: u32, to: u32) -> bool {
+        let sorted = |mut corners: [u32; 3]| {
+            corners.sort_unstable();
+            corners
+        };
+        let staying: Vec<_> = self
+            .triangles_of(to)
+            .filter(|corners| !corners.contains(&from))
+            .map(sorted)
+            .collect();
+        let mut moved = (self.triangles_of(from))
+            .filter(|corners| !corners.contains(&to))
+            .map(|corners| sorted(corners.map(|corner| if corner == from { to } else { corner })))
+            .peekable();
+        let is_any_left = !staying.is_empty() || moved.peek().is_some();
+        is_any_left && !moved.any(|corners| staying.contains(&corners))
+    }
+
+    pub(super) fn collapse(&mut self, from: u32, to: u32) {
+        for index in std::mem::take(&mut self.around[from as usize]) {
+            let corners = self.triangles[index as usize];
+            if corners.contains(&to) {
+                for corner in corners {
+                    self.around[corner as usize].retain(|other| *other != index);
+                }
+                self.n_triangles -= 1;
+            } else {
+                self.triangles[index as usize] =
+                    corners.map(|corner| if corner == from { to } else { corner });
+                self.around[to as usize].push(index);
+            }
+        }
+    }
+}
