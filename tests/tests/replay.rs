@@ -256,7 +256,7 @@ fn the_program_says_what_is_wrong() {
         (
             &["--preset", "dazzling"],
             2,
-            "preset \"dazzling\" is not built; there are flat, paper, balanced",
+            "preset \"dazzling\" is not built; there are flat, paper, fast, balanced",
         ),
         (&["--frames", "3..3"], 2, "3..3"),
         (&["--frames", "3-4"], 2, "3-4"),

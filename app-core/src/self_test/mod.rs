@@ -153,6 +153,7 @@ fn golden(preset: Preset) -> &'static str {
     match preset {
         Preset::Flat => include_str!("golden/flat.txt"),
         Preset::Paper => include_str!("golden/paper.txt"),
+        Preset::Fast => include_str!("golden/fast.txt"),
         Preset::Balanced => include_str!("golden/balanced.txt"),
         Preset::Best => include_str!("golden/best.txt"),
     }
