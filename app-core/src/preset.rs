@@ -87,7 +87,7 @@ pub const BALANCED: ModelSettings = ModelSettings {
 /// | 16 | 32 | 8 | 1.83, 3.97, 4.63 | 226,086 |
 /// | 16 | 16 | 8 | 1.92, 3.98, 4.70 | 212,054 |
 ///
-/// Of 16 points a pixel's quarter sees too few to tell the light's sides apart, and soft shadows have steps.
+/// Of 16 points too few fall into each quarter of a pixel to be a sample of the light, and soft shadows have steps.
 pub const FAST: ModelSettings = ModelSettings {
     n_light_points: 32,
     n_ambient_directions: 32,
