@@ -144,3 +144,29 @@ fn shapes_are_as_near_in_every_pose() {
 fn the_same_file_gives_the_same_shapes() {
     assert_eq!(torus().casters(), torus().casters());
 }
+
+/// Where one vertex has all triangles around it, only its rim gets simpler, and that in a time that grows as the file does.
+#[test]
+fn a_fan_keeps_its_middle() {
+    let n = 60_000;
+    let rim = (0..n).flat_map(|step| {
+        let (z, x) = (TAU * f64::from(step) / f64::from(n)).sin_cos();
+        DVec3::new(x, 0.0, z).as_vec3().to_array()
+    });
+    let positions: Vec<f32> = [0.0, 0.1, 0.0].into_iter().chain(rim).collect();
+    let indices = (0..n).flat_map(|step| [0, 1 + (step + 1) % n, 1 + step]);
+    let mut glb = Glb::new();
+    let position = glb.floats("VEC3", &positions);
+    let indices = glb.u32s(&indices.collect::<Vec<_>>());
+    let mesh = glb.push(
+        "meshes",
+        json!({ "primitives": [{ "attributes": { "POSITION": position }, "indices": indices }] }),
+    );
+    glb.push("nodes", json!({ "mesh": mesh }));
+    let toy = Toy::from_glb(FILE, &glb.bytes()).unwrap();
+    assert!(toy.casters().len() > 3, "{}", toy.casters().len());
+    for caster in toy.casters() {
+        let mut triangles = caster.indices.as_chunks::<3>().0.iter();
+        assert!(triangles.all(|corners| corners.contains(&0)));
+    }
+}

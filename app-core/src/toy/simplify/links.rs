@@ -2,6 +2,9 @@
 
 use std::collections::HashMap;
 
+/// Vertices with more triangles around them stay: a fan of a whole file's triangles would take hours.
+const MOST_AROUND: usize = 128;
+
 /// Triangles and what they share. A collapsed one has no corners in any list.
 pub(super) struct Links {
     triangles: Vec<[u32; 3]>,
@@ -67,6 +70,10 @@ impl Links {
     /// Whether a vertex may be moved onto another: both see no vertices together but those of the triangles that go, of which there
     /// are one at a border and else two. A border's vertex is only moved along it.
     pub(super) fn may_collapse(&self, from: u32, to: u32) -> bool {
+        let n_around = |vertex: u32| self.around[vertex as usize].len();
+        if n_around(from).max(n_around(to)) > MOST_AROUND {
+            return false;
+        }
         let n_shared = self
             .triangles_of(from)
             .filter(|corners| corners.contains(&to))
