@@ -90,17 +90,27 @@ impl<const N: usize> Backdrop<N> {
     }
 
     fn terms(&self, receiver: &SeenReceiver, point: DVec3) -> Terms<N> {
-        let along = receiver.plane_from_camera.transform_vector3(point - self.middle) / self.reach_m;
-        let DVec2 { x, y } = DVec2::new(along.x, along.z);
-        let (xx, xy, yy) = (x * x, x * y, y * y);
-        #[rustfmt::skip]
-        let all: [f64; QUARTIC] = [
-            1.0, x, y, xx, xy, yy,
-            xx * x, xx * y, x * yy, yy * y,
-            xx * xx, xx * xy, xx * yy, xy * yy, yy * yy,
-        ];
+        let all = polynomial(receiver, point, (self.middle, self.reach_m));
         Terms::from_fn(|term, _| all[term])
     }
+}
+
+/// Terms of a polynomial over a receiver's plane at a point in camera space, those of lower degrees first.
+pub(super) fn polynomial(
+    receiver: &SeenReceiver,
+    point: DVec3,
+    (middle, reach_m): (DVec3, f64),
+) -> [f64; QUARTIC] {
+    let along = receiver.plane_from_camera.transform_vector3(point - middle) / reach_m;
+    let DVec2 { x, y } = DVec2::new(along.x, along.z);
+    let (xx, xy, yy) = (x * x, x * y, y * y);
+    #[rustfmt::skip]
+    let all = [
+        1.0, x, y, xx, xy, yy,
+        xx * x, xx * y, x * yy, yy * y,
+        xx * xx, xx * xy, xx * yy, xy * yy, yy * yy,
+    ];
+    all
 }
 
 impl<const N: usize> Seen<N> {

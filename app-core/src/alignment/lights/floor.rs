@@ -2,7 +2,7 @@
 
 use glam::{DVec3, IVec2};
 
-use super::backdrop::{Backdrop, QUADRATIC};
+use super::backdrop::{Backdrop, QUADRATIC, polynomial};
 use crate::alignment::picture::{Color, Level, noise_deviation};
 use crate::alignment::raster::Coverage;
 use crate::alignment::receivers::{SeenReceiver, receiver_at};
@@ -25,6 +25,8 @@ pub(super) struct FloorPixel {
     pub(super) receiver: usize,
     /// The receiver's point there, in camera space.
     pub(super) point: DVec3,
+    /// Terms of the gain there, a polynomial over the plane.
+    pub(super) gain: [f32; QUADRATIC],
     /// Of the photograph.
     pub(super) frame: Color,
     /// Of the plate.
@@ -33,11 +35,13 @@ pub(super) struct FloorPixel {
     pub(super) precision: Color,
 }
 
-/// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate.
+/// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate. `around` is the toy's centre
+/// in camera space, and a length in metres that places are told in.
 pub(super) fn floor_pixels(
     level: &Level,
     (coverage, backdrop): (&Coverage, Option<&Backdrop<QUADRATIC>>),
     receivers: &[SeenReceiver],
+    around: (DVec3, f64),
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {
     let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
@@ -50,10 +54,14 @@ pub(super) fn floor_pixels(
         };
         let unexplained = UNEXPLAINED.hypot(texture);
         let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel], unexplained));
+        let terms = polynomial(&receivers[receiver], point, around);
+        #[allow(clippy::cast_possible_truncation, reason = "a place, to 7 digits")]
+        let gain = std::array::from_fn(|term| terms[term] as f32);
         Some(FloorPixel {
             at,
             receiver,
             point,
+            gain,
             frame,
             plate,
             precision,

@@ -2,17 +2,21 @@
 //!
 //! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x what the toy takes of it, for each receiver
 //! and channel: the additive model of `fit`, without the toy's bounce, which the ambient factors take up. They rise to a side.
+//!
+//! The gain bends over the plane. Where a wall throws back less light onto a table, since the shadow lies on it too, the table darkens
+//! over a wide place; an even gain would let the lamp take that up by a penumbra that is too wide.
 
 use nalgebra::{SMatrix, SVector};
 
+use super::backdrop::QUADRATIC;
 use super::cast::{Ambient, N_AMBIENT};
 use super::floor::FloorPixel;
 use crate::scene::MAX_LIGHTS;
 
-/// Gain, ambient factors, and one factor a lamp.
+/// Those of the gain, ambient factors, and one factor a lamp.
 pub(super) const N_FACTORS: usize = FIRST_LAMP + MAX_LIGHTS;
 /// Index of the first lamp's.
-pub(super) const FIRST_LAMP: usize = 1 + N_AMBIENT;
+pub(super) const FIRST_LAMP: usize = QUADRATIC + N_AMBIENT;
 
 pub(super) type Factors = SVector<f64, N_FACTORS>;
 type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
@@ -37,7 +41,7 @@ pub(super) struct Shading {
 }
 
 impl Shading {
-    /// The part of the light on a receiver that a lamp gives, in the mean over the channels.
+    /// The part of the light on a receiver below the toy that a lamp gives, in the mean over the channels.
     pub(super) fn share(&self, receiver: usize, lamp: usize) -> f64 {
         let of_channels = self.factors[receiver].iter();
         let shares = of_channels.map(|factors| factors[FIRST_LAMP + lamp] / factors[0].max(PRIOR));
@@ -66,12 +70,14 @@ pub(super) struct Residual {
 }
 
 impl Shaded<'_> {
-    /// Of one pixel: 1, then less what is taken.
+    /// Of one pixel: the gain's terms, then less what is taken.
     pub(super) fn columns(&self, index: usize) -> Factors {
         let mut columns = Factors::zeros();
-        columns[0] = 1.0;
+        for (term, value) in self.pixels[index].gain.iter().enumerate() {
+            columns[term] = f64::from(*value);
+        }
         for (part, taken) in self.ambient[index].iter().enumerate() {
-            columns[1 + part] = -f64::from(*taken);
+            columns[QUADRATIC + part] = -f64::from(*taken);
         }
         for (lamp, taken) in self.lamps.iter().enumerate() {
             columns[FIRST_LAMP + lamp] = -f64::from(taken[index]);

@@ -85,15 +85,16 @@ impl<'a> Shadows<'a> {
         let caster = Caster::new(shape, receivers, level.intrinsics, size_px);
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
-        let backdrop = level.plate.is_none().then(|| {
-            Backdrop::of(
-                level,
-                &coverage,
-                receivers,
-                (shape.centre, REACH * shape.radius_m),
-            )
-        });
-        let pixels = floor_pixels(level, (&coverage, backdrop.as_ref()), receivers, is_wanted);
+        let around = (shape.centre, REACH * shape.radius_m);
+        let has_plate = level.plate.is_some();
+        let backdrop = (!has_plate).then(|| Backdrop::of(level, &coverage, receivers, around));
+        let pixels = floor_pixels(
+            level,
+            (&coverage, backdrop.as_ref()),
+            receivers,
+            around,
+            is_wanted,
+        );
         Self {
             ambient: caster.ambient(raster, &pixels, N_DIRECTIONS),
             caster,
