@@ -21,6 +21,19 @@ const SIZE_PX: [u32; 2] = [512, 288];
 
 /// Of the boxes under some lamps, without a list of them.
 fn discover(lamps: Vec<Lamp>) -> (Shot, Alignment) {
+    let shot = photographed(lamps);
+    let found = Aligner::new(shot.scene.clone()).align(&shot.input).unwrap();
+    (shot, found)
+}
+
+/// The same without a plate.
+fn discover_without_plate(lamps: Vec<Lamp>) -> Alignment {
+    let Shot { mut scene, input, .. } = photographed(lamps);
+    scene.plates.clear();
+    Aligner::new(scene).align(&input).unwrap()
+}
+
+fn photographed(lamps: Vec<Lamp>) -> Shot {
     let mut world = World::boxes().resized(SIZE_PX).lit_by(lamps);
     world.quality = Quality {
         n_across: 2,
@@ -29,8 +42,7 @@ fn discover(lamps: Vec<Lamp>) -> (Shot, Alignment) {
     };
     let mut shot = Shot::of(&world).unwrap();
     shot.scene.lights.clear();
-    let found = Aligner::new(shot.scene.clone()).align(&shot.input).unwrap();
-    (shot, found)
+    shot
 }
 
 /// What is found of each lamp, nearest first; as many as there are lamps.
@@ -180,6 +192,32 @@ fn without_a_plate_it_is_found_too() {
     let found = Aligner::new(scene).align(&input).unwrap();
     assert_eq!(found.report.discovered.len(), 1, "{:#?}", found.report);
     assert_near(&(found.report.discovered[0], bundled_light()), 0.5, 0.1, 0.2);
+}
+
+#[test]
+fn without_a_plate_a_wide_sun_is_found_at_no_distance() {
+    for azimuth_deg in [-60.0, 30.0, 140.0] {
+        let toward = toward(52.0, azimuth_deg);
+        let found = discover_without_plate(vec![Lamp::sun(toward, 7.0f64.to_radians(), 0.6)])
+            .report
+            .discovered;
+        let [sun] = found[..] else {
+            panic!("{azimuth_deg}: {found:?}");
+        };
+        let off_rad = sun.direction_in_world.angle_between(toward);
+        assert!(off_rad.to_degrees() < 0.5, "{azimuth_deg}: {sun:?}");
+        assert!(
+            (sun.angular_radius_rad.to_degrees() - 7.0).abs() < 0.5,
+            "{azimuth_deg}: {sun:?}"
+        );
+        assert_eq!(sun.distance_m, None, "{azimuth_deg}: {sun:?}");
+    }
+}
+
+#[test]
+fn without_a_plate_no_lamp_is_found_where_there_is_none() {
+    let found = discover_without_plate(Vec::new()).report;
+    assert_eq!(found.no_light, Some(NoLight::NoneDominant), "{found:#?}");
 }
 
 /// What a platform tells of the light, as many degrees off the bundled bulb.

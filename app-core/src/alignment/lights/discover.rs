@@ -157,12 +157,8 @@ impl<'a> Search<'a> {
         let followed = starts.iter().filter_map(|start| {
             let more = self.follow(lamps, start)?;
             let shading = self.shading(&more);
-            let (up, radius_m) = (
-                up(self.shadows.caster.receivers),
-                self.shadows.caster.shape.radius_m,
-            );
             let is_told =
-                is_gain(before.loss, shading.loss) && doubtful(&more, &shading, up, radius_m).is_none();
+                is_gain(before.loss, shading.loss) && doubtful(&more, &shading, &self.shadows).is_none();
             is_told.then_some((shading.loss, more))
         });
         let best = followed.min_by(|a, b| a.0.total_cmp(&b.0));

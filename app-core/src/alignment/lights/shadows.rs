@@ -43,6 +43,8 @@ pub(super) struct Shadows<'a> {
     ambient: Vec<Ambient>,
     /// Light on the place without a toy, over that at the toy's foot.
     unshadowed: Vec<f32>,
+    /// Whether a plate tells what the receivers show without the toy.
+    pub(super) has_plate: bool,
     /// Points over a lamp, at most.
     pub(super) most_points: f64,
     /// How far the shadow of the toy's top moves as a light turns, about.
@@ -98,6 +100,7 @@ impl<'a> Shadows<'a> {
         Self {
             ambient: caster.ambient(raster, &pixels, N_DIRECTIONS),
             caster,
+            has_plate,
             most_points: MOST_POINTS,
             unshadowed: vec![1.0; pixels.len()],
             pixels,
