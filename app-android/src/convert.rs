@@ -4,11 +4,24 @@
 //! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
 //! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
 
+use app_core::app::Thermal;
 use app_core::scene::Intrinsics;
 use glam::{DMat4, DQuat, DVec2, DVec3};
 
 /// How far a unit quaternion in single precision may be from length one (squared), with room for a few roundings.
 const UNIT_TOLERANCE: f64 = 1e-3;
+
+/// How hot the phone is from an `AThermalStatus`, which has seven steps, -1 for an error.
+///
+/// From "severe" on the system slows down what a person sees; before that only what no one notices.
+pub fn thermal(status: i32) -> Thermal {
+    match status {
+        ..=0 => Thermal::Nominal,
+        1 | 2 => Thermal::Fair,
+        3 => Thermal::Serious,
+        4.. => Thermal::Critical,
+    }
+}
 
 /// Our `world_from_camera` from the seven numbers of `ArPose_getPoseRaw`: `qx qy qz qw tx ty tz`, metres.
 ///
@@ -74,6 +87,18 @@ pub fn pose_raw(rigid: &DMat4) -> [f32; 7] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn heat_has_four_steps_of_androids_seven() {
+        use Thermal::{Critical, Fair, Nominal, Serious};
+        let told = [-1, 0, 1, 2, 3, 4, 5, 6].map(thermal);
+        assert_eq!(
+            told,
+            [
+                Nominal, Nominal, Fair, Fair, Serious, Critical, Critical, Critical
+            ]
+        );
+    }
 
     #[test]
     fn a_quarter_turn_about_x_looks_up_from_where_the_phone_is() {

@@ -9,6 +9,8 @@ use jni::objects::{JObject, JValue};
 use jni::refs::Global;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
+use crate::guard::{Callback, guarded};
+use crate::heat::Thermometer;
 use crate::phone::{Java, Phone, permission};
 
 const CAMERA: &str = "android.permission.CAMERA";
@@ -22,6 +24,7 @@ const REQUEST: i32 = 1;
 pub(crate) struct Activity {
     app: AndroidApp,
     was_asked: bool,
+    thermometer: Option<Thermometer>,
 }
 
 impl Activity {
@@ -30,6 +33,7 @@ impl Activity {
         Self {
             app,
             was_asked: false,
+            thermometer: Thermometer::find(),
         }
     }
 
@@ -37,7 +41,7 @@ impl Activity {
     fn on_java_thread(&self, act: fn(&mut Env<'_>, &JObject<'_>) -> Result<()>) {
         let app = self.app.clone();
         self.app.run_on_java_main_thread(Box::new(move || {
-            if let Err(error) = with_java(&app, act) {
+            if let Some(Err(error)) = guarded(Callback::Java, || with_java(&app, act)) {
                 eprintln!("app-android: Java refused: {error}");
             }
         }));
@@ -156,6 +160,10 @@ impl Phone for Activity {
         let (flag, none) = (WindowManagerFlags::KEEP_SCREEN_ON, WindowManagerFlags::empty());
         let (add, remove) = if is_awake { (flag, none) } else { (none, flag) };
         self.app.set_window_flags(add, remove);
+    }
+
+    fn thermal_status(&mut self) -> Option<i32> {
+        self.thermometer.as_ref().map(Thermometer::status)
     }
 
     fn folder(&self) -> Option<PathBuf> {

@@ -7,7 +7,7 @@
 //! `java`, the camera's permission and the system's settings through JNI; the loading of ARCore's library.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the camera's exposure, which the app then takes to be constant; heat; the person's size of letters;
+//! What is not here yet: the camera's exposure, which the app then takes to be constant; the person's size of letters;
 //! video, choosing a toy, and handing files on: photos, recordings, the log and times are written into the app's own folder.
 //! ARCore keeps exposure and frame rate to itself, so neither is held or set.
 //!
@@ -24,6 +24,10 @@ pub mod save;
 pub mod shell;
 pub mod starts;
 
+mod guard;
+
+#[cfg(target_os = "android")]
+mod heat;
 #[cfg(target_os = "android")]
 mod java;
 #[cfg(target_os = "android")]
@@ -36,8 +40,8 @@ mod tests;
 
 /// Called by the activity glue on a thread of its own, once per created activity.
 ///
-/// Returning closes the activity. The glue catches a panic of this function, writes it to the log and closes the
-/// activity too, so no panic reaches Java; standard error ends up in the log as well.
+/// Returning closes the activity. Panics end in `guard`; the glue would catch one of this function as well, write it to the log and
+/// close the activity, so none reaches Java. Standard error ends up in the log.
 #[cfg(target_os = "android")]
 // SAFETY: the only definition of this symbol, with the signature that the glue declares.
 #[unsafe(no_mangle)]

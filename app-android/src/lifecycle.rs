@@ -9,6 +9,7 @@ use std::time::Duration;
 use android_activity::input::{InputEvent, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
 
+use crate::guard::{Callback, guarded};
 use crate::input::{Finger, Motion, touches};
 use crate::stage::{Stage, StageError};
 
@@ -26,16 +27,19 @@ pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
         app.poll_events(timeout, |event| {
             if let PollEvent::Main(event) = event {
                 is_destroyed |= matches!(event, MainEvent::Destroy);
-                outcome = handle(&event, app, &mut stage);
+                let handled = guarded(Callback::LifeCycle, || handle(&event, app, &mut stage));
+                outcome = stage.settle(handled);
             }
         });
         outcome?;
         if is_destroyed {
             return Ok(());
         }
-        take_input(app, &mut stage);
+        let taken = guarded(Callback::Input, || take_input(app, &mut stage));
+        stage.settle(taken.map(Ok))?;
         if stage.draws() {
-            stage.present()?;
+            let drawn = guarded(Callback::Picture, || stage.present());
+            stage.settle(drawn)?;
         }
     }
 }
@@ -65,10 +69,11 @@ fn take_input(app: &AndroidApp, stage: &mut Stage) {
     let Ok(mut events) = app.input_events_iter() else {
         return;
     };
-    while events.next(|event| match event {
+    let mut take = |event: &InputEvent<'_>| match event {
         InputEvent::MotionEvent(event) => take_motion(event, stage),
         _ => InputStatus::Unhandled,
-    }) {}
+    };
+    while events.next(&mut take) {}
 }
 
 fn take_motion(event: &MotionEvent<'_>, stage: &mut Stage) -> InputStatus {

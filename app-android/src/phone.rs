@@ -26,6 +26,8 @@ pub trait Phone {
     fn open_settings(&mut self);
     /// Keeps the screen on, or lets it go off.
     fn keep_awake(&mut self, is_awake: bool);
+    /// How hot the phone is, as an `AThermalStatus`; none where Android does not tell.
+    fn thermal_status(&mut self) -> Option<i32>;
     /// Where files go that people get at, with a computer at least.
     fn folder(&self) -> Option<PathBuf>;
     /// Where files go that are the app's own.

@@ -1,6 +1,5 @@
 //! The shell: what the app asks for is done, and what happens is told. All but Android itself, so that it runs in tests.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -14,15 +13,16 @@ use app_core::toy::{Toy, ToyError};
 
 use crate::arcore::feed::Feed;
 use crate::arcore::tracker::{Geometry, Run};
+use crate::guard::{Callback, guarded};
 use crate::phone::Phone;
-use crate::{record, save, starts};
+use crate::{convert, record, save, starts};
 
 /// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
 const LANDSCAPE: i32 = 1;
 
 /// File of the one toy that there is.
 const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
-/// Time after which free space is looked at anew.
+/// Time after which heat and free space are looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// The toy that the app comes with: the bundled session's, this project's own.
@@ -41,7 +41,7 @@ pub struct Shell<P> {
     /// What other threads tell.
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     wants_device: bool,
-    /// When free space was looked at.
+    /// When heat and free space were looked at.
     looked: Option<Instant>,
 }
 
@@ -102,6 +102,9 @@ impl<P: Phone> Shell<P> {
         }
         if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
             self.looked = Some(Instant::now());
+            if let Some(status) = self.phone.thermal_status() {
+                self.tell(ShellEvent::Thermal(convert::thermal(status)));
+            }
             let free = self.phone.folder().and_then(|folder| record::free_bytes(&folder));
             self.tell_some(free.map(ShellEvent::FreeSpace));
         }
@@ -230,7 +233,7 @@ impl<P: Phone> Shell<P> {
         let (hand_over, taken) = channel();
         let thread = thread::Builder::new().name(name.to_owned()).spawn(move || {
             let Ok(otherwise) = taken.recv() else { return };
-            let event = catch_unwind(AssertUnwindSafe(work)).unwrap_or(otherwise);
+            let event = guarded(Callback::Thread, work).unwrap_or(otherwise);
             // The activity may be gone by now.
             let _ = done.send(event);
         });

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use android_activity::AndroidApp;
-use app_core::app::ShellEvent;
+use app_core::app::{Panics, ShellEvent};
 use app_core::interface::Touch;
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -14,6 +14,7 @@ use ndk::native_window::NativeWindow;
 
 use crate::arcore::feed::Feed;
 use crate::arcore::library;
+use crate::guard::{Callback, guarded};
 use crate::input::screen;
 use crate::java::Activity;
 use crate::phone::Phone;
@@ -32,6 +33,9 @@ pub(crate) enum StageError {
     /// The bundled toy is none.
     #[error(transparent)]
     Toy(#[from] ToyError),
+    /// One app after the other was ended by a panic.
+    #[error("panics came one after the other")]
+    Panics,
 }
 
 /// Owns the shell and lends it the activity's current window.
@@ -42,6 +46,8 @@ pub(crate) struct Stage {
     shell: Option<Shell<Activity>>,
     window: Option<NativeWindow>,
     is_foreground: bool,
+    panics: Panics,
+    is_restarted: bool,
 }
 
 impl Stage {
@@ -55,6 +61,23 @@ impl Stage {
             shell: None,
             window: None,
             is_foreground: false,
+            panics: Panics::default(),
+            is_restarted: false,
+        }
+    }
+
+    /// What a guarded callback came to. After a panic the app is dropped; the next picture begins a new one.
+    pub(crate) fn settle(&mut self, outcome: Option<Result<(), StageError>>) -> Result<(), StageError> {
+        if let Some(outcome) = outcome {
+            return outcome;
+        }
+        let shell = self.shell.take();
+        guarded(Callback::Drop, || drop(shell));
+        self.is_restarted = true;
+        if self.panics.begins_anew(self.start.elapsed().as_secs_f64()) {
+            Ok(())
+        } else {
+            Err(StageError::Panics)
         }
     }
 
@@ -81,6 +104,9 @@ impl Stage {
                 let api = library::load();
                 let api = api.inspect_err(|error| eprintln!("app-android: no ARCore: {error}"));
                 let mut shell = Shell::new(live, phone, Feed::new(api.ok()));
+                if std::mem::take(&mut self.is_restarted) {
+                    shell.tell(ShellEvent::Restarted);
+                }
                 if let Some(starts) = starts {
                     shell.tell(ShellEvent::Started(starts));
                 }
@@ -97,11 +123,12 @@ impl Stage {
 
     /// Drops surface and window; the core keeps device, pipelines and what it has learned.
     pub(crate) fn detach(&mut self) {
+        // Also where what follows panics.
+        let _window = self.window.take();
         if let Some(shell) = &mut self.shell {
             shell.live().core_mut().suspend();
             shell.set_surface(None);
         }
-        self.window = None;
     }
 
     /// Follows a change of the window's size.
@@ -135,8 +162,11 @@ impl Stage {
         }
     }
 
-    /// One picture, where there is a window; a core that was lost is brought anew before.
+    /// One picture, where there is a window; an app or a core that was lost is brought anew before.
     pub(crate) fn present(&mut self) -> Result<(), StageError> {
+        if let (None, Some(window)) = (&self.shell, self.window.clone()) {
+            self.attach(window)?;
+        }
         let (Some(shell), Some(window)) = (&mut self.shell, &self.window) else {
             return Ok(());
         };

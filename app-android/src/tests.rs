@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use app_core::Core;
-use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Wish};
+use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, Wish};
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -22,6 +22,7 @@ use crate::shell::{Shell, bundled_toy};
 pub(crate) struct Desk {
     allows: bool,
     own_folder: Option<PathBuf>,
+    thermal_status: Option<i32>,
 }
 
 impl Phone for Desk {
@@ -45,6 +46,10 @@ impl Phone for Desk {
 
     fn keep_awake(&mut self, _: bool) {}
 
+    fn thermal_status(&mut self) -> Option<i32> {
+        self.thermal_status
+    }
+
     fn folder(&self) -> Option<PathBuf> {
         None
     }
@@ -55,9 +60,13 @@ impl Phone for Desk {
 }
 
 fn shell() -> Shell<Desk> {
+    shell_on(Desk::default())
+}
+
+fn shell_on(phone: Desk) -> Shell<Desk> {
     let toy = bundled_toy().expect("the bundled toy");
     let live = Live::new(Core::counting(), toy, Preset::Balanced);
-    Shell::new(live, Desk::default(), Feed::new(Some(functions())))
+    Shell::new(live, phone, Feed::new(Some(functions())))
 }
 
 fn calls() -> String {
@@ -180,4 +189,14 @@ fn a_photo_is_a_png_of_the_same_pixels() {
     let in_a_file = folder.join("photo.png");
     assert_eq!(save::bytes(&in_a_file, "log.txt", b"log"), Saved::Failed);
     std::fs::remove_dir_all(&folder).expect("a folder");
+}
+
+#[test]
+fn heat_is_told() {
+    let mut shell = shell_on(Desk {
+        thermal_status: Some(3),
+        ..Desk::default()
+    });
+    shell.tick();
+    assert_eq!(shell.live().app().thermal(), Thermal::Serious);
 }

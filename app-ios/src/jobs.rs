@@ -7,7 +7,7 @@ use std::{fs, io, thread};
 use app_core::app::{Saved, ShellEvent};
 use app_core::scene::Image;
 
-use crate::guard::guarded;
+use crate::guard::{Callback, guarded};
 
 /// Threads at work, and what they have to tell.
 #[derive(Debug)]
@@ -33,7 +33,7 @@ impl Jobs {
         let (done, otherwise) = (self.done.clone(), failed.clone());
         let run = move || {
             // Whoever waited may be gone.
-            let _ = done.send(guarded(job).unwrap_or_else(otherwise));
+            let _ = done.send(guarded(Callback::Thread, job).unwrap_or_else(otherwise));
         };
         if thread::Builder::new().spawn(run).is_err() {
             let _ = self.done.send(failed());

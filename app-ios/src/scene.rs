@@ -14,7 +14,7 @@ use objc2_ui_kit::{
     UISceneSession, UIViewController, UIWindow, UIWindowScene, UIWindowSceneDelegate,
 };
 
-use crate::guard::guarded;
+use crate::guard::{Callback, guarded};
 use crate::view::MetalView;
 
 /// Hands the main thread to UIKit.
@@ -86,22 +86,22 @@ define_class!(
             _session: &UISceneSession,
             _options: &UISceneConnectionOptions,
         ) {
-            guarded(|| self.connect(scene));
+            guarded(Callback::Connect, || self.connect(scene));
         }
 
         #[unsafe(method(sceneDidDisconnect:))]
         fn scene_did_disconnect(&self, _scene: &UIScene) {
-            guarded(|| self.disconnect());
+            guarded(Callback::Disconnect, || self.disconnect());
         }
 
         #[unsafe(method(sceneWillEnterForeground:))]
         fn scene_will_enter_foreground(&self, _scene: &UIScene) {
-            guarded(|| self.with_view(MetalView::enter_foreground));
+            guarded(Callback::Foreground, || self.with_view(MetalView::enter_foreground));
         }
 
         #[unsafe(method(sceneDidEnterBackground:))]
         fn scene_did_enter_background(&self, _scene: &UIScene) {
-            guarded(|| self.with_view(MetalView::enter_background));
+            guarded(Callback::Background, || self.with_view(MetalView::enter_background));
         }
     }
 

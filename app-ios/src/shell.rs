@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::time::{Duration, Instant, SystemTime};
 
 use app_core::app::{
-    ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Starts, Thermal,
+    ArSession, Device, Panics, Permission, Recorded, Saved, ShellCommand, ShellEvent, Starts, Thermal,
 };
 use app_core::interface::Screen;
 use app_core::recording::{Take, Taken};
@@ -40,6 +40,10 @@ pub(crate) struct Shell {
     frames_per_s: u32,
     /// For an app that is about to be made.
     starts: Option<Starts>,
+    panics: Panics,
+    /// After a panic, until there is a new app.
+    begins_anew: bool,
+    is_restarted: bool,
 }
 
 impl Shell {
@@ -58,6 +62,9 @@ impl Shell {
             wants_device: false,
             frames_per_s: 60,
             starts: None,
+            panics: Panics::default(),
+            begins_anew: false,
+            is_restarted: false,
         }
     }
 
@@ -71,9 +78,13 @@ impl Shell {
             // Another app than the one that threads worked for, and that was told.
             self.jobs = Jobs::default();
             (self.permission, self.thermal) = (None, None);
+            if std::mem::take(&mut self.is_restarted) {
+                self.inbox.tell(ShellEvent::Restarted);
+            }
             if let Some(starts) = self.starts.take() {
                 self.inbox.tell(ShellEvent::Started(starts));
             }
+            self.begins_anew = false;
             self.inbox.tell(ShellEvent::Foreground(true));
             if !Session::is_supported() {
                 self.inbox.tell(ShellEvent::ArSession(ArSession::Unsupported));
@@ -125,6 +136,17 @@ impl Shell {
     /// Pictures a second that the app asks for.
     pub(crate) fn frames_per_s(&self) -> u32 {
         self.frames_per_s
+    }
+
+    /// A panic has left the app half changed.
+    pub(crate) fn panicked(&mut self) {
+        self.is_restarted = true;
+        self.begins_anew = self.panics.begins_anew(self.start.elapsed().as_secs_f64());
+    }
+
+    /// Whether a new app is to be made for the one that a panic ended.
+    pub(crate) fn begins_anew(&self) -> bool {
+        self.begins_anew
     }
 
     /// Drops the app with all it holds.

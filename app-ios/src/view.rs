@@ -17,7 +17,7 @@ use objc2_ui_kit::{
 };
 
 use crate::convert::size_px;
-use crate::guard::guarded;
+use crate::guard::{Callback, guarded};
 use crate::inbox::Inbox;
 use crate::shell::Shell;
 use crate::stage::StageError;
@@ -52,37 +52,37 @@ define_class!(
         fn layout_subviews(&self) {
             // SAFETY: the method of the superclass takes nothing and returns nothing.
             let () = unsafe { msg_send![super(self), layoutSubviews] };
-            self.run("layout", |shell| self.fit(shell));
+            self.run(Callback::Layout, |shell| self.fit(shell));
         }
 
         #[unsafe(method(displayLinkDidFire:))]
         fn display_link_did_fire(&self, _link: &CADisplayLink) {
-            autoreleasepool(|_| self.draw());
+            self.run(Callback::Picture, |shell| autoreleasepool(|_| self.draw(shell)));
         }
 
         #[unsafe(method(touchesBegan:withEvent:))]
         fn touches_began(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(|| self.touch(touches, TouchPhase::Began));
+            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Began));
         }
 
         #[unsafe(method(touchesMoved:withEvent:))]
         fn touches_moved(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(|| self.touch(touches, TouchPhase::Moved));
+            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Moved));
         }
 
         #[unsafe(method(touchesEnded:withEvent:))]
         fn touches_ended(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(|| self.touch(touches, TouchPhase::Ended));
+            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Ended));
         }
 
         #[unsafe(method(touchesCancelled:withEvent:))]
         fn touches_cancelled(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(|| self.touch(touches, TouchPhase::Cancelled));
+            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Cancelled));
         }
 
         #[unsafe(method(memoryIsLow:))]
         fn memory_is_low(&self, _notification: &NSNotification) {
-            guarded(|| self.ivars().inbox.tell(ShellEvent::MemoryLow));
+            guarded(Callback::MemoryLow, || self.ivars().inbox.tell(ShellEvent::MemoryLow));
         }
     }
 );
@@ -124,7 +124,7 @@ impl MetalView {
     /// Creates the surface, and with the first one the app, and starts the clock.
     pub(crate) fn enter_foreground(&self) {
         self.ivars().in_foreground.set(true);
-        self.run("entering the foreground", |shell| {
+        self.run(Callback::Foreground, |shell| {
             self.fit(shell)?;
             shell.enter_foreground();
             Ok(())
@@ -136,7 +136,7 @@ impl MetalView {
     pub(crate) fn enter_background(&self) {
         self.ivars().in_foreground.set(false);
         self.pause_clock(true);
-        self.run("entering the background", |shell| {
+        self.run(Callback::Background, |shell| {
             shell.enter_background();
             Ok(())
         });
@@ -156,16 +156,17 @@ impl MetalView {
         }
     }
 
-    /// One picture.
-    fn draw(&self) {
-        self.run("drawing", |shell| {
-            let Some(screen) = self.screen() else {
-                return Ok(());
-            };
-            shell.present(&self.layer(), &screen)?;
-            self.set_rate(shell.frames_per_s());
-            Ok(())
-        });
+    /// One picture, of a new app where a panic ended the one before.
+    fn draw(&self, shell: &mut Shell) -> Result<(), StageError> {
+        let Some(screen) = self.screen() else {
+            return Ok(());
+        };
+        if shell.begins_anew() {
+            self.fit(shell)?;
+        }
+        shell.present(&self.layer(), &screen)?;
+        self.set_rate(shell.frames_per_s());
+        Ok(())
     }
 
     fn set_rate(&self, frames_per_s: u32) {
@@ -229,18 +230,19 @@ impl MetalView {
         }
     }
 
-    /// Lets `act` work on the shell. After an error or a panic the app is dropped, and the next layout or return to
-    /// the foreground starts a new one; until then the view keeps its last picture.
-    fn run(&self, what: &str, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
+    /// Lets `act` work on the shell. After an error the app is dropped, and the next layout or return to the foreground starts a
+    /// new one; after a panic the next picture does, unless one comes after the other. Until then the view keeps its last picture.
+    fn run(&self, callback: Callback, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
         let Ok(mut shell) = self.ivars().shell.try_borrow_mut() else {
             // UIKit laid the view out while the shell was at work; the size is read again at the next layout.
             return;
         };
-        match guarded(|| act(&mut shell)) {
+        let outcome = guarded(callback, || act(&mut shell));
+        match outcome {
             Some(Ok(())) => return,
-            Some(Err(error)) => eprintln!("app-ios: {what}: {error}"),
-            None => eprintln!("app-ios: {what}: panicked, see above"),
+            Some(Err(error)) => eprintln!("app-ios: {callback:?}: {error}"),
+            None => shell.panicked(),
         }
-        guarded(|| shell.clear());
+        guarded(Callback::Drop, || shell.clear());
     }
 }

@@ -165,6 +165,8 @@ pub enum ShellEvent {
         /// What is wrong.
         outcome: Result<(), String>,
     },
+    /// This app has taken the place of one that a panic ended; see [`Panics`](super::Panics).
+    Restarted,
     /// A picture of the moving toy was drawn; [`Live`](crate::live::Live) tells.
     Drawn,
     /// What a person wishes.

@@ -11,6 +11,7 @@ mod ghost;
 mod ghost_shape;
 mod log;
 mod notice;
+mod panics;
 mod plate_taker;
 mod platform;
 mod playback;
@@ -40,6 +41,7 @@ pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
 pub use log::Log;
 pub use notice::Notice;
+pub use panics::Panics;
 pub use plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use platform::Obstacle;
 pub use playback::Playback;
@@ -149,6 +151,7 @@ impl App {
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
             ShellEvent::Started(starts) => self.started(starts),
             ShellEvent::SelfTested { device, outcome } => self.self_tested(&device, outcome, &mut commands),
+            ShellEvent::Restarted => self.tell(Notice::Restarted),
             ShellEvent::Drawn => self.drawn(&mut commands),
             ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
         }

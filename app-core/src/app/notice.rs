@@ -22,6 +22,8 @@ pub enum Notice {
     WorldLost,
     /// Graphics had to be set up again.
     DeviceRestarted,
+    /// A panic ended the app, and it began anew.
+    Restarted,
     /// A photo, a video or what is to be shared.
     Saved(Saved),
     /// A recording has ended.

@@ -79,6 +79,9 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::ToyRefused(reason) => format!("This file is no toy for this app: {reason}"),
         Notice::WorldLost => "The phone has lost the place. Show the table again.".to_owned(),
         Notice::DeviceRestarted => "Graphics were set up again.".to_owned(),
+        Notice::Restarted => {
+            "Something went wrong inside the app, so it began anew. What was recorded is kept.".to_owned()
+        }
         Notice::Saved(Saved::Done) => "Saved.".to_owned(),
         Notice::Saved(Saved::NoRoom) => "Not saved: there is no room left.".to_owned(),
         Notice::Saved(Saved::NotAllowed) => "Not saved: the system does not allow it.".to_owned(),

@@ -19,7 +19,7 @@ use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo};
 use super::frame::{Count, camera_frame};
 use super::{read, shim};
 use crate::convert;
-use crate::guard::guarded;
+use crate::guard::{Callback, guarded};
 use crate::inbox::Inbox;
 
 /// An anchor that is held.
@@ -93,7 +93,7 @@ define_class!(
     unsafe impl ARSessionObserver for Delegate {
         #[unsafe(method(session:didFailWithError:))]
         fn session_did_fail(&self, _session: &ARSession, error: &NSError) {
-            guarded(|| {
+            guarded(Callback::SessionFailed, || {
                 eprintln!("app-ios: ARKit: {error}");
                 let told = convert::failed_session(error.code());
                 self.ivars().inbox.tell(ShellEvent::ArSession(told));
@@ -102,12 +102,12 @@ define_class!(
 
         #[unsafe(method(sessionWasInterrupted:))]
         fn session_was_interrupted(&self, _session: &ARSession) {
-            guarded(|| self.ivars().interrupt(true));
+            guarded(Callback::SessionInterrupted, || self.ivars().interrupt(true));
         }
 
         #[unsafe(method(sessionInterruptionEnded:))]
         fn session_interruption_ended(&self, _session: &ARSession) {
-            guarded(|| self.ivars().interrupt(false));
+            guarded(Callback::SessionInterrupted, || self.ivars().interrupt(false));
         }
 
         #[unsafe(method(sessionShouldAttemptRelocalization:))]
@@ -120,7 +120,7 @@ define_class!(
     unsafe impl ARSessionDelegate for Delegate {
         #[unsafe(method(session:didUpdateFrame:))]
         fn session_did_update_frame(&self, _session: &ARSession, frame: &ARFrame) {
-            guarded(|| autoreleasepool(|_| self.ivars().take(frame)));
+            guarded(Callback::SessionFrame, || autoreleasepool(|_| self.ivars().take(frame)));
         }
     }
 );

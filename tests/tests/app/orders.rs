@@ -28,6 +28,7 @@ pub(crate) enum Happening {
     NewWorld,
     Thermal(Thermal),
     MemoryLow,
+    Restarted,
     /// It finds the toy so far from where it is drawn, in pixels, or sees too little of it.
     AlignmentEnds(Option<f64>),
     /// It runs as it would, on a picture that shows no toy.
@@ -82,6 +83,7 @@ fn happening() -> impl Strategy<Value = Happening> {
         1 => Just(Happening::NewWorld),
         1 => thermal.prop_map(Happening::Thermal),
         1 => Just(Happening::MemoryLow),
+        1 => Just(Happening::Restarted),
         4 => select(vec![Some(0.1), Some(0.1), Some(1.9), None]).prop_map(Happening::AlignmentEnds),
         1 => Just(Happening::AlignmentRuns),
         1 => Just(Happening::AlignmentDies),
@@ -177,6 +179,7 @@ impl Platform {
             }
             Happening::Thermal(thermal) => vec![ShellEvent::Thermal(thermal)],
             Happening::MemoryLow => vec![ShellEvent::MemoryLow],
+            Happening::Restarted => vec![ShellEvent::Restarted],
             Happening::AlignmentEnds(outline_px) => self.end(|job| {
                 let alignment = world::alignment(job.input(), outline_px);
                 Some(job.known(alignment))

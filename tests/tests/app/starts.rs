@@ -2,7 +2,7 @@
 
 use app_core::Core;
 use app_core::app::{
-    App, N_GOOD_FRAMES, N_UNFINISHED, Notice, ShellCommand, ShellEvent, Simplified, Starts, Wish,
+    App, N_GOOD_FRAMES, N_UNFINISHED, Notice, Panics, ShellCommand, ShellEvent, Simplified, Starts, Wish,
 };
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
@@ -204,4 +204,18 @@ fn a_device_that_passes_is_remembered_and_not_tested_again() {
     let (live, kept) = kept_after_compiling(kept);
     assert_eq!(kept, [""; 0]);
     assert!(!live.app().log().text().contains("self-test"));
+}
+
+#[test]
+fn after_a_panic_the_app_begins_anew_and_says_so_but_not_for_ever() {
+    let mut panics = Panics::default();
+    let anew: Vec<bool> = [0.0, 1.0, 2.0].map(|time_s| panics.begins_anew(time_s)).into();
+    // The last of them begins with the simplest preset.
+    assert_eq!(anew, [true, true, false]);
+    assert!(panics.begins_anew(3600.0), "the others are long past");
+
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Restarted);
+    assert_eq!(app.notice(), Some(&Notice::Restarted));
+    assert!(app.log().text().contains("Restarted"), "{}", app.log().text());
 }
