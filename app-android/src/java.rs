@@ -20,6 +20,9 @@ const GRANTED: i32 = 0;
 /// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
 const REQUEST: i32 = 1;
 
+/// `Toast.LENGTH_LONG`.
+const LONG: i32 = 1;
+
 /// The phone by its activity.
 pub(crate) struct Activity {
     app: AndroidApp,
@@ -62,6 +65,37 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
         }
         result
     })
+}
+
+/// Shows a few words over whatever is on the screen, also when the activity is gone: `Toast.makeText(…).show()`.
+pub(crate) fn say(app: &AndroidApp, words: &'static str) {
+    let of_java = app.clone();
+    app.run_on_java_main_thread(Box::new(move || {
+        let said = guarded(Callback::Java, || {
+            with_java(&of_java, |env, activity| toast(env, activity, words))
+        });
+        if let Some(Err(error)) = said {
+            eprintln!("app-android: Java refused: {error}");
+        }
+    }));
+}
+
+fn toast(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()> {
+    let words = env.new_string(words)?;
+    let toast = env
+        .call_static_method(
+            jni_str!("android/widget/Toast"),
+            jni_str!("makeText"),
+            jni_sig!("(Landroid/content/Context;Ljava/lang/CharSequence;I)Landroid/widget/Toast;"),
+            &[
+                JValue::Object(activity),
+                JValue::Object(&words),
+                JValue::Int(LONG),
+            ],
+        )?
+        .l()?;
+    env.call_method(&toast, jni_str!("show"), jni_sig!("()V"), &[])?;
+    Ok(())
 }
 
 /// Whether the camera may be used, and whether Android would have a reason for it explained.

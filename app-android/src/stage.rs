@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use android_activity::AndroidApp;
 use app_core::app::{Panics, ShellEvent};
-use app_core::interface::Touch;
+use app_core::interface::{CLOSED, Touch, of_no_graphics};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::toy::ToyError;
@@ -36,6 +36,16 @@ pub(crate) enum StageError {
     /// One app after the other was ended by a panic.
     #[error("panics came one after the other")]
     Panics,
+}
+
+impl StageError {
+    /// For the person, who sees no picture any more.
+    pub(crate) fn words(&self) -> &'static str {
+        match self {
+            Self::Core(error) => of_no_graphics(error),
+            Self::Surface(_) | Self::Toy(_) | Self::Panics => CLOSED,
+        }
+    }
 }
 
 /// Owns the shell and lends it the activity's current window.

@@ -11,6 +11,7 @@ use super::bindings::{BindingCache, Layout, Resource, Slot};
 use super::device::{Device, Kind};
 use super::meter::{Memory, Meter};
 use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, PipelineCache};
+use super::quirks::fault_on_surfaces;
 use super::samplers::Samplers;
 use super::uniforms::Uniforms;
 
@@ -43,6 +44,14 @@ pub enum GpuError {
         adapter: String,
         /// The driver's message.
         reason: String,
+    },
+    /// The adapter's driver is known to fail.
+    #[error("adapter {adapter} is not used: {fault}")]
+    KnownFault {
+        /// Name of the adapter.
+        adapter: String,
+        /// What it fails at, and the source of that.
+        fault: &'static str,
     },
     /// The device refused work: out of memory, most often.
     #[error("the device refused work: {reason}")]
@@ -98,13 +107,20 @@ impl Gpu {
     /// Opens a device that can draw on `surface`, or on textures alone.
     ///
     /// # Errors
-    /// When there is no adapter, or it falls short of the limits of a phone.
+    /// When there is no adapter, it falls short of the limits of a phone, or its driver is known to fail on a surface.
     pub(crate) async fn open(
         instance: &wgpu::Instance,
         choice: &AdapterChoice,
         surface: Option<&wgpu::Surface<'static>>,
     ) -> Result<Self, GpuError> {
         let adapter = find_adapter(instance, choice, surface).await?;
+        let info = adapter.get_info();
+        if let Some(fault) = surface.and_then(|_| fault_on_surfaces(&info)) {
+            return Err(GpuError::KnownFault {
+                adapter: info.name,
+                fault,
+            });
+        }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("app-core"),
             required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
@@ -116,7 +132,7 @@ impl Gpu {
                 .request_device(&descriptor)
                 .await
                 .map_err(|error| GpuError::NoDevice {
-                    adapter: adapter.get_info().name,
+                    adapter: info.name,
                     reason: error.to_string(),
                 })?;
         // Errors outside of `guarded`, such as the loss of the device: without a handler they would end the program.

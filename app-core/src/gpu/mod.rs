@@ -9,6 +9,7 @@ pub(crate) mod device;
 pub(crate) mod meter;
 pub(crate) mod pass_run;
 pub(crate) mod pipeline;
+mod quirks;
 pub(crate) mod readback;
 pub(crate) mod recorder;
 pub(crate) mod resource;
@@ -23,3 +24,4 @@ pub(crate) mod uniforms;
 pub(crate) mod work;
 
 pub use context::{AdapterChoice, Gpu, GpuError};
+pub use quirks::fault_on_surfaces;

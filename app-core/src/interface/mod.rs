@@ -18,6 +18,7 @@ use crate::app::{App, Step, Wish};
 
 pub use input::{Insets, Screen, Touch, TouchPhase};
 pub(crate) use painter::Painter;
+pub use text::{CLOSED, of_no_graphics};
 
 /// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, cut to Latin letters and signs.
 const FONT: &[u8] = include_bytes!("roboto_medium.ttf");

@@ -4,6 +4,8 @@ use crate::app::{
     App, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Simplified, Step, Verdict,
 };
 use crate::camera_frame::Tracking;
+use crate::core::CoreError;
+use crate::gpu::GpuError;
 use crate::recording::{Ending, Taken};
 
 /// What a person is about to do, and how.
@@ -94,6 +96,23 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
     }
 }
+
+/// What the platform itself has to tell where nothing can be drawn: in two short lines.
+#[must_use]
+pub fn of_no_graphics(error: &CoreError) -> &'static str {
+    match error {
+        CoreError::Gpu(GpuError::KnownFault { .. }) => {
+            "This app cannot run here: this phone's graphics driver has a known fault."
+        }
+        CoreError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => {
+            "This app cannot run here: it needs graphics with Vulkan 1.1."
+        }
+        _ => "The app was closed: this phone's graphics failed.",
+    }
+}
+
+/// The same where it ended by itself more than once.
+pub const CLOSED: &str = "The app was closed: something went wrong again and again.";
 
 /// Why the shadow is the simplest.
 pub(super) fn of_simplified(simplified: &Simplified) -> String {

@@ -7,6 +7,7 @@ mod camera;
 mod coplanar;
 mod file;
 mod normals;
+mod quirks;
 mod refused;
 mod reuse;
 mod scale;
