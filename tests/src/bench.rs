@@ -2,6 +2,7 @@
 
 mod basin;
 mod exact;
+mod front;
 mod kinds;
 mod table;
 mod withheld;
@@ -10,6 +11,7 @@ use std::ops::Range;
 
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
+use app_core::governor::Step;
 use app_core::internals::Inspect;
 use app_core::internals::Map;
 use app_core::preset::Preset;
@@ -25,9 +27,10 @@ use crate::report::Report;
 use crate::sized::{SizePx, sized_input, sized_scene};
 
 pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
+pub use front::{Point, front, front_drawing, points};
 pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
 pub(crate) use table::aligned;
-pub use table::{csv, table};
+pub use table::{csv, json, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
 
 /// Presets that are also measured with exact visibility, which tells errors of visibility from all others.
@@ -38,6 +41,8 @@ const EXACT_PRESETS: &[Preset] = &[Preset::Paper, Preset::Balanced];
 pub struct Options {
     /// The presets, in the order of the rows.
     pub presets: Vec<Preset>,
+    /// Whether to add rows of what the governor turns down of `balanced`, one step after the other.
+    pub with_front: bool,
     /// How often each frame is timed; at least 1.
     pub n_repeats: usize,
     /// The frames, all without it.
@@ -85,7 +90,11 @@ pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Ve
     let mut rows = Vec::new();
     let alignments = replay::alignments(session, &replay_options(options))?;
     for &preset in &options.presets {
-        rows.push(measure(session, core, preset, (options, &alignments))?);
+        rows.push(measure(session, core, (preset, &[]), (options, &alignments))?);
+    }
+    for steps in front::turned_down().filter(|_| options.with_front) {
+        let setting = (Preset::Balanced, steps);
+        rows.push(measure(session, core, setting, (options, &alignments))?);
     }
     compare_with_paper(&mut rows);
     if options.with_exact {
@@ -116,11 +125,12 @@ fn compare_with_paper(rows: &mut [Row]) {
 fn measure(
     session: &Capture,
     core: &mut Core,
-    preset: Preset,
+    (preset, turned_down): (Preset, &'static [Step]),
     (options, alignments): (&Options, &Alignments),
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
         presets: vec![preset],
+        turned_down,
         ..replay_options(options)
     };
     // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
@@ -130,14 +140,14 @@ fn measure(
     let inputs = inputs(session, (&report, preset), alignments)?;
     Ok(Row {
         session: report.session,
-        preset: preset.name().to_owned(),
+        preset: front::named(preset, turned_down),
         n_frames: report.frames.len(),
         scores: report.mean.scores,
         flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
         n_taps: mean_taps(core, &inputs)?,
         size_px: options.size_px.unwrap_or(own_px(session)),
-        times: times(session, core, preset, (options, &inputs))?,
+        times: times(session, core, (preset, turned_down), (options, &inputs))?,
     })
 }
 
@@ -145,7 +155,7 @@ fn measure(
 fn times(
     session: &Capture,
     core: &mut Core,
-    preset: Preset,
+    (preset, turned_down): (Preset, &[Step]),
     (options, inputs): (&Options, &[FrameInput]),
 ) -> Result<Vec<KindTimes>, ReplayError> {
     let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
@@ -153,13 +163,14 @@ fn times(
             let inputs = inputs.iter().take(kinds::MOST_INPUTS);
             let scene = sized_scene(session.scene(), size_px);
             core.set_scene(scene.clone(), preset)?;
+            core.turn_down(turned_down)?;
             (scene, inputs.map(|input| sized_input(input, size_px)).collect())
         }
         None => (session.scene().clone(), inputs.to_vec()),
     };
     let mut times = kinds::measure(core, &inputs, options.n_repeats)?;
     if let Some(first) = inputs.first() {
-        for (times, counted) in times.iter_mut().zip(count(&scene, preset, first)?) {
+        for (times, counted) in times.iter_mut().zip(count(&scene, (preset, turned_down), first)?) {
             times.counted = Some(counted);
         }
     }
@@ -173,6 +184,7 @@ fn own_px(session: &Capture) -> SizePx {
 fn replay_options(options: &Options) -> replay::Options {
     replay::Options {
         presets: options.presets.clone(),
+        turned_down: &[],
         frames: options.frames.clone(),
         out: None,
         is_aligned: options.is_aligned,

@@ -3,6 +3,7 @@
 use app_core::camera_frame::Display;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
+use app_core::governor::Step;
 use app_core::internals::Inspect;
 use app_core::ledger::Ledger;
 use app_core::preset::Preset;
@@ -34,10 +35,15 @@ impl Counted {
 ///
 /// # Errors
 /// When the core takes no such scene or frame.
-pub fn count(scene: &Scene, preset: Preset, input: &FrameInput) -> Result<Vec<Counted>, CoreError> {
+pub fn count(
+    scene: &Scene,
+    (preset, turned_down): (Preset, &[Step]),
+    input: &FrameInput,
+) -> Result<Vec<Counted>, CoreError> {
     let of_kind = |kind: FrameKind| {
         let mut core = Core::counting();
         core.set_scene(scene.clone(), preset)?;
+        core.turn_down(turned_down)?;
         let others = [input.clone(), with_new(input, kind)];
         for known in &others {
             core.frame(known)?;

@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 
 use app_core::alignment::{AlignError, LensAlignment};
 use app_core::core::{Core, CoreError};
+use app_core::governor::Step;
 use app_core::internals::PixelRect;
 use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
-use app_core::scene::Image;
+use app_core::scene::{Image, Scene};
 use app_core::session::{GroundTruth, Session, SessionError};
 use thiserror::Error;
 
@@ -34,6 +35,8 @@ pub const REPORT_FILE: &str = "report.json";
 pub struct Options {
     /// How much work a frame may cost: all frames with each, and no two the same.
     pub presets: Vec<Preset>,
+    /// What is turned down of the presets, as the governor does it.
+    pub turned_down: &'static [Step],
     /// The frames to replay, all without it.
     pub frames: Option<Range<usize>>,
     /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
@@ -54,6 +57,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             presets: vec![Preset::default()],
+            turned_down: &[],
             frames: None,
             out: None,
             is_aligned: true,
@@ -192,6 +196,7 @@ pub fn replay_aligned(
             alignments,
             out: out.map(|out| Out::new(out.join(&folder))),
             follower: Follower::default(),
+            turned_down: options.turned_down,
         };
         let report = run.replay(*preset, frames.clone(), progress)?;
         reports.push((folder, report));
@@ -225,9 +230,15 @@ struct Run<'a> {
     alignments: &'a Alignments,
     out: Option<Out>,
     follower: Follower,
+    turned_down: &'static [Step],
 }
 
 impl Run<'_> {
+    fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
+        self.core.set_scene(scene, preset)?;
+        self.core.turn_down(self.turned_down)
+    }
+
     fn replay(
         &mut self,
         preset: Preset,
@@ -235,12 +246,12 @@ impl Run<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Report, ReplayError> {
         let scene = self.session.scene();
-        self.core.set_scene(self.alignments.scene(scene), preset)?;
+        self.set_scene(self.alignments.scene(scene), preset)?;
         progress.start(&format!("{} with {preset}", scene.name), indices.len());
         let mut frames = Vec::with_capacity(indices.len());
         for index in indices {
             if let Some(relit) = self.alignments.relit_scene(scene, index) {
-                self.core.set_scene(relit, preset)?;
+                self.set_scene(relit, preset)?;
             }
             let entry = self.frame(index, preset)?;
             progress.frame(&entry);

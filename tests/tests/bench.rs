@@ -1,13 +1,19 @@
 //! What a measurement of the bundled session comes to, as a program reads it.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::session::Capture;
 use app_core::wgpu;
 use harness::alignment::{Lights, Ratio};
-use harness::bench::{Options, basin, basin_csv, basin_drawing, basin_table, bench, csv};
+use harness::bench::{
+    FrameKind, Options, Point, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front,
+    front_drawing, json, points,
+};
 use harness::files::{BUNDLED_SESSION, Folder};
+use serde_json::Value;
 
 #[test]
 fn rows_are_complete_and_the_published_method_is_the_unit() {
@@ -16,6 +22,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
     let options = Options {
         presets: vec![Preset::Balanced, Preset::Paper],
+        with_front: true,
         n_repeats: 1,
         frames: Some(0..2),
         size_px: None,
@@ -24,7 +31,8 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         ratio: Ratio::Given,
         lights: Lights::Given,
     };
-    let text = csv(&bench(&session, &mut core, &options).unwrap());
+    let measured = bench(&session, &mut core, &options).unwrap();
+    let text = csv(&measured);
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let [header, rows @ ..] = &lines[..] else {
         panic!("{text}");
@@ -36,8 +44,11 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         .iter()
         .map(|line| ["session", "preset", "frame_kind"].map(|name| line[column(name)]))
         .collect();
-    let expected =
-        ["balanced", "paper"].map(|preset| ["pose", "picture", "view"].map(|kind| ["llama", preset, kind]));
+    let presets = named_presets();
+    let expected: Vec<[[&str; 3]; 3]> = presets
+        .iter()
+        .map(|preset| ["pose", "picture", "view"].map(|kind| ["llama", preset, kind]))
+        .collect();
     assert_eq!(named, expected.as_flattened());
     for line in rows {
         assert_eq!([number(line, "width"), number(line, "height")], [640.0, 360.0]);
@@ -57,12 +68,14 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         let ratio = number(line, "ratio_to_paper") * number(line, "times_faster_than_paper");
         assert!((ratio - 1.0).abs() < 1e-3, "{text}");
     }
-    for (balanced, paper) in rows[..3].iter().zip(&rows[3..]) {
+    for (balanced, paper) in rows[..3].iter().zip(&rows[3..6]) {
         assert_eq!(paper[column("ratio_to_paper")], "1.000000");
         // Only the published method searches, and a search looks at whole rings.
         assert_eq!(balanced[column("taps_per_missing_texel")], "");
         assert!(number(paper, "taps_per_missing_texel") >= 16.0, "{text}");
     }
+    assert_same(&measured, header, rows);
+    assert_drawn(&measured, presets.len());
     // Each kind runs what is new to it, by the passes that the device timed, where it can.
     let ran = |line: &[&str], pass: &str| {
         line[column("pass_ms")]
@@ -82,6 +95,66 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
             );
         }
     }
+}
+
+/// Steps of the governor's that change a setting.
+const N_TURNED_DOWN: usize = 5;
+
+/// Programs find in the JSON what is in the table.
+fn assert_same(rows: &[Row], header: &[&str], lines: &[Vec<&str>]) {
+    let json = json(rows);
+    let json = json.as_array().unwrap();
+    assert_eq!(json.len(), lines.len());
+    for (object, line) in json.iter().zip(lines) {
+        for (head, cell) in header.iter().zip(line) {
+            let is_same = match &object[*head] {
+                Value::Null => cell.is_empty(),
+                Value::String(text) => text == cell,
+                Value::Number(number) => {
+                    (number.as_f64().unwrap() - cell.parse::<f64>().unwrap()).abs() < 1e-5
+                }
+                Value::Object(passes) => {
+                    passes.len() == cell.split(' ').filter(|entry| !entry.is_empty()).count()
+                }
+                _ => false,
+            };
+            assert!(is_same, "{head}: {} and {cell}", object[*head]);
+        }
+    }
+}
+
+/// Those of the rows: what is turned down comes after the presets.
+fn named_presets() -> Vec<String> {
+    let turned_down = (1..=N_TURNED_DOWN).map(|n| format!("balanced-{n}"));
+    let presets = ["balanced", "paper"].map(str::to_owned);
+    presets.into_iter().chain(turned_down).collect()
+}
+
+/// Each setting is a point of each kind of frame, fastest first.
+fn assert_drawn(rows: &[Row], n_settings: usize) {
+    let of_pictures = points(rows, FrameKind::Picture);
+    assert_eq!(of_pictures.len(), n_settings);
+    assert!(of_pictures.is_sorted_by(|a, b| a.time <= b.time));
+    let drawing = front_drawing(rows).unwrap();
+    assert_eq!(drawing.matches("<circle").count(), 3 * n_settings, "{drawing}");
+}
+
+#[test]
+fn the_front_is_of_what_nothing_faster_is_as_good_as() {
+    let points = [
+        ("a", 0.2, 3.0),
+        ("b", 0.4, 3.5),
+        ("c", 0.5, 2.0),
+        ("d", 0.9, 2.0),
+        ("e", 1.0, 1.0),
+    ];
+    let points = points.map(|(name, time, error)| Point {
+        name: name.to_owned(),
+        time,
+        error,
+    });
+    let names: Vec<&str> = front(&points).iter().map(|point| point.name.as_str()).collect();
+    assert_eq!(names, ["a", "c", "e"]);
 }
 
 #[test]

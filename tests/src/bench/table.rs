@@ -1,6 +1,7 @@
 //! Rows as a person reads them, and as a program does.
 
 use app_core::ledger::Ledger;
+use serde_json::Value;
 
 use crate::count::Counted;
 use crate::metrics::flicker::Flicker;
@@ -25,6 +26,51 @@ pub fn csv(rows: &[Row]) -> String {
         .collect()
 }
 
+/// The same as an array of objects, by the names of the columns; what was not measured is null, passes are an object.
+#[must_use]
+pub fn json(rows: &[Row]) -> Value {
+    let heads: Vec<&str> = CSV_HEADER.split(',').collect();
+    let of_row = |row: &Row| -> Vec<Value> {
+        let of_kind = |kind: Option<&KindTimes>| {
+            let values = fields(row, kind).into_iter().map(Field::json);
+            heads.iter().map(|head| (*head).to_owned()).zip(values).collect()
+        };
+        kinds(row).into_iter().map(of_kind).map(Value::Object).collect()
+    };
+    rows.iter().flat_map(of_row).collect()
+}
+
+/// What stands in a column.
+enum Field {
+    Text(String),
+    Whole(u64),
+    Number(Option<f64>),
+    Passes(Vec<(&'static str, f64)>),
+    None,
+}
+
+impl Field {
+    fn csv(self) -> String {
+        match self {
+            Self::Text(text) => quoted(&text),
+            Self::Whole(number) => number.to_string(),
+            Self::Number(value) => number(value),
+            Self::Passes(passes) => listed(&passes),
+            Self::None => String::new(),
+        }
+    }
+
+    fn json(self) -> Value {
+        match self {
+            Self::Text(text) => text.into(),
+            Self::Whole(number) => number.into(),
+            Self::Number(value) => value.into(),
+            Self::Passes(passes) => passes.into_iter().collect(),
+            Self::None => Value::Null,
+        }
+    }
+}
+
 /// The kinds of frame that were timed, or one that was not.
 fn kinds(row: &Row) -> Vec<Option<&KindTimes>> {
     if row.times.is_empty() {
@@ -34,15 +80,21 @@ fn kinds(row: &Row) -> Vec<Option<&KindTimes>> {
 }
 
 fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
+    let fields: Vec<String> = fields(row, kind).into_iter().map(Field::csv).collect();
+    fields.join(",")
+}
+
+/// In the order of the header.
+fn fields(row: &Row, kind: Option<&KindTimes>) -> Vec<Field> {
     let of_kind = |of: fn(&KindTimes) -> Option<f64>| kind.and_then(of);
     let ratio = of_kind(|times| times.ratio_to_paper);
     let mut fields = vec![
-        quoted(&row.session),
-        row.preset.clone(),
-        row.size_px[0].to_string(),
-        row.size_px[1].to_string(),
-        kind.map_or_else(String::new, |times| times.kind.name().to_owned()),
-        row.n_frames.to_string(),
+        Field::Text(row.session.clone()),
+        Field::Text(row.preset.clone()),
+        Field::Whole(row.size_px[0].into()),
+        Field::Whole(row.size_px[1].into()),
+        kind.map_or(Field::None, |times| Field::Text(times.kind.name().to_owned())),
+        Field::Whole(row.n_frames as u64),
     ];
     let times = [
         of_kind(|times| times.gpu_ms),
@@ -52,31 +104,32 @@ fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
         ratio,
         ratio.filter(|ratio| *ratio > 0.0).map(f64::recip),
     ];
-    fields.extend(times.map(number));
+    fields.extend(times.map(Field::Number));
     fields.extend(counts(kind));
     fields.extend(
         regions(row)
             .into_iter()
-            .flat_map(|score| [score.map(|score| score.rmse), score.map(|score| score.ssim)].map(number)),
+            .flat_map(|score| [score.map(|score| score.rmse), score.map(|score| score.ssim)])
+            .chain(flicker(row))
+            .chain([row.n_taps])
+            .map(Field::Number),
     );
-    fields.extend(flicker(row).map(number));
-    fields.push(number(row.n_taps));
-    fields.push(kind.map_or_else(String::new, passes));
-    fields.join(",")
+    fields.push(kind.map_or(Field::None, |kind| Field::Passes(kind.passes.clone())));
+    fields
 }
 
 /// Triangles, mebibytes, copies and peak by the ledger, then objects and KiB that the device was asked for.
-fn counts(kind: Option<&KindTimes>) -> [String; 6] {
+fn counts(kind: Option<&KindTimes>) -> [Field; 6] {
     let counted = kind.and_then(|kind| kind.counted.as_ref());
     let ledger = counted.map(|counted| &counted.ledger);
     [
-        ledger.map_or_else(String::new, |ledger| ledger.total().triangles().to_string()),
-        number(ledger.map(Ledger::mebibytes_moved)),
-        number(ledger.map(Ledger::copies_moved)),
-        number(counted.map(Counted::peak_mib)),
-        kind.map_or_else(String::new, |kind| kind.n_made.to_string()),
+        ledger.map_or(Field::None, |ledger| Field::Whole(ledger.total().triangles())),
+        Field::Number(ledger.map(Ledger::mebibytes_moved)),
+        Field::Number(ledger.map(Ledger::copies_moved)),
+        Field::Number(counted.map(Counted::peak_mib)),
+        kind.map_or(Field::None, |kind| Field::Whole(kind.n_made)),
         #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
-        number(kind.map(|kind| kind.made_bytes as f64 / 1024.0)),
+        Field::Number(kind.map(|kind| kind.made_bytes as f64 / 1024.0)),
     ]
 }
 
@@ -94,7 +147,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     );
     for row in rows.iter().filter(|row| row.n_taps.is_some()) {
         for kind in &row.times {
-            let (name, passes) = (kind.kind.name(), passes(kind));
+            let (name, passes) = (kind.kind.name(), listed(&kind.passes));
             text.push_str(&format!(
                 "{} {} {name}, ms of each pass: {passes}\n",
                 row.session, row.preset
@@ -209,8 +262,8 @@ fn flicker(row: &Row) -> [Option<f64>; 4] {
     ]
 }
 
-fn passes(kind: &KindTimes) -> String {
-    let passes = kind.passes.iter().map(|(name, ms)| format!("{name}={ms:.3}"));
+fn listed(passes: &[(&str, f64)]) -> String {
+    let passes = passes.iter().map(|(name, ms)| format!("{name}={ms:.3}"));
     passes.collect::<Vec<_>>().join(" ")
 }
 

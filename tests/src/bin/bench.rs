@@ -14,7 +14,8 @@ use app_core::wgpu;
 use clap::Parser;
 use harness::alignment::{Lights, RatioArgs};
 use harness::bench::{
-    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, rebuild, rebuilt_table, table,
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front_drawing, json, rebuild,
+    rebuilt_table, table,
 };
 use harness::files::BUNDLED_SESSION;
 use harness::opened::{self, Opened};
@@ -26,8 +27,12 @@ use harness::sized::{SizePx, parse_size};
 const RESULTS: &str = "target/bench";
 /// File name of the result.
 const CSV_FILE: &str = "bench.csv";
+/// The same for programs.
+const JSON_FILE: &str = "bench.json";
+/// Error against time.
+const FRONT_FILE: &str = "front.svg";
 
-/// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table and as bench.csv.
+/// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table, bench.csv and bench.json.
 #[derive(Parser)]
 #[command(name = "bench", bin_name = "cargo xtask bench")]
 struct Args {
@@ -48,14 +53,17 @@ struct Args {
     /// Time and count pictures of this size; errors are of the session's own [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<SizePx>,
+    /// Add rows of what the governor turns down, one step after the other, and draw error against time
+    #[arg(long)]
+    front: bool,
     /// Add rows with visibility from rays, which takes minutes
     #[arg(long)]
     exact: bool,
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "lens"])]
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens"])]
     withheld: bool,
     /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
-    #[arg(long, conflicts_with_all = ["exact", "repeats", "first", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
     basin: bool,
     /// Where the directions of these disturbances are drawn from
     #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
@@ -110,6 +118,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
         let _ = writeln!(io::stderr(), "{}", folder.display());
         let measured = measure(folder, &mut core, args);
         rows.extend(measured.with_context(|| folder.display().to_string())?);
+    }
+    write_whole(&out.join(JSON_FILE), format!("{:#}\n", json(&rows)).as_bytes())?;
+    if args.front {
+        let drawing = front_drawing(&rows).map_err(anyhow::Error::msg)?;
+        write_whole(&out.join(FRONT_FILE), drawing.as_bytes())?;
     }
     write_whole(&result, csv(&rows).as_bytes())?;
     let gpu = core.gpu();
@@ -174,6 +187,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
     let Opened { capture, .. } = opened::open(folder, args.ratio.lens(), args.lights)?;
     let options = Options {
         presets: presets(args),
+        with_front: args.front,
         n_repeats: usize::from(args.repeats),
         frames: args.first.map(|n_frames| Range {
             start: 0,

@@ -48,7 +48,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let [width, height] = size_px;
     let mut text = String::new();
     for &preset in &args.presets {
-        let counted = count(&scene, preset, &input)?;
+        let counted = count(&scene, (preset, &[]), &input)?;
         text.push_str(&format!(
             "{} {preset} {width} x {height}\n{}",
             scene.name,

@@ -74,6 +74,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
     let options = Options {
         presets: without_repeats(&args.presets),
+        turned_down: &[],
         frames: args.frames.clone(),
         out: Some(out.clone()),
         is_aligned: !args.as_given,

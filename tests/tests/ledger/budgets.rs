@@ -145,7 +145,7 @@ fn scene_of(toy: Toy, n_lights: usize) -> (Scene, FrameInput) {
 fn counted(n_lights: usize, preset: Preset) -> Vec<Counted> {
     // 10,000 triangles.
     let (scene, input) = scene_of(ball(100, 51), n_lights);
-    count(&scene, preset, &input).unwrap()
+    count(&scene, (preset, &[]), &input).unwrap()
 }
 
 /// The most that a kind of frame may take: triangles, copies of the screen. What it takes is a little less; the aims of the
