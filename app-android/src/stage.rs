@@ -133,7 +133,7 @@ impl Stage {
 
     /// Drops surface and window; the core keeps device, pipelines and what it has learned.
     pub(crate) fn detach(&mut self) {
-        // Also where what follows panics.
+        // First of all: the window goes even where suspending the core panics.
         let _window = self.window.take();
         if let Some(shell) = &mut self.shell {
             shell.live().core_mut().suspend();
