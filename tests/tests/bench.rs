@@ -76,6 +76,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
     }
     assert_same(&measured, header, rows);
     assert_drawn(&measured, presets.len());
+    assert_stages(&measured);
     // Each kind runs what is new to it, by the passes that the device timed, where it can.
     let ran = |line: &[&str], pass: &str| {
         line[column("pass_ms")]
@@ -128,6 +129,21 @@ fn named_presets() -> Vec<String> {
     let turned_down = (1..=N_TURNED_DOWN).map(|n| format!("balanced-{n}"));
     let presets = ["balanced", "paper"].map(str::to_owned);
     presets.into_iter().chain(turned_down).collect()
+}
+
+/// Medians of stages need not add up to the median of their sum, but nearly do.
+fn assert_stages(rows: &[Row]) {
+    for kind in rows.iter().flat_map(|row| &row.times) {
+        let sum: f64 = kind.stages.iter().map(|(_, ms)| ms).sum();
+        let names: Vec<&str> = kind.stages.iter().map(|(name, _)| *name).collect();
+        assert!(
+            ["encode", "submit", "screen"]
+                .iter()
+                .all(|name| names.contains(name)),
+            "{kind:?}"
+        );
+        assert!((0.5..1.5).contains(&(sum / kind.cpu_ms.unwrap())), "{kind:?}");
+    }
 }
 
 /// Each setting is a point of each kind of frame, fastest first.

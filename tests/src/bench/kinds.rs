@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use app_core::camera_frame::{CameraImage, Display};
 use app_core::core::{Core, CoreError};
-use app_core::frame::{FrameInput, PassTime};
+use app_core::frame::{Clock, FrameInput};
 use app_core::internals::Inspect;
 use app_core::scene::{Camera, Image};
 use glam::DMat4;
@@ -15,6 +15,12 @@ use crate::count::Counted;
 const TURN_RAD: f64 = 0.005;
 /// Frames that are timed in turn, of those of a session.
 pub(super) const MOST_INPUTS: usize = 4;
+
+/// The stage that is timed from outside of the core.
+const SCREEN: &str = "screen";
+
+/// Milliseconds of passes or stages by their names.
+type Named = Vec<(&'static str, f64)>;
 
 /// What is new in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +57,8 @@ pub struct KindTimes {
     pub cpu_ms: Option<f64>,
     /// On the device; none where it cannot tell.
     pub gpu_ms: Option<f64>,
+    /// Each stage on the processor, in order; together that time.
+    pub stages: Vec<(&'static str, f64)>,
     /// Each pass on the device, all of its runs in a frame together, in order.
     pub passes: Vec<(&'static str, f64)>,
     /// What it must cost on any device; none where nothing was counted.
@@ -79,10 +87,14 @@ pub(super) fn measure(
     n_repeats: usize,
 ) -> Result<Vec<KindTimes>, CoreError> {
     core.time_passes(true)?;
+    let start = Instant::now();
+    core.time_stages(Some(Clock::new(move || start.elapsed().as_secs_f64() * 1e3)));
     let measured = FRAME_KINDS
         .iter()
         .map(|kind| of_kind(core, inputs, *kind, n_repeats));
-    measured.collect()
+    let measured = measured.collect();
+    core.time_stages(None);
+    measured
 }
 
 fn of_kind(
@@ -91,7 +103,7 @@ fn of_kind(
     kind: FrameKind,
     n_repeats: usize,
 ) -> Result<KindTimes, CoreError> {
-    let (mut cpu, mut device) = (Vec::new(), Vec::new());
+    let (mut cpu, mut stages, mut device) = (Vec::new(), Vec::new(), Vec::new());
     let (mut n_made, mut made_bytes) = (0, 0);
     let screen = inputs
         .first()
@@ -106,16 +118,22 @@ fn of_kind(
         for next in others.iter().cycle().take(2 * n_repeats) {
             core.read_pass_times()?;
             let start = Instant::now();
-            show(core, next, screen.as_ref())?;
+            stages.push(show(core, next, screen.as_ref())?);
             cpu.push(start.elapsed().as_secs_f64() * 1e3);
-            device.push(core.read_pass_times()?);
+            let passes = core.read_pass_times()?;
+            device.push(
+                passes
+                    .iter()
+                    .map(|time| (time.pass, time.gpu_ms))
+                    .collect::<Named>(),
+            );
         }
         let after = made(core);
         // Each reading of times takes one buffer, which is none of the frame's.
         n_made += after.0 - before.0 - n_readings(core, 2 * n_repeats);
         made_bytes += after.1 - before.1;
     }
-    let gpu: Vec<f64> = device.iter().filter_map(|times| total_ms(times)).collect();
+    let gpu: Vec<f64> = device.iter().filter_map(total_ms).collect();
     Ok(KindTimes {
         kind,
         spread_ms: spread(if gpu.is_empty() { &cpu } else { &gpu }),
@@ -124,15 +142,26 @@ fn of_kind(
         counted: None,
         n_made,
         made_bytes,
-        passes: passes(&device),
+        stages: medians(&stages),
+        passes: medians(&device),
         ratio_to_paper: None,
     })
 }
 
-/// Makes a frame and draws it on a screen of the picture's size.
-fn show(core: &mut Core, input: &FrameInput, screen: Option<&wgpu::Texture>) -> Result<(), CoreError> {
-    core.frame(input)?;
-    screen.map_or(Ok(()), |screen| core.draw_on(screen, Display::default()))
+/// Makes a frame and draws it on a screen of the picture's size; with times of its stages.
+fn show(core: &mut Core, input: &FrameInput, screen: Option<&wgpu::Texture>) -> Result<Named, CoreError> {
+    let report = core.frame(input)?;
+    let mut stages: Named = report
+        .stages
+        .iter()
+        .map(|stage| (stage.stage, stage.cpu_ms))
+        .collect();
+    if let Some(screen) = screen {
+        let start = Instant::now();
+        core.draw_on(screen, Display::default())?;
+        stages.push((SCREEN, start.elapsed().as_secs_f64() * 1e3));
+    }
+    Ok(stages)
 }
 
 /// Objects and bytes that the device was asked for so far.
@@ -177,25 +206,25 @@ pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
     }
 }
 
-fn total_ms(times: &[PassTime]) -> Option<f64> {
-    times.iter().map(|time| time.gpu_ms).reduce(|sum, ms| sum + ms)
+fn total_ms(times: &Named) -> Option<f64> {
+    times.iter().map(|(_, ms)| *ms).reduce(|sum, ms| sum + ms)
 }
 
-/// Median of each pass, in the order of their first runs.
-fn passes(frames: &[Vec<PassTime>]) -> Vec<(&'static str, f64)> {
+/// Median of each pass or stage, in the order of their first runs.
+fn medians(frames: &[Named]) -> Named {
     let mut names: Vec<&'static str> = Vec::new();
-    for time in frames.iter().flatten() {
-        if !names.contains(&time.pass) {
-            names.push(time.pass);
+    for (name, _) in frames.iter().flatten() {
+        if !names.contains(name) {
+            names.push(name);
         }
     }
-    let in_frame = |frame: &Vec<PassTime>, name: &str| {
-        let runs = frame.iter().filter(|time| time.pass == name);
-        runs.map(|time| time.gpu_ms).sum()
+    let in_frame = |frame: &Named, name: &str| {
+        let runs = frame.iter().filter(|(run, _)| *run == name);
+        runs.map(|(_, ms)| *ms).sum()
     };
-    let of_pass = |name: &'static str| {
+    let of_name = |name: &'static str| {
         let each = frames.iter().map(|frame| in_frame(frame, name)).collect();
         super::median(each).map(|ms| (name, ms))
     };
-    names.into_iter().filter_map(of_pass).collect()
+    names.into_iter().filter_map(of_name).collect()
 }

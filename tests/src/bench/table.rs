@@ -11,10 +11,10 @@ use super::{FRAME_KINDS, FrameKind, KindTimes, Row};
 
 const CSV_HEADER: &str = "session,preset,width,height,frame_kind,n_frames,gpu_ms_median,cpu_ms_median,spread_ms,align_ms,\
 ratio_to_paper,times_faster_than_paper,triangles,mebibytes_moved,copies_counted,peak_gpu_mib,objects_made,kib_made,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,frame_rmse,frame_ssim,\
-shadow_flicker,toy_flicker,edge_flicker,frame_flicker,taps_per_missing_texel,pass_ms";
+shadow_flicker,toy_flicker,edge_flicker,frame_flicker,taps_per_missing_texel,stage_ms,pass_ms";
 
-/// One line for each row and kind of frame, under a header. What was not measured is empty; passes are
-/// `name=milliseconds`, apart by spaces.
+/// One line for each row and kind of frame, under a header. What was not measured is empty; stages and passes
+/// are `name=milliseconds`, apart by spaces.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {
     std::iter::once(CSV_HEADER.to_owned())
@@ -26,7 +26,8 @@ pub fn csv(rows: &[Row]) -> String {
         .collect()
 }
 
-/// The same as an array of objects, by the names of the columns; what was not measured is null, passes are an object.
+/// The same as an array of objects, by the names of the columns; what was not measured is null, stages and passes
+/// are objects.
 #[must_use]
 pub fn json(rows: &[Row]) -> Value {
     let heads: Vec<&str> = CSV_HEADER.split(',').collect();
@@ -45,7 +46,7 @@ enum Field {
     Text(String),
     Whole(u64),
     Number(Option<f64>),
-    Passes(Vec<(&'static str, f64)>),
+    Times(Vec<(&'static str, f64)>),
     None,
 }
 
@@ -55,7 +56,7 @@ impl Field {
             Self::Text(text) => quoted(&text),
             Self::Whole(number) => number.to_string(),
             Self::Number(value) => number(value),
-            Self::Passes(passes) => listed(&passes),
+            Self::Times(times) => listed(&times),
             Self::None => String::new(),
         }
     }
@@ -65,7 +66,7 @@ impl Field {
             Self::Text(text) => text.into(),
             Self::Whole(number) => number.into(),
             Self::Number(value) => value.into(),
-            Self::Passes(passes) => passes.into_iter().collect(),
+            Self::Times(times) => times.into_iter().collect(),
             Self::None => Value::Null,
         }
     }
@@ -114,7 +115,8 @@ fn fields(row: &Row, kind: Option<&KindTimes>) -> Vec<Field> {
             .chain([row.n_taps])
             .map(Field::Number),
     );
-    fields.push(kind.map_or(Field::None, |kind| Field::Passes(kind.passes.clone())));
+    fields.push(kind.map_or(Field::None, |kind| Field::Times(kind.stages.clone())));
+    fields.push(kind.map_or(Field::None, |kind| Field::Times(kind.passes.clone())));
     fields
 }
 
@@ -262,9 +264,11 @@ fn flicker(row: &Row) -> [Option<f64>; 4] {
     ]
 }
 
-fn listed(passes: &[(&str, f64)]) -> String {
-    let passes = passes.iter().map(|(name, ms)| format!("{name}={ms:.3}"));
-    passes.collect::<Vec<_>>().join(" ")
+fn listed(times: &[(&str, f64)]) -> String {
+    let times = times
+        .iter()
+        .map(|(name, ms)| format!("{}={ms:.3}", name.replace(' ', "_")));
+    times.collect::<Vec<_>>().join(" ")
 }
 
 pub(crate) fn aligned(cells: &[Vec<String>]) -> String {
