@@ -25,7 +25,7 @@ pub(super) struct FloorPixel {
     pub(super) receiver: usize,
     /// The receiver's point there, in camera space.
     pub(super) point: DVec3,
-    /// Terms of the gain there, a polynomial over the plane.
+    /// Terms of the gain there, a polynomial over the plane; 1 and zeros where it is even.
     pub(super) gain: [f32; QUADRATIC],
     /// Of the photograph.
     pub(super) frame: Color,
@@ -44,6 +44,9 @@ pub(super) fn floor_pixels(
     around: (DVec3, f64),
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {
+    // A receiver on its own gets no light of another, and a plate shows what it is like.
+    let is_even = receivers.len() == 1 && level.plate.is_some();
+    let n_terms = if is_even { 1 } else { QUADRATIC };
     let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
     let pixels = clear.filter_map(|at| {
         let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
@@ -56,7 +59,7 @@ pub(super) fn floor_pixels(
         let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel], unexplained));
         let terms = polynomial(&receivers[receiver], point, around);
         #[allow(clippy::cast_possible_truncation, reason = "a place, to 7 digits")]
-        let gain = std::array::from_fn(|term| terms[term] as f32);
+        let gain = std::array::from_fn(|term| if term < n_terms { terms[term] as f32 } else { 0.0 });
         Some(FloorPixel {
             at,
             receiver,

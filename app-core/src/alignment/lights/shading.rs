@@ -3,8 +3,10 @@
 //! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x what the toy takes of it, for each receiver
 //! and channel: the additive model of `fit`, without the toy's bounce, which the ambient factors take up. They rise to a side.
 //!
-//! The gain bends over the plane. Where a wall throws back less light onto a table, since the shadow lies on it too, the table darkens
-//! over a wide place; an even gain would let the lamp take that up by a penumbra that is too wide.
+//! Where there are several receivers the gain bends over each: a wall throws back less light onto a table, since the shadow lies on
+//! it too, and the table darkens over a wide place, which an even gain would leave to a penumbra that is too wide. Without
+//! a plate it makes up for what the backdrop is off. On one receiver with a plate it stays even, or it would take up what tells the scale
+//! of the world.
 
 use nalgebra::{SMatrix, SVector};
 
