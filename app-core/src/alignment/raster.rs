@@ -266,12 +266,13 @@ fn rectangle(corners: &[DVec3], size_px: IVec2) -> Option<Coverage> {
 /// The least whole number that is not below a value of a picture's size; 0 for a negative one.
 #[allow(
     clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
     reason = "bounded by the callers; the library's own rounding is a call, here in the innermost loop"
 )]
 fn round_up(value: f64) -> usize {
-    let down = value as usize;
-    down + usize::from((down as f64) < value)
+    // A narrower number takes fewer instructions.
+    let down = value as u32;
+    (down + u32::from(f64::from(down) < value)) as usize
 }
 
 /// Keeps the nearest depth at each pixel's centre: 1 / depth is affine over the picture.

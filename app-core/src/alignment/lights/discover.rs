@@ -34,8 +34,6 @@ const LEAST_EXPLAINED: f64 = 0.01;
 /// Rounds of one more lamp alone, and of all together.
 const N_ALONE: usize = 5;
 const N_TOGETHER: usize = 3;
-/// Most points over a lamp.
-const SEARCH_POINTS: f64 = 16.0;
 /// Larger pictures than the one that was searched.
 const N_LARGER_LEVELS: usize = 2;
 /// Sides of the cells that vertices are merged in, in pixels: while lamps are counted, and then.
@@ -58,7 +56,7 @@ pub(super) fn discover(
     let coarse = shape.merged(SEARCH_CELL_PX * px_m(searched));
     let mut raster = Rasterizer::default();
     let mut shadows = Shadows::new(&mut raster, (&coarse, receivers), pyramid.level(searched), None);
-    shadows.most_points = SEARCH_POINTS;
+    shadows.is_rough = true;
     if shadows.pixels.len() < LEAST_PIXELS {
         return Err(NoLight::ReceiversUnseen);
     }

@@ -21,7 +21,7 @@ pub(super) const N_FACTORS: usize = FIRST_LAMP + MAX_LIGHTS;
 pub(super) const FIRST_LAMP: usize = QUADRATIC + N_AMBIENT;
 
 pub(super) type Factors = SVector<f64, N_FACTORS>;
-type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
+pub(super) type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
 
 /// Keeps factors of what no pixel shows at 0.
 pub(super) const PRIOR: f64 = 1e-3;
@@ -162,12 +162,15 @@ impl Shaded<'_> {
     }
 }
 
-/// Adds `weight` times the outer product of the first `n` entries.
+/// Adds `weight` times the outer product of the first `n` entries, to the lower triangle alone, which is what Cholesky's method reads.
 pub(super) fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
-    for i in 0..n {
-        let scaled = weight * row[i];
-        for j in 0..n {
-            normal[(i, j)] += scaled * row[j];
+    for j in 0..n {
+        let scaled = weight * row[j];
+        // An even gain has terms that are 0 everywhere.
+        if scaled != 0.0 {
+            for i in j..n {
+                normal[(i, j)] += scaled * row[i];
+            }
         }
     }
 }

@@ -28,9 +28,10 @@ const N_DIRECTIONS: usize = 128;
 const AROUND_PX: i32 = 16;
 /// A step that moves no shadow by more, in pixels, is the last.
 const LAST_STEP_PX: f64 = 0.02;
-/// Points over a lamp.
+/// Points over a lamp, and fewer while lamps are counted.
 const LEAST_POINTS: f64 = 8.0;
 const MOST_POINTS: f64 = 40.0;
+const MOST_ROUGH_POINTS: f64 = 16.0;
 /// Light on the place without a toy is no less, over that at the toy's foot.
 const LEAST_UNSHADOWED: f32 = 0.05;
 /// Wider than the lamps, so that shadows that grow stay in sight.
@@ -45,8 +46,8 @@ pub(super) struct Shadows<'a> {
     unshadowed: Vec<f32>,
     /// Whether a plate tells what the receivers show without the toy.
     pub(super) has_plate: bool,
-    /// Points over a lamp, at most.
-    pub(super) most_points: f64,
+    /// Whether lamps are counted here and made exact elsewhere: with fewer points, and one-sided differences.
+    pub(super) is_rough: bool,
     /// How far the shadow of the toy's top moves as a light turns, about.
     pub(super) px_per_rad: f64,
 }
@@ -101,7 +102,7 @@ impl<'a> Shadows<'a> {
             ambient: caster.ambient(raster, &pixels, N_DIRECTIONS),
             caster,
             has_plate,
-            most_points: MOST_POINTS,
+            is_rough: false,
             unshadowed: vec![1.0; pixels.len()],
             pixels,
             px_per_rad: level.intrinsics.fx_px * shape.radius_m / shape.centre.length(),
@@ -145,11 +146,13 @@ impl<'a> Shadows<'a> {
 
     /// Points over a lamp: more the wider its penumbra.
     pub(super) fn disc(&self, lamp: &Lamp) -> Vec<DVec2> {
+        let most = if self.is_rough {
+            MOST_ROUGH_POINTS
+        } else {
+            MOST_POINTS
+        };
         #[allow(clippy::cast_possible_truncation, reason = "clamped")]
-        let n_points = self
-            .penumbra_px(lamp)
-            .powi(2)
-            .clamp(LEAST_POINTS, self.most_points) as usize;
+        let n_points = self.penumbra_px(lamp).powi(2).clamp(LEAST_POINTS, most) as usize;
         disc(n_points)
     }
 

@@ -1,10 +1,12 @@
 //! Gauss-Newton steps of all lamps at once.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
 use super::prior::Prior;
-use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading};
+use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Normal, PRIOR, Shaded, Shading, add_outer};
 use super::shadows::{LEAST_PENUMBRA_PX, Shadows};
 use crate::alignment::raster::Rasterizer;
 
@@ -38,7 +40,12 @@ impl Shadows<'_> {
         let slopes: Vec<Slope> = lamps
             .iter()
             .zip(priors)
-            .flat_map(|(lamp, prior)| self.slopes(raster, lamp, prior))
+            .zip(&taken)
+            .flat_map(|((lamp, prior), taken)| {
+                // Without a plate so little tells a lamp that it would be lost over the difference.
+                let here = (self.is_rough && self.has_plate).then_some(taken.as_slice());
+                self.slopes(raster, (lamp, here), prior)
+            })
             .collect();
         let shaded = self.shaded(&taken);
         let shading = shaded.fit(self.caster.receivers.len(), robust);
@@ -68,8 +75,14 @@ impl Shadows<'_> {
         Some(deviations.collect())
     }
 
-    /// Central differences of what a lamp takes; none for a part that the picture does not tell.
-    pub(super) fn slopes(&self, raster: &mut Rasterizer, lamp: &Lamp, prior: &Prior) -> [Slope; N_PARTS] {
+    /// Differences of what a lamp takes; none for a part that the picture does not tell. Central ones, or from what it takes `here`,
+    /// for half the work.
+    pub(super) fn slopes(
+        &self,
+        raster: &mut Rasterizer,
+        (lamp, here): (&Lamp, Option<&[f32]>),
+        prior: &Prior,
+    ) -> [Slope; N_PARTS] {
         let disc = self.disc(lamp);
         let penumbra_px = self.penumbra_px(lamp);
         let turn_rad = (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX) / self.px_per_rad;
@@ -83,21 +96,24 @@ impl Shadows<'_> {
                 NEARNESS => turn_rad / self.caster.shape.radius_m,
                 _ => turn_rad,
             };
-            let mut step = [0.0; N_PARTS];
-            step[part] = by;
-            let more = lamp.moved(&step);
-            step[part] = -by;
-            let less = lamp.moved(&step);
+            let moved = |by: f64| {
+                let mut step = [0.0; N_PARTS];
+                step[part] = by;
+                lamp.moved(&step)
+            };
+            let (more, less) = (moved(by), if here.is_some() { *lamp } else { moved(-by) });
             let span = match part {
                 SPREAD => more.spread - less.spread,
                 NEARNESS => more.nearness - less.nearness,
+                _ if here.is_some() => by,
                 _ => 2.0 * by,
             };
-            let [more, less] = [more, less].map(|lamp| self.taken(raster, &lamp, &disc));
+            let more = self.taken(raster, &more, &disc);
+            let less = here.map_or_else(|| Cow::Owned(self.taken(raster, &less, &disc)), Cow::Borrowed);
             #[allow(clippy::cast_possible_truncation, reason = "a slope, to 7 digits")]
             let differences = more
                 .iter()
-                .zip(&less)
+                .zip(less.as_ref())
                 .map(|(more, less)| (f64::from(more - less) / span) as f32);
             Some(differences.collect())
         })
@@ -141,17 +157,17 @@ struct System {
 
 /// Of the factors of one channel of a receiver.
 struct Block {
-    factors: DMatrix<f64>,
+    factors: Normal,
     mixed: DMatrix<f64>,
-    side: DVector<f64>,
+    side: Factors,
 }
 
 impl System {
     fn new(n_parts: usize, n_receivers: usize) -> Self {
         let block = || Block {
-            factors: DMatrix::identity(N_FACTORS, N_FACTORS) * PRIOR,
+            factors: Normal::identity() * PRIOR,
             mixed: DMatrix::zeros(N_FACTORS, n_parts),
-            side: DVector::zeros(N_FACTORS),
+            side: Factors::zeros(),
         };
         Self {
             lamps: DMatrix::zeros(n_parts, n_parts),
@@ -169,8 +185,8 @@ impl System {
         (weight, residual): (f64, f64),
     ) {
         let block = &mut self.blocks[block];
-        block.factors.ger(weight, factors, factors, 1.0);
-        block.side.axpy(weight * residual, factors, 1.0);
+        add_outer(&mut block.factors, factors, weight, N_FACTORS);
+        block.side += factors * (weight * residual);
         let mut is_touched = false;
         for (value, part) in self.row.iter_mut().zip(lamps) {
             *value = part;

@@ -111,7 +111,7 @@ impl Shadows<'_> {
         let changes = Changes {
             of_lamps: lamps
                 .iter()
-                .flat_map(|lamp| self.slopes(raster, lamp, &Prior::free(lamp, radius_m)))
+                .flat_map(|lamp| self.slopes(raster, (lamp, None), &Prior::free(lamp, radius_m)))
                 .collect(),
             of_pose: self.moved_by_pose(raster, lamps, pose, &taken),
         };
