@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use app_core::alignment::{Aligner, Alignment, AlignmentReport, LensAlignment, RatioAlignment};
+use app_core::alignment::{
+    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, RatioAlignment,
+};
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Scene};
@@ -123,6 +125,16 @@ pub struct SeenLight {
 }
 
 impl SeenLight {
+    /// One that was found by its shadow, from the toy's middle.
+    #[must_use]
+    pub fn found(light: &DiscoveredLight) -> Self {
+        Self {
+            direction_in_world: light.direction_in_world,
+            distance_m: light.distance_m,
+            angular_radius_rad: light.angular_radius_rad,
+        }
+    }
+
     /// From a place in the world.
     #[must_use]
     pub fn from(place: DVec3, light: &Light) -> Self {

@@ -21,6 +21,9 @@ struct Args {
     /// Folder for the corrected session, or a recording where it ends in .mcap, which must not be there yet
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Put the session's list of lights aside, and write those that their shadows show; the list stays where none does
+    #[arg(long, value_enum, default_value_t)]
+    lights: Lights,
     #[command(flatten)]
     ratio: RatioArgs,
 }
@@ -30,11 +33,11 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let opened = opened::open(&args.session, args.ratio.lens(), Lights::Given);
+    let opened = opened::open(&args.session, args.ratio.lens(), args.lights);
     let Opened { capture, lens } = opened.with_context(|| args.session.display().to_string())?;
     let asked = Asked {
+        lights: args.lights,
         ratio: args.ratio.asked(),
-        ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
     let session = Stored::open(&args.session)?;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::Parser;
-use harness::alignment::RatioArgs;
+use harness::alignment::{Asked, Lights, RatioArgs};
 use harness::check::check;
 use harness::output::make_folder;
 use harness::program::exit_code;
@@ -23,6 +23,9 @@ struct Args {
     /// Folder for the drawing [default: target/check]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Put the session's list of lights aside, and compare it with those that their shadows show
+    #[arg(long, value_enum, default_value_t)]
+    lights: Lights,
     #[command(flatten)]
     ratio: RatioArgs,
 }
@@ -41,7 +44,11 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     let results = || package.parent().unwrap_or(package).join(RESULTS);
     let out = args.out.clone().unwrap_or_else(results);
     make_folder(&out)?;
-    let findings = check(&args.session, &out, (args.ratio.asked(), args.ratio.lens()))
+    let asked = Asked {
+        lights: args.lights,
+        ratio: args.ratio.asked(),
+    };
+    let findings = check(&args.session, &out, (asked, args.ratio.lens()))
         .with_context(|| args.session.display().to_string())?;
     for line in &findings.facts {
         println!("{line}");

@@ -53,8 +53,14 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
         if is_camera_moved {
             index["frames"][frame]["world_from_camera"] = matrix(&alignment.camera.world_from_camera);
         }
-        if let Some(lights) = &alignment.lights {
-            let mut entries = index["lights"].as_array().cloned().unwrap_or_default();
+        // Where none was found in place of the list, it stays.
+        if let Some(lights) = alignment.lights.as_ref().filter(|lights| !lights.is_empty()) {
+            let listed = index["lights"].as_array().cloned().unwrap_or_default();
+            let mut entries = if aligned.put_aside.is_empty() {
+                listed
+            } else {
+                Vec::new()
+            };
             entries.resize(lights.len(), json!({}));
             for (entry, light) in entries.iter_mut().zip(lights.iter()) {
                 merge(entry, light);

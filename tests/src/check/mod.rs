@@ -9,7 +9,7 @@ mod sense;
 
 use std::path::{Path, PathBuf};
 
-use app_core::alignment::{Alignment, Outlines};
+use app_core::alignment::{Alignment, DiscoveredLight, Outlines};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
@@ -17,10 +17,11 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Alignments, Asked, Lights, Ratio, Source};
+use crate::alignment::{Aligned, Alignments, Asked, Lights, SeenLight, Source};
 use crate::gizmo::{self, Gizmo};
 use crate::opened::{self, Opened};
 use crate::output::{remove_file, write_png};
+use crate::report::alignment::ErrorEntry;
 use crate::stored::Stored;
 
 pub use pictures::wrong_of_picture;
@@ -43,7 +44,7 @@ pub struct Findings {
 ///
 /// # Errors
 /// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
-pub fn check(session: &Path, out: &Path, (ratio, lens): (Ratio, Source)) -> anyhow::Result<Findings> {
+pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // A drawing in the folder is of this session.
     remove_file(&out.join(DRAWING))?;
@@ -64,7 +65,7 @@ pub fn check(session: &Path, out: &Path, (ratio, lens): (Ratio, Source)) -> anyh
     };
     let capture = match lens {
         Source::Given => capture,
-        Source::Found => findings.freed_of_lens(session)?,
+        Source::Found => findings.freed_of_lens(session, asked.lights)?,
     };
     findings.wrong.extend(told(capture.warnings()));
     findings.facts.extend(sense::without(capture.scene()));
@@ -83,14 +84,10 @@ pub fn check(session: &Path, out: &Path, (ratio, lens): (Ratio, Source)) -> anyh
     }
     if let Ok(first) = capture.frame(0) {
         let given = FrameInput::from(&first);
-        let asked = Asked {
-            ratio,
-            ..Asked::default()
-        };
         match Alignments::find(&capture, 0..1, asked) {
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
-                    findings.aligned(&aligned.alignment);
+                    findings.aligned(aligned);
                     let picture = drawn(&capture, &given, &aligned.alignment)?;
                     let path = out.join(DRAWING);
                     write_png(&path, &picture)?;
@@ -101,6 +98,23 @@ pub fn check(session: &Path, out: &Path, (ratio, lens): (Ratio, Source)) -> anyh
         }
     }
     Ok(findings)
+}
+
+/// How far a light that was found is from the nearest one of the list that was put aside; nothing without a list.
+fn against_listed(found: &DiscoveredLight, listed: &[SeenLight]) -> String {
+    let Some(error) = ErrorEntry::nearest(&SeenLight::found(found), listed) else {
+        return String::new();
+    };
+    let times = |ratio: Option<f64>, what: &str| {
+        ratio.map_or(String::new(), |ratio| format!(", {ratio:.2} times its {what}"))
+    };
+    format!(
+        "; {:.2} degrees from lights[{}]{}{}",
+        error.direction_deg,
+        error.index,
+        times(error.distance_ratio, "distance"),
+        times(error.size_ratio, "angular size"),
+    )
 }
 
 /// The reader's warnings, but those of files that were looked at before.
@@ -122,8 +136,8 @@ impl Findings {
     }
 
     /// The session with the lens that its pictures tell.
-    fn freed_of_lens(&mut self, session: &Path) -> anyhow::Result<Capture> {
-        let Opened { capture, lens } = opened::open(session, Source::Found, Lights::Given)?;
+    fn freed_of_lens(&mut self, session: &Path, lights: Lights) -> anyhow::Result<Capture> {
+        let Opened { capture, lens } = opened::open(session, Source::Found, lights)?;
         if let Some(found) = lens {
             let Distortion { k1, k2 } = found.distortion;
             let told = match found.errors {
@@ -138,7 +152,8 @@ impl Findings {
         Ok(capture)
     }
 
-    fn aligned(&mut self, alignment: &Alignment) {
+    fn aligned(&mut self, aligned: &Aligned) {
+        let alignment = &aligned.alignment;
         let report = &alignment.report;
         if let Some(found) = &report.focal_length {
             let told = match found.errors {
@@ -203,8 +218,9 @@ impl Findings {
             let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
                 format!("{distance_m:.2} m away")
             });
+            let against = against_listed(light, &aligned.listed);
             self.facts.push(format!(
-                "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees",
+                "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees{against}",
                 2.0 * light.angular_radius_rad.to_degrees(),
                 100.0 * light.share,
                 light.deviation.direction_rad.to_degrees()

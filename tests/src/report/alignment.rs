@@ -263,7 +263,7 @@ impl ProbeEntry {
 
 impl ErrorEntry {
     /// Against the listed light in the nearest direction; none without a list.
-    fn nearest(found: &SeenLight, listed: &[SeenLight]) -> Option<Self> {
+    pub(crate) fn nearest(found: &SeenLight, listed: &[SeenLight]) -> Option<Self> {
         let off_rad = |seen: &SeenLight| found.direction_in_world.angle_between(seen.direction_in_world);
         let nearest = listed.iter().enumerate();
         let (index, seen) = nearest.min_by(|(_, a), (_, b)| off_rad(a).total_cmp(&off_rad(b)))?;
@@ -282,11 +282,6 @@ impl ErrorEntry {
 
 impl DiscoveredEntry {
     fn new(light: &DiscoveredLight, listed: &[SeenLight]) -> Self {
-        let found = SeenLight {
-            direction_in_world: light.direction_in_world,
-            distance_m: light.distance_m,
-            angular_radius_rad: light.angular_radius_rad,
-        };
         Self {
             direction: light.direction_in_world.to_array(),
             distance_m: light.distance_m,
@@ -295,7 +290,7 @@ impl DiscoveredEntry {
             direction_deviation_deg: told(light.deviation.direction_rad.to_degrees()),
             nearness_deviation_per_m: told(light.deviation.nearness_per_m),
             angular_radius_deviation_deg: told(light.deviation.angular_radius_rad.to_degrees()),
-            against_listed: ErrorEntry::nearest(&found, listed),
+            against_listed: ErrorEntry::nearest(&SeenLight::found(light), listed),
         }
     }
 }

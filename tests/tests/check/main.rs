@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{fs, process};
 
-use app_core::scene::Camera;
+use app_core::scene::{Camera, Light};
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::{Alignments, Asked, Ratio, Source};
+use harness::alignment::{Alignments, Asked, Lights, Ratio, Source};
 use harness::check::{aligned_session, check};
 use harness::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use harness::session_format::example;
@@ -55,7 +55,7 @@ fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
 
 fn wrong(session: &Path) -> Vec<String> {
     let out = Temporary::new("drawing");
-    check(session, &out.0, (Ratio::Given, Source::Given))
+    check(session, &out.0, (Asked::default(), Source::Given))
         .unwrap()
         .wrong
 }
@@ -79,7 +79,12 @@ fn off(index: &mut Value) {
 #[test]
 fn a_good_session_has_nothing_wrong_and_is_drawn() {
     let out = Temporary::new("good");
-    let findings = check(Path::new(BUNDLED_SESSION), &out.0, (Ratio::Given, Source::Given)).unwrap();
+    let findings = check(
+        Path::new(BUNDLED_SESSION),
+        &out.0,
+        (Asked::default(), Source::Given),
+    )
+    .unwrap();
     assert_eq!(findings.wrong, Vec::<String>::new());
     let drawing = image::open(findings.drawing.unwrap()).unwrap().into_rgba8();
     let greens = drawing
@@ -219,6 +224,39 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
         assert!((ratio(&written[place]) - 1.0).abs() < 1e-3, "{written:?}");
     }
     assert!(wrong(&out).is_empty());
+}
+
+#[test]
+fn an_aligned_session_has_the_lights_that_were_found() {
+    // A sun in the list, where the shadow is a bulb's.
+    let session = changed("sun", |index| {
+        index["lights"] = json!([{ "kind": "directional", "direction_to_light": [0.0, 1.0, 0.0], "angular_radius_deg": 1.0 }]);
+    });
+    let parent = Temporary::new("lights-found");
+    let out = parent.0.join("session");
+    let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
+    let asked = Asked {
+        lights: Lights::Found,
+        ..Asked::default()
+    };
+    let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
+    aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap();
+    assert_eq!(wrong(&out), Vec::<String>::new());
+    let bulb = Capture::open(Folder::open(Path::new(BUNDLED_SESSION)).unwrap()).unwrap();
+    let found = Capture::open(Folder::open(&out).unwrap()).unwrap();
+    let place = |capture: &Capture| match *capture.scene().lights {
+        [
+            Light::Sphere {
+                position_in_world, ..
+            },
+        ] => position_in_world,
+        ref other => panic!("not one bulb: {other:?}"),
+    };
+    let off_rad = place(&bulb).angle_between(place(&found));
+    assert!(off_rad.to_degrees() < 0.5, "{} degrees", off_rad.to_degrees());
+    // None of the sun's own keys is left.
+    let index: Value = serde_json::from_slice(&fs::read(out.join(SESSION_FILE)).unwrap()).unwrap();
+    assert!(index["lights"][0].get("direction_to_light").is_none());
 }
 
 #[test]
