@@ -10,7 +10,7 @@ use app_core::preset::Preset;
 use app_core::scene::{Light, Probe};
 use app_core::session::{Capture, Session};
 use glam::{DMat4, DVec3};
-use harness::alignment::{Alignments, Asked, Lights, Ratio, SeenLight, Source};
+use harness::alignment::{Alignments, Asked, Lights, SeenLight, Source};
 use harness::check::check;
 use harness::files::Folder;
 use harness::photographer::world::{camera, toward};
@@ -185,7 +185,7 @@ fn check_tells_what_the_probe_shows() {
     shot.scene.lights.clear();
     let world = World::boxes().resized(SIZE_PX).lit_by(Vec::new());
     folder::write(&unlisted, &world, &shot).unwrap();
-    let findings = check(&unlisted, &unlisted, (Ratio::Given, Source::Given)).unwrap();
+    let findings = check(&unlisted, &unlisted, (Asked::default(), Source::Given)).unwrap();
     let told = findings
         .facts
         .iter()
@@ -193,7 +193,7 @@ fn check_tells_what_the_probe_shows() {
     assert_eq!(told.count(), 2, "{findings:?}");
     assert!(findings.wrong.is_empty(), "{findings:?}");
     // Where lights are listed it is not looked at.
-    let listed = check(session, session, (Ratio::Given, Source::Given)).unwrap();
+    let listed = check(session, session, (Asked::default(), Source::Given)).unwrap();
     assert!(
         !listed.facts.iter().any(|fact| fact.starts_with("probe")),
         "{listed:?}"
