@@ -41,6 +41,12 @@ fn is_one_surface(texel: vec2i) -> bool {
   return textureLoad(validity, texel, 0).g == 1.0;
 }
 
+// How far from a pixel others are looked for; not at all where it shows one surface, or is well clear of the toy.
+fn reach_from(texel: vec2i) -> i32 {
+  let marks = textureLoad(validity, texel, 0);
+  return select(REACH_PX, -1, marks.g == 1.0 || marks.b == 1.0);
+}
+
 // Weight of the pixel at an offset from one at `here`'s depth.
 fn weight_of(offset: vec2i, other: vec2i, here: f32) -> f32 {
   if !is_one_surface(other) { return 0.0; }
@@ -65,8 +71,9 @@ fn fs_clean(@builtin(position) at: vec4f) -> Appearance {
   var color = vec4f(0.0);
   var received = vec4f(0.0);
   var base = vec4f(0.0);
-  for (var y = -REACH_PX; y <= REACH_PX; y++) {
-    for (var x = -REACH_PX; x <= REACH_PX; x++) {
+  let reach_px = reach_from(texel);
+  for (var y = -reach_px; y <= reach_px; y++) {
+    for (var x = -reach_px; x <= reach_px; x++) {
       let other = clamped_to_box(texel + vec2i(x, y));
       let weight = weight_of(vec2i(x, y), other, here);
       if weight == 0.0 { continue; }
@@ -88,8 +95,9 @@ fn fs_recolor(@builtin(position) at: vec4f) -> @location(0) vec4f {
   if is_one_surface(texel) { return vec4f(frame_at(texel), 1.0); }
   let here = textureLoad(gbuffer_depth, texel, 0);
   var color = vec4f(0.0);
-  for (var y = -REACH_PX; y <= REACH_PX; y++) {
-    for (var x = -REACH_PX; x <= REACH_PX; x++) {
+  let reach_px = reach_from(texel);
+  for (var y = -reach_px; y <= reach_px; y++) {
+    for (var x = -reach_px; x <= reach_px; x++) {
       let other = clamped_to_box(texel + vec2i(x, y));
       let weight = weight_of(vec2i(x, y), other, here);
       if weight > 0.0 { color += weight * vec4f(frame_at(other), 1.0); }

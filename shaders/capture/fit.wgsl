@@ -34,6 +34,8 @@ const CLIPPED_SUM: u32 = 27u;
 // Sums are reduced in four parts to stay within 16 KiB of workgroup memory.
 const N_PART: u32 = 7u;
 const N_PARTIAL: u32 = 1792u; // WORKGROUP * N_PART
+const N_STRIDED: u32 = 16u;
+const N_ALL_STRIDED: u32 = 112u; // N_PART * N_STRIDED
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
 // As above for the toy, whose interreflections and curved faces are not modelled.
@@ -43,6 +45,9 @@ const TOY_CAUCHY_SCALE: f32 = 0.12;
 const ESTIMATED_INTENSITIES: f32 = 1e-3;
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
+var<workgroup> strided: array<f32, N_ALL_STRIDED>;
+// Of the invocation's pixels.
+var<private> sums: array<f32, N_SUMS>;
 
 struct Equation {
   columns: array<f32, N_COLUMNS>,
@@ -158,46 +163,76 @@ fn toy_equation(texel: vec2u, channel: u32) -> Equation {
   return eq;
 }
 
-@compute @workgroup_size(WORKGROUP)
-fn cs_accumulate(
-  @builtin(workgroup_id) group: vec3u,
-  @builtin(local_invocation_index) lane: u32,
-) {
-  let size = vec2u(globals.region_size_px) / step.stride_px;
-  let channel = group.z;
-  var sums: array<f32, N_SUMS>;
-  for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
-    let texel = vec2u(index % size.x, index / size.x) * step.stride_px;
-    var eq: Equation;
-    switch step.subject {
-      case SUBJECT_RECEIVER: { eq = receiver_equation(observe(texel), channel); }
-      case SUBJECT_INTENSITIES: { eq = intensity_equation(observe(texel), channel); }
-      default: { eq = toy_equation(texel, channel); }
+// Adds a pixel's equation to the invocation's sums.
+fn add(eq: Equation) {
+  if eq.weight == 0.0 { return; }
+  var k = 0u;
+  for (var i = 0u; i < N_COLUMNS; i++) {
+    for (var j = i; j < N_COLUMNS; j++) {
+      sums[k] += eq.weight * eq.columns[i] * eq.columns[j];
+      k++;
     }
-    if eq.weight == 0.0 { continue; }
-    var k = 0u;
-    for (var i = 0u; i < N_COLUMNS; i++) {
-      for (var j = i; j < N_COLUMNS; j++) {
-        sums[k] += eq.weight * eq.columns[i] * eq.columns[j];
-        k++;
-      }
-      sums[21u + i] += eq.weight * eq.columns[i] * eq.value;
-    }
-    sums[CLIPPED_SUM] += eq.clipped * eq.weight * eq.columns[0] * eq.columns[0];
+    sums[21u + i] += eq.weight * eq.columns[i] * eq.value;
   }
-  let row = (group.x * 3u + channel) * N_SUMS;
+  sums[CLIPPED_SUM] += eq.clipped * eq.weight * eq.columns[0] * eq.columns[0];
+}
+
+// Sums of a workgroup into its row: strided ones, then all of those. Barriers cost more than additions.
+fn reduce(group: vec3u, lane: u32) {
+  let row = (group.x * 3u + group.z) * N_SUMS;
+  let first = lane / N_STRIDED * WORKGROUP + lane % N_STRIDED;
   for (var part = 0u; part < N_SUMS; part += N_PART) {
     for (var k = 0u; k < N_PART; k++) { partial[k * WORKGROUP + lane] = sums[part + k]; }
     workgroupBarrier();
-    for (var half = WORKGROUP / 2u; half > 0u; half /= 2u) {
-      if lane < half {
-        for (var k = 0u; k < N_PART; k++) {
-          partial[k * WORKGROUP + lane] += partial[k * WORKGROUP + lane + half];
-        }
-      }
-      workgroupBarrier();
+    if lane < N_PART * N_STRIDED {
+      var sum = 0.0;
+      for (var j = 0u; j < WORKGROUP; j += N_STRIDED) { sum += partial[first + j]; }
+      strided[lane] = sum;
     }
-    if lane < N_PART { rows[row + part + lane] = partial[lane * WORKGROUP]; }
     workgroupBarrier();
+    if lane < N_PART {
+      var sum = 0.0;
+      for (var j = 0u; j < N_STRIDED; j++) { sum += strided[lane * N_STRIDED + j]; }
+      rows[row + part + lane] = sum;
+    }
   }
+}
+
+fn sampled_size() -> vec2u {
+  return vec2u(globals.region_size_px) / step.stride_px;
+}
+
+fn n_sampled() -> u32 {
+  let size = sampled_size();
+  return size.x * size.y;
+}
+
+fn sampled_texel(index: u32) -> vec2u {
+  let width = sampled_size().x;
+  return vec2u(index % width, index / width) * step.stride_px;
+}
+
+// An entry point for each subject, since some processors take all branches of a shader.
+@compute @workgroup_size(WORKGROUP)
+fn cs_receiver(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
+    add(receiver_equation(observe(sampled_texel(index)), group.z));
+  }
+  reduce(group, lane);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cs_toy(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
+    add(toy_equation(sampled_texel(index), group.z));
+  }
+  reduce(group, lane);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cs_intensities(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
+    add(intensity_equation(observe(sampled_texel(index)), group.z));
+  }
+  reduce(group, lane);
 }

@@ -9,8 +9,6 @@
 // colour, opaque. CPU reference: reference/composite.rs.
 
 struct Drawing {
-  // Number of draws of the toy, 1 or 4.
-  n_toy_draws: u32,
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
   has_detail: u32,
 }
@@ -101,31 +99,38 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
 
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
-// the camera pixel where toy and receiver mix: 1 where the change is little.
-fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
+// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks.
+fn receiver(position: vec4f, evident: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let image_texel = texel + vec2u(globals.region_origin_px);
   let f = textureLoad(frame, image_texel, 0).rgb;
-  let point = receiver_point(at);
-  let b = textureLoad(plate, texel, 0);
-  let lit = fit.gain.rgb * b.rgb;
-  let evident = marks_at(vec2i(texel));
+  let uv = at / globals.region_size_px;
+  let v_before = textureLoad(physical_visibility, texel, 0);
+  let v_after = textureLoad(visibility, texel, 0);
+  let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
+  let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
+  // Where no light changes, what follows comes to the frame: most pixels are done here.
+  let is_same = all(v_before == v_after) && a_before == a_after;
+  if is_same && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
+    *change = vec4f(0.0);
+    return f;
+  }
   // No plate and no estimate: the frame stays.
+  let b = textureLoad(plate, texel, 0);
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
+  let lit = fit.gain.rgb * b.rgb;
+  let point = receiver_point(at);
   // Beyond the receivers nothing changes but that the real toy goes.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
     return mix(lit, f, evident.r);
   }
-  let uv = at / globals.region_size_px;
   let light = receiver_light(point);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
-  let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
-  let before = shown_model(b.rgb, clipped, model_in(light, a_before, textureLoad(physical_visibility, texel, 0)));
-  let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
-  let after = shown_model(b.rgb, clipped, model_in(light, a_after, textureLoad(visibility, texel, 0)));
+  let before = shown_model(b.rgb, clipped, model_in(light, a_before, v_before));
+  let after = shown_model(b.rgb, clipped, model_in(light, a_after, v_after));
   let most = largest(abs(after - before));
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
@@ -149,9 +154,9 @@ fn receiver(position: vec4f, change: ptr<function, vec4f>) -> vec3f {
   return max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
 }
 
-fn drawn_toy(texel: vec2i) -> vec4f {
+fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
   let first = textureLoad(toy_0, texel, 0);
-  if drawing.n_toy_draws == 1u { return first; }
+  if n_draws == 1u { return first; }
   return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
 }
 
@@ -161,13 +166,13 @@ fn coverage(texel: vec2i) -> f32 {
 }
 
 // The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
-fn toy_color(texel: vec2i) -> vec4f {
-  let own = drawn_toy(texel);
+fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
+  let own = drawn_toy(texel, n_draws);
   if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
   var sum = vec4f(0.0);
   for (var y = -1; y <= 1; y++) {
     for (var x = -1; x <= 1; x++) {
-      sum += drawn_toy(clamped_to_box(texel + vec2i(x, y)));
+      sum += drawn_toy(clamped_to_box(texel + vec2i(x, y)), n_draws);
     }
   }
   if sum.a == 0.0 { return vec4f(0.0); }
@@ -175,16 +180,14 @@ fn toy_color(texel: vec2i) -> vec4f {
 }
 
 // The toy over what is behind it: premultiplied colour, and its coverage.
-fn toy_layer(texel: vec2i) -> vec4f {
-  if !is_in_toy_box(texel) { return vec4f(0.0); }
+fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
   let part = coverage(texel);
   if part == 0.0 { return vec4f(0.0); }
-  return part * toy_color(texel);
+  return part * toy_color(texel, n_draws);
 }
 
 // 1 where everything in and around a texel of the toy box is as the camera saw it.
 fn stillness(texel: vec2i) -> f32 {
-  if !is_in_toy_box(texel) { return 1.0; }
   var most = 0.0;
   for (var y = -1; y <= 1; y++) {
     for (var x = -1; x <= 1; x++) {
@@ -195,20 +198,38 @@ fn stillness(texel: vec2i) -> f32 {
   return 1.0 - most;
 }
 
-@fragment
-fn fs_compose(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
   let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
   let in_box = box_texel(vec2i(texel));
-  let toy = toy_layer(in_box);
+  let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {
     return vec4f(mix(toy.rgb, frame_color, stillness(in_box)), 1.0);
   }
   var change = vec4f(0.0);
-  let laid = (1.0 - toy.a) * receiver(position, &change) + toy.rgb;
+  let laid = (1.0 - toy.a) * receiver(position, marks_at(vec2i(texel)), &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
   if change.a == 0.0 { return vec4f(laid, 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let still = stillness(in_box);
   return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
+}
+
+// Beside the toy box.
+@fragment
+fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  var change = vec4f(0.0);
+  return vec4f(receiver(position, FAR_MARKS, &change), 1.0);
+}
+
+// Within the toy box, where the toy was drawn once, or four times. An entry point for each, since some processors take all
+// branches of a shader.
+@fragment
+fn fs_drawn_once(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  return composed(position, 1u);
+}
+
+@fragment
+fn fs_drawn_four_times(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  return composed(position, 4u);
 }

@@ -153,9 +153,17 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
     weights[k] = candidates[k].w * pow(candidates[k].z / best_quality, CHOICE_POWER);
     best = max(best, weights[k]);
   }
-  var sum = vec4f(0.0);
+  // Listed first: mostly one or two, and all that neighbours do not look at costs nothing.
+  var looked_at: array<u32, MAX_PLATES>;
+  var n_looked_at = 0u;
   for (var k = 0u; k < views.n_plates; k++) {
     if weights[k] == 0.0 || weights[k] < LEAST_WEIGHT * best { continue; }
+    looked_at[n_looked_at] = k;
+    n_looked_at++;
+  }
+  var sum = vec4f(0.0);
+  for (var i = 0u; i < n_looked_at; i++) {
+    let k = looked_at[i];
     sum += weights[k] * vec4f(sharp_color(k, candidates[k].xy), 1.0);
   }
   return vec4f(sum.rgb / sum.a, 1.0);

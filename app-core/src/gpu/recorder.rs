@@ -389,8 +389,13 @@ impl Render<'_> {
     }
 
     /// Draws no farther than a part of the attachments; before anything is set.
-    fn within(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
-        self.tally.narrow(n_pixels(size_px));
+    fn within(&mut self, part: (UVec2, UVec2)) {
+        self.tally.narrow(n_pixels(part.1));
+        self.clip(part);
+    }
+
+    /// Draws next in a part of the attachments; others are drawn in the rest of them.
+    pub(crate) fn clip(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
         if let Some(raw) = &mut self.raw {
             raw.set_scissor_rect(origin_px.x, origin_px.y, size_px.x, size_px.y);
         }

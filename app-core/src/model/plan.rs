@@ -23,7 +23,7 @@ const N_REFINE_STEPS: u32 = 1;
 /// outlier.
 const N_INTENSITY_STEPS: u32 = 2;
 /// Workgroups of one sum, enough to fill a phone's cores.
-pub(crate) const MAX_FIT_ROWS: u32 = 64;
+pub(crate) const MAX_FIT_ROWS: u32 = 32;
 /// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
 /// where the real shadow is some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;

@@ -166,9 +166,14 @@ impl Objects {
         if is_drawn {
             (n_pixels, read) = self.attachments(text, given);
         }
-        if let Some(scissor) = text.iter().position(|line| line.contains("SetScissor(")) {
-            let side = |key| number(block(text, scissor), key).unwrap();
-            n_pixels = n_pixels.min(side("w:") * side("h:"));
+        // Where a pass draws in parts, no two of them have a pixel in common.
+        let scissors = (0..text.len()).filter(|index| text[*index].contains("SetScissor("));
+        let parts = scissors.map(|index| {
+            let side = |key| number(block(text, index), key).unwrap();
+            side("w:") * side("h:")
+        });
+        if let Some(n_drawn) = parts.reduce(|sum, part| sum + part) {
+            n_pixels = n_pixels.min(n_drawn);
         }
         let mut seen = BTreeSet::new();
         for (index, line) in text.iter().enumerate() {

@@ -109,7 +109,8 @@ impl Task {
 }
 
 pub(crate) struct Pass {
-    compute: Compute,
+    /// In the order of [`Subject`].
+    of_subjects: [Compute; 3],
 }
 
 pub(crate) struct Inputs<'a> {
@@ -139,12 +140,15 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self {
-            compute: gpu.compute(&ComputeSpec {
+        let of_subject = |entry_point| {
+            gpu.compute(&ComputeSpec {
                 shader: &SHADER,
-                entry_point: "cs_accumulate",
+                entry_point,
                 groups: [SCENE_SLOTS, SLOTS, &[], &[]],
-            }),
+            })
+        };
+        Self {
+            of_subjects: ["cs_receiver", "cs_toy", "cs_intensities"].map(of_subject),
         }
     }
 
@@ -170,14 +174,15 @@ impl Pass {
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
         ];
+        let compute = &self.of_subjects[step.subject as usize];
         let groups = [
-            recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind_with(&self.compute, GROUP_PASS, step, &resources),
+            recorder.bind(compute, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind_with(compute, GROUP_PASS, step, &resources),
         ];
         #[allow(clippy::cast_possible_truncation, reason = "three")]
         let n_channels = N_CHANNELS as u32;
         let workgroups = [step.n_rows, 1, n_channels];
         let n_sampled = n_pixels(inputs.plate.size_px() / step.stride_px.max(1));
-        recorder.compute_over(&self.compute, &groups, workgroups, n_sampled);
+        recorder.compute_over(compute, &groups, workgroups, n_sampled);
     }
 }

@@ -1,10 +1,13 @@
 //! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
+use wgpu::StoreOp;
+
+use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, TextureView};
@@ -57,15 +60,18 @@ const SLOTS: &[Slot] = &[
 ];
 
 shared_struct! {
-    /// How the toy and the receivers were drawn.
+    /// How the receivers were drawn.
     pub(crate) struct Drawing {
-        pub n_toy_draws: u32,
         pub has_detail: u32,
     }
 }
 
 pub(crate) struct Pass {
-    draw: Draw,
+    /// Around the toy box.
+    beside: Draw,
+    /// In the toy box, where the toy was drawn once.
+    drawn_once: Draw,
+    drawn_four_times: Draw,
 }
 
 /// Visibility maps of one pose.
@@ -76,6 +82,8 @@ pub(crate) struct Light<'a> {
 }
 
 pub(crate) struct Inputs<'a> {
+    /// In the region.
+    pub(crate) toy_box: PixelRect,
     pub(crate) scene: Scene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) cells: &'a Buffer,
@@ -119,13 +127,11 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        let draw = |fragment| gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT]));
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(
-                &SHADER,
-                "fs_compose",
-                groups,
-                &[REGION_FORMAT],
-            )),
+            beside: draw("fs_beside"),
+            drawn_once: draw("fs_drawn_once"),
+            drawn_four_times: draw("fs_drawn_four_times"),
         }
     }
 
@@ -154,13 +160,25 @@ impl Pass {
             Resource::PerUse,
         ];
         let drawing = Drawing {
-            n_toy_draws: inputs.toy.n_draws(),
             has_detail: u32::from(inputs.detail.is_some()),
         };
+        let over_toy = match inputs.toy.n_draws() {
+            1 => &self.drawn_once,
+            _ => &self.drawn_four_times,
+        };
         let groups = [
-            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind_with(&self.draw, GROUP_PASS, &drawing, &resources),
+            recorder.bind(over_toy, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind_with(over_toy, GROUP_PASS, &drawing, &resources),
         ];
-        recorder.fullscreen(&self.draw, &groups, &[&targets.picture.view]);
+        let target = &targets.picture.view;
+        let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
+        render.begin(&self.beside, &groups);
+        for part in inputs.toy_box.around(target.size_px()) {
+            render.clip((part.origin_px, part.size_px));
+            render.draw(0..3, 0..1);
+        }
+        render.begin(over_toy, &groups);
+        render.clip((inputs.toy_box.origin_px, inputs.toy_box.size_px));
+        render.draw(0..3, 0..1);
     }
 }

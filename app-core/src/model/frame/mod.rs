@@ -131,6 +131,7 @@ impl FramePath<'_> {
     fn composite_inputs(&self) -> composite::Inputs<'_> {
         let (captured, drawn) = (self.captured, self.drawn);
         composite::Inputs {
+            toy_box: self.region.plan.toy_box,
             scene: self.scene(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,
