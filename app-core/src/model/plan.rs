@@ -27,6 +27,8 @@ pub(crate) const MAX_FIT_ROWS: u32 = 32;
 /// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
 /// where the real shadow is some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
+/// Those that suffice for gain and intensities to begin with.
+const MAX_ROUGH_FIT_PIXELS: u32 = 1 << 14;
 /// The farthest that what casts a light's shadow is from the toy's shape, in pixels at the toy: a shadow is seen from farther away.
 const CASTER_PX: f64 = 1.0;
 /// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
@@ -101,8 +103,8 @@ pub struct Plan {
     pub n_intensity_steps: u32,
     /// Sampling stride of the fit, in region pixels, along each side.
     pub fit_stride_px: u32,
-    /// Workgroups of one sum of the fit.
-    pub n_fit_rows: u32,
+    /// That of a first step that weighs nothing, and is only begun with.
+    pub rough_fit_stride_px: u32,
     /// Work that the scene does not need.
     pub left_out: Vec<LeftOut>,
 }
@@ -113,8 +115,6 @@ impl Plan {
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
         let n_lights = facts.n_lights.min(MAX_LIGHTS);
-        let fit_stride_px = fit_stride_px(size_px);
-        let n_fit_pixels = (size_px / fit_stride_px).element_product();
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
@@ -133,8 +133,8 @@ impl Plan {
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,
-            fit_stride_px,
-            n_fit_rows: n_fit_pixels.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS),
+            fit_stride_px: stride_px(size_px, MAX_FIT_PIXELS),
+            rough_fit_stride_px: stride_px(size_px, MAX_ROUGH_FIT_PIXELS),
             n_lights,
             n_light_points: settings.n_light_points,
         }
@@ -159,6 +159,13 @@ impl Plan {
         } else {
             CODED_FORMAT
         }
+    }
+
+    /// Workgroups of one sum of a fit that takes pixels with a stride.
+    #[must_use]
+    pub fn n_fit_rows(&self, stride_px: u32) -> u32 {
+        let n_taken = (self.region.size_px / stride_px.max(1)).element_product();
+        n_taken.div_ceil(FIT_WORKGROUP).clamp(1, MAX_FIT_ROWS)
     }
 
     /// What drawing onto the toy box takes: its corner, and the size of the region that it is a part of.
@@ -208,11 +215,11 @@ fn self_shadow(n_lights: usize, settings: &ModelSettings) -> ShadowAtlas {
     ShadowAtlas::new(vec![n_points; n_lights], settings.self_shadow_tile_px)
 }
 
-/// The smallest stride that leaves no more than [`MAX_FIT_PIXELS`], and at least one pixel along each side.
-fn fit_stride_px(size_px: UVec2) -> u32 {
+/// The smallest stride that leaves no more than so many pixels, and at least one along each side.
+fn stride_px(size_px: UVec2, most: u32) -> u32 {
     let largest = size_px.min_element().max(1);
     (1..=largest)
-        .find(|stride| (size_px / *stride).element_product() <= MAX_FIT_PIXELS)
+        .find(|stride| (size_px / *stride).element_product() <= most)
         .unwrap_or(largest)
 }
 

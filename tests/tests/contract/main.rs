@@ -83,7 +83,7 @@ fn the_sums_of_the_fit_have_room() {
     assert_eq!(n_sums % part, 0, "whole parts");
     // One pixel more than a workgroup has invocations takes a second one.
     assert_eq!(
-        [plan(workgroup, 1), plan(workgroup + 1, 1)].map(|plan| plan.n_fit_rows),
+        [plan(workgroup, 1), plan(workgroup + 1, 1)].map(|plan| plan.n_fit_rows(plan.fit_stride_px)),
         [1, 2]
     );
 }

@@ -136,11 +136,17 @@ fn the_fit_takes_enough_pixels_and_not_many() {
         // The next smaller stride would be too many: at most one in four is lost by that, and as much by rounding.
         assert!(n_taken <= 1 << 16, "{size_px:?}: {n_taken}");
         assert!(n_taken >= n_pixels.min(1 << 16) / 8, "{size_px:?}: {n_taken}");
-        assert!((1..=32).contains(&plan.n_fit_rows));
+        let n_rows = plan.n_fit_rows(plan.fit_stride_px);
+        assert!((1..=32).contains(&n_rows));
         assert!(
-            u64::from(plan.n_fit_rows - 1) * 256 < n_taken,
+            u64::from(n_rows - 1) * 256 < n_taken,
             "{size_px:?}: a workgroup without work"
         );
+        // To begin with, a quarter of them, but not of a small region.
+        let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.rough_fit_stride_px));
+        let n_rough = width * height;
+        assert!(n_rough <= 1 << 14, "{size_px:?}: {n_rough}");
+        assert!(n_rough >= n_pixels.min(1 << 14) / 8, "{size_px:?}: {n_rough}");
         assert!(plan.n_fit_steps >= 2, "one to start from, one to reweight");
     }
 }

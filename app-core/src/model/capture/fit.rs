@@ -95,13 +95,18 @@ impl Task {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
         #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
         let n_columns = 2 + plan.n_lights as u32;
+        let stride_px = if is_first_of_picture {
+            plan.rough_fit_stride_px
+        } else {
+            plan.fit_stride_px
+        };
         FitStep {
             is_reweighted: u32::from(index > 0 || self.is_refinement),
-            n_rows: plan.n_fit_rows,
+            n_rows: plan.n_fit_rows(stride_px),
             n_columns,
             subject: self.subject as u32,
             receiver: self.receiver,
-            stride_px: plan.fit_stride_px,
+            stride_px,
             is_last: u32::from(index + 1 == self.n_steps),
             exposure_ratio: if is_first_of_picture { exposure_ratio } else { 1.0 },
         }
