@@ -11,6 +11,7 @@ use glam::{DMat4, Vec3};
 
 use crate::check::wrong_of_picture;
 use crate::glb::container;
+use crate::import::{self, Format};
 
 /// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
 pub const INDEX: &[u8] = include_bytes!("../fuzz/seeds/capture/good.json");
@@ -21,6 +22,16 @@ pub const PICTURE: &[u8] = include_bytes!("../fuzz/seeds/picture/good.png");
 
 /// A recording of a session of these files, finished.
 pub const RECORDING: &[u8] = include_bytes!("../fuzz/seeds/recording/good.mcap");
+
+/// Pictures beside the texts that are imported.
+const IMPORTED: [&str; 6] = [
+    "images/a.png",
+    "images/b.jpg",
+    "rgbd/0.jpg",
+    "rgbd/1.jpg",
+    "rgb/000000.jpg",
+    "rgb/000001.jpg",
+];
 
 /// Frames of a session that are looked at.
 const MAX_FRAMES: usize = 4;
@@ -60,6 +71,28 @@ pub fn capture(bytes: &[u8]) {
 pub fn picture(bytes: &[u8]) {
     let _ = wrong_of_picture(bytes);
     session(INDEX, TOY, bytes);
+}
+
+/// Reads what another program tells of its frames: a byte for the format, the first text, and after a zero the second.
+///
+/// # Panics
+/// Where what is accepted is not finite.
+pub fn import(bytes: &[u8]) {
+    let Some((format, texts)) = bytes.split_first() else {
+        return;
+    };
+    let Ok(texts) = std::str::from_utf8(texts) else {
+        return;
+    };
+    let (first, second) = texts.split_once('\0').unwrap_or((texts, ""));
+    let format = [Format::Nerfstudio, Format::Record3d, Format::StrayScanner][usize::from(*format) % 3];
+    let paths = IMPORTED.map(str::to_owned);
+    let imported = import::parse(format, [first, second], &paths);
+    for frame in imported.into_iter().flat_map(|imported| imported.frames) {
+        assert!(frame.recorded_from_camera.is_finite());
+        assert!(frame.intrinsics.iter().all(|number| number.is_finite()));
+        assert!(frame.time_s.is_none_or(f64::is_finite));
+    }
 }
 
 /// Opens a recording whose bytes these are, and the session in it; then once more without its checksums, which would
