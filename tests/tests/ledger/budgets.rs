@@ -175,14 +175,14 @@ fn frames_of_balanced_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
         (Pose, 869_000, 2.2),
-        (Picture, 869_000, 3.2),
-        (View, 1_408_000, 4.2),
+        (Picture, 869_000, 3.1),
+        (View, 1_408_000, 4.1),
     ];
     assert_held(1, Preset::Balanced, one, 41.0);
     let two = [
         (Pose, 1_345_000, 2.4),
-        (Picture, 1_345_000, 3.4),
-        (View, 2_360_000, 4.6),
+        (Picture, 1_345_000, 3.3),
+        (View, 2_360_000, 4.5),
     ];
     assert_held(2, Preset::Balanced, two, 46.0);
 }

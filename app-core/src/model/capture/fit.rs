@@ -35,6 +35,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &MARKS,
     &part!("capture/fit"),
 ]);
+/// Step, sums, and what is seen of receivers; then what is seen of the toy.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
     Slot::ReadWrite,
@@ -48,6 +49,8 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
 ];
+/// Entry point of each [`Subject`], and how many of the slots it looks at.
+const SUBJECTS: [(&str, usize); 3] = [("cs_receiver", 8), ("cs_toy", SLOTS.len()), ("cs_intensities", 8)];
 const SUBJECT_RECEIVER: u32 = Subject::Receiver as u32;
 const SUBJECT_TOY: u32 = Subject::Toy as u32;
 const SUBJECT_INTENSITIES: u32 = Subject::Intensities as u32;
@@ -145,15 +148,15 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let of_subject = |entry_point| {
+        let of_subject = |(entry_point, n_slots): (_, usize)| {
             gpu.compute(&ComputeSpec {
                 shader: &SHADER,
                 entry_point,
-                groups: [SCENE_SLOTS, SLOTS, &[], &[]],
+                groups: [SCENE_SLOTS, &SLOTS[..n_slots], &[], &[]],
             })
         };
         Self {
-            of_subjects: ["cs_receiver", "cs_toy", "cs_intensities"].map(of_subject),
+            of_subjects: SUBJECTS.map(of_subject),
         }
     }
 
@@ -179,10 +182,11 @@ impl Pass {
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
         ];
-        let compute = &self.of_subjects[step.subject as usize];
+        let subject = step.subject as usize;
+        let (compute, (_, n_slots)) = (&self.of_subjects[subject], SUBJECTS[subject]);
         let groups = [
             recorder.bind(compute, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind_with(compute, GROUP_PASS, step, &resources),
+            recorder.bind_with(compute, GROUP_PASS, step, &resources[..n_slots]),
         ];
         #[allow(clippy::cast_possible_truncation, reason = "three")]
         let n_channels = N_CHANNELS as u32;
