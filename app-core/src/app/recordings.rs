@@ -56,7 +56,7 @@ impl App {
             };
             input.check().ok()?;
             Some(LiveFrame {
-                image: input.image,
+                image: input.image.kept(),
                 camera: input.camera,
                 world_from_object: input.world_from_object,
                 exposure: input.exposure,

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::planes::PlanarImage;
+use super::planar_image::PlanarImage;
+use super::planes::half_size_px;
 use crate::scene::Image;
 
 /// A camera's picture. Two are the same one if they share their memory: what is known of it is not worked out again.
@@ -34,6 +35,15 @@ impl CameraImage {
         }
     }
 
+    /// The same with bytes of its own, for whoever keeps several: a platform has few to lend.
+    #[must_use]
+    pub fn kept(&self) -> Self {
+        match self {
+            Self::Planes(image) => image.kept().map_or_else(|| self.clone(), Self::from),
+            Self::Rgba(_) => self.clone(),
+        }
+    }
+
     /// Whether both are one picture.
     pub(crate) fn is(&self, other: &Self) -> bool {
         match (self, other) {
@@ -47,7 +57,10 @@ impl CameraImage {
     pub(crate) fn n_bytes(&self) -> usize {
         match self {
             Self::Rgba(image) => image.rgba8.len(),
-            Self::Planes(image) => image.luma().len() + image.chroma().len(),
+            Self::Planes(image) => {
+                let n_pixels = |[columns, rows]: [u32; 2]| columns as usize * rows as usize;
+                n_pixels(image.size_px()) + 2 * n_pixels(half_size_px(image.size_px()))
+            }
         }
     }
 

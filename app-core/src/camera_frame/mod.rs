@@ -6,6 +6,7 @@ mod encoding;
 mod fade;
 mod frame;
 mod image;
+mod planar_image;
 mod planes;
 
 pub use arrival::{Arrival, Arrivals, Stamp};
@@ -14,5 +15,6 @@ pub use encoding::{CodeRange, LumaCoefficients, YcbcrEncoding};
 pub use fade::Fade;
 pub use frame::{Anchor, CameraFrame, Exposure, FoundPlane, Tracking};
 pub use image::CameraImage;
+pub use planar_image::{LentPlanes, PlanarImage};
 pub(crate) use planes::half_size_px;
-pub use planes::{PlanarImage, Plane, PlaneError, Planes};
+pub use planes::{Plane, PlaneError, Planes};

@@ -1,12 +1,9 @@
 //! Planes of luma and chroma, as cameras of phones hand them over: strided, padded, interleaved either way.
 
-use std::sync::{Arc, OnceLock};
-
-use glam::Vec3;
 use thiserror::Error;
+use wgpu::TextureFormat;
 
 use super::encoding::YcbcrEncoding;
-use crate::scene::Image;
 
 /// One component's bytes in a camera's buffer.
 #[derive(Clone, Copy, Debug)]
@@ -68,12 +65,61 @@ pub enum PlaneError {
         /// Up to the last sample.
         n_bytes_needed: usize,
     },
+    /// A texture of another size or format than the component's.
+    #[error("camera planes, {plane}: a texture of {} x {} px, {format:?}; {} x {} px, {needed:?} is needed",
+        size_px[0], size_px[1], needed_px[0], needed_px[1])]
+    Texture {
+        /// Which component.
+        plane: &'static str,
+        /// Width and height.
+        size_px: [u32; 2],
+        /// As given.
+        format: TextureFormat,
+        /// Width and height that the component has.
+        needed_px: [u32; 2],
+        /// The format that it has.
+        needed: TextureFormat,
+    },
 }
 
 /// Most pixels along a side.
 const MAX_SIDE_PX: u32 = 8192;
 
+/// Whether a picture of that size can be.
+pub(super) fn check_size(size_px: [u32; 2]) -> Result<(), PlaneError> {
+    if size_px.iter().all(|side| (1..=MAX_SIDE_PX).contains(side)) {
+        Ok(())
+    } else {
+        Err(PlaneError::Size { size_px })
+    }
+}
+
+/// Size of the chroma of a picture.
+pub(crate) fn half_size_px(size_px: [u32; 2]) -> [u32; 2] {
+    size_px.map(|side| side.div_ceil(2))
+}
+
 impl<'a> Planes<'a> {
+    /// Luma, and Cb and Cr by turns, row by row without padding.
+    pub(super) fn packed(&self) -> Result<[Vec<u8>; 2], PlaneError> {
+        check_size(self.size_px)?;
+        let size = self.size_px.map(|side| side as usize);
+        let half = half_size_px(self.size_px).map(|side| side as usize);
+        self.luma.check("luma", size)?;
+        self.blue.check("Cb", half)?;
+        self.red.check("Cr", half)?;
+        let mut luma = Vec::with_capacity(size[0] * size[1]);
+        for row in 0..size[1] {
+            luma.extend(self.luma.row(row, size[0]));
+        }
+        let mut chroma = Vec::with_capacity(2 * half[0] * half[1]);
+        for row in 0..half[1] {
+            let [blue, red] = [&self.blue, &self.red].map(|plane| plane.row(row, half[0]));
+            chroma.extend(blue.zip(red).flat_map(|(blue, red)| [blue, red]));
+        }
+        Ok([luma, chroma])
+    }
+
     /// Luma, then Cb and Cr by turns: iPhones' planes, and those of many Android phones.
     #[must_use]
     pub fn nv12(
@@ -184,141 +230,4 @@ impl<'a> Plane<'a> {
         let from = self.bytes.get(row * self.row_stride..).unwrap_or_default();
         from.iter().step_by(self.pixel_stride).take(n_columns).copied()
     }
-}
-
-/// Planes without padding, the chroma as Cb and Cr by turns, as textures take them.
-pub struct PlanarImage {
-    size_px: [u32; 2],
-    encoding: YcbcrEncoding,
-    luma: Vec<u8>,
-    chroma: Vec<u8>,
-    /// Decoded, once somebody asks for it.
-    rgba: OnceLock<Arc<Image>>,
-}
-
-impl PlanarImage {
-    /// Copies `planes`, so that the camera's buffer may be given back.
-    ///
-    /// # Errors
-    /// When they do not hold a picture of their size.
-    pub fn new(planes: &Planes<'_>) -> Result<Self, PlaneError> {
-        let size_px = planes.size_px;
-        if size_px.iter().any(|side| !(1..=MAX_SIDE_PX).contains(side)) {
-            return Err(PlaneError::Size { size_px });
-        }
-        let size = size_px.map(|side| side as usize);
-        let half = half_size_px(size_px).map(|side| side as usize);
-        planes.luma.check("luma", size)?;
-        planes.blue.check("Cb", half)?;
-        planes.red.check("Cr", half)?;
-        let mut luma = Vec::with_capacity(size[0] * size[1]);
-        for row in 0..size[1] {
-            luma.extend(planes.luma.row(row, size[0]));
-        }
-        let mut chroma = Vec::with_capacity(2 * half[0] * half[1]);
-        for row in 0..half[1] {
-            let [blue, red] = [&planes.blue, &planes.red].map(|plane| plane.row(row, half[0]));
-            chroma.extend(blue.zip(red).flat_map(|(blue, red)| [blue, red]));
-        }
-        Ok(Self {
-            size_px,
-            encoding: planes.encoding,
-            luma,
-            chroma,
-            rgba: OnceLock::new(),
-        })
-    }
-
-    /// Width and height.
-    #[must_use]
-    pub fn size_px(&self) -> [u32; 2] {
-        self.size_px
-    }
-
-    /// What the codes mean.
-    #[must_use]
-    pub fn encoding(&self) -> YcbcrEncoding {
-        self.encoding
-    }
-
-    /// Luma, row by row.
-    #[must_use]
-    pub fn luma(&self) -> &[u8] {
-        &self.luma
-    }
-
-    /// Cb and Cr by turns, row by row, of half the size, rounded up.
-    #[must_use]
-    pub fn chroma(&self) -> &[u8] {
-        &self.chroma
-    }
-
-    /// As sRGB codes with alpha 255: decoded at the first call, for whoever reads pixels on the processor.
-    #[must_use]
-    pub fn rgba(&self) -> &Arc<Image> {
-        self.rgba.get_or_init(|| Arc::new(self.decode()))
-    }
-
-    fn decode(&self) -> Image {
-        let srgb_from_ycbcr = self.encoding.srgb_from_ycbcr();
-        let [width, height] = self.size_px;
-        let mut rgba8 = Vec::with_capacity(4 * self.luma.len());
-        let mut at = self.luma.iter();
-        for y in 0..height {
-            for x in 0..width {
-                let luma = f32::from(at.next().copied().unwrap_or_default());
-                let [blue, red] = self.chroma_at([x, y]);
-                let srgb = srgb_from_ycbcr.decode(Vec3::new(luma, blue, red) / 255.0);
-                rgba8.extend(srgb.to_array().map(code));
-                rgba8.push(255);
-            }
-        }
-        Image {
-            width_px: width,
-            height_px: height,
-            rgba8,
-        }
-    }
-
-    /// Chroma in codes at a pixel, bilinear between the four samples around it, and that of the edge beyond it.
-    fn chroma_at(&self, pixel: [u32; 2]) -> [f32; 2] {
-        let [columns, rows] = half_size_px(self.size_px);
-        let [across, down] = [(pixel[0], columns), (pixel[1], rows)].map(|(at, n)| neighbours(at, n));
-        let mut sum = [0.0; 2];
-        for (row, row_weight) in down {
-            for (column, weight) in across {
-                let first = 2 * (row as usize * columns as usize + column as usize);
-                for (sum, offset) in sum.iter_mut().zip(0..) {
-                    let sample = self.chroma.get(first + offset).copied().unwrap_or_default();
-                    *sum += row_weight * weight * f32::from(sample);
-                }
-            }
-        }
-        sum
-    }
-}
-
-/// The chroma sample that a luma sample is of, with three quarters, and that on its other side.
-fn neighbours(luma: u32, n: u32) -> [(u32, f32); 2] {
-    let own = luma / 2;
-    let other = if luma.is_multiple_of(2) {
-        own.saturating_sub(1)
-    } else {
-        (own + 1).min(n - 1)
-    };
-    [(own, 0.75), (other, 0.25)]
-}
-
-/// Size of the chroma of a picture.
-pub(crate) fn half_size_px(size_px: [u32; 2]) -> [u32; 2] {
-    size_px.map(|side| side.div_ceil(2))
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "from 0 to 255"
-)]
-fn code(srgb: f32) -> u8 {
-    (255.0 * srgb).round() as u8
 }

@@ -13,6 +13,7 @@ use crate::camera_frame::{CameraImage, Display};
 use crate::frame::input::FrameInput;
 use crate::frame::report::FrameReport;
 use crate::governor::Step;
+use crate::gpu::DeviceHandle;
 use crate::gpu::context::{AdapterChoice, Gpu, GpuError};
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::recorder::Recorder;
@@ -92,6 +93,12 @@ impl Core {
             timer: None,
             clock: None,
         }
+    }
+
+    /// The device, for a platform that lends its textures; none of a core that only counts.
+    #[must_use]
+    pub fn device(&self) -> Option<DeviceHandle> {
+        self.gpu.opened.as_ref().map(|opened| opened.device.handle())
     }
 
     /// Drops the surface; device, pipelines and what was learned stay.

@@ -192,7 +192,7 @@ impl<'a> From<&'a Sampler> for Resource<'a> {
 
 /// A resource as a cache key; it lives as long as the group that holds it.
 #[derive(Clone, PartialEq, Eq, Hash)]
-enum Held {
+pub(super) enum Held {
     Buffer(wgpu::Buffer),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
@@ -201,7 +201,7 @@ enum Held {
 
 impl Held {
     /// None of a resource that was only counted.
-    fn of(resource: &Resource<'_>) -> Option<Self> {
+    pub(super) fn of(resource: &Resource<'_>) -> Option<Self> {
         Some(match *resource {
             Resource::Buffer(buffer) => Self::Buffer(buffer.raw.clone()?),
             Resource::View(view) => Self::View(view.raw.clone()?),
@@ -262,18 +262,7 @@ impl BindingCache {
         if let Some(group) = groups.get(&key) {
             return Some(group.clone());
         }
-        let entries: Vec<_> = (0..)
-            .zip(layout.slots.iter().zip(&key.1))
-            .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {
-                binding,
-                resource: resource.binding(*slot, uniforms),
-            })
-            .collect();
-        let group = device.bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &layout.raw,
-            entries: &entries,
-        });
+        let group = make_group((device, uniforms), layout, &key.1);
         groups.insert(key, group.clone());
         Some(group)
     }
@@ -288,6 +277,26 @@ impl BindingCache {
     pub(crate) fn release_groups(&self) {
         locked(&self.groups).clear();
     }
+}
+
+/// A group of what is held, in the order of the layout's slots.
+pub(super) fn make_group(
+    (device, uniforms): (&Device, &Uniforms),
+    layout: &Layout,
+    held: &[Held],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(layout.slots.iter().zip(held))
+        .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {
+            binding,
+            resource: resource.binding(*slot, uniforms),
+        })
+        .collect();
+    device.bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout.raw,
+        entries: &entries,
+    })
 }
 
 /// What a mutex guards; a thread that panicked leaves a cache as sound as it was.

@@ -1,8 +1,11 @@
 //! The device, which counts the objects it creates: a frame that changes only pose, picture or view creates none.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use wgpu::util::DeviceExt;
+
+use super::handle::DeviceHandle;
 
 /// A kind of object of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +49,7 @@ impl Kind {
 #[derive(Debug)]
 pub(crate) struct Device {
     pub(crate) raw: wgpu::Device,
+    identity: Arc<()>,
     counts: [AtomicU64; Kind::ALL.len()],
 }
 
@@ -53,8 +57,14 @@ impl Device {
     pub(crate) fn new(raw: wgpu::Device) -> Self {
         Self {
             raw,
+            identity: Arc::default(),
             counts: Default::default(),
         }
+    }
+
+    /// The device for textures that are not the core's own.
+    pub(crate) fn handle(&self) -> DeviceHandle {
+        DeviceHandle::new(self.raw.clone(), Arc::clone(&self.identity))
     }
 
     /// Number of objects created so far, in the order of [`Kind::ALL`].

@@ -6,6 +6,7 @@ pub(crate) mod bindings;
 pub(crate) mod buffer;
 pub(crate) mod context;
 pub(crate) mod device;
+mod handle;
 pub(crate) mod meter;
 pub(crate) mod pass_run;
 pub(crate) mod pipeline;
@@ -24,4 +25,5 @@ pub(crate) mod uniforms;
 pub(crate) mod work;
 
 pub use context::{AdapterChoice, Gpu, GpuError};
+pub use handle::DeviceHandle;
 pub use quirks::fault_on_surfaces;

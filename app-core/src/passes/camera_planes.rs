@@ -3,7 +3,7 @@
 use glam::UVec2;
 use wgpu::TextureFormat;
 
-use crate::camera_frame::{PlanarImage, half_size_px};
+use crate::camera_frame::{PlanarImage, YcbcrEncoding, half_size_px};
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
@@ -31,7 +31,7 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// The planes on the device.
+/// Textures that planes are written to.
 pub(crate) struct Planes {
     luma: Texture,
     chroma: Texture,
@@ -50,6 +50,10 @@ impl Planes {
         self.luma.write(gpu, image.luma());
         self.chroma.write(gpu, image.chroma());
     }
+
+    pub(crate) fn views(&self) -> [&TextureView; 2] {
+        [&self.luma.view, &self.chroma.view]
+    }
 }
 
 impl Pass {
@@ -60,24 +64,22 @@ impl Pass {
         }
     }
 
+    /// Decodes views of luma and chroma, which may be the platform's: no cache keeps them.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (image, planes): (&PlanarImage, &Planes),
+        encoding: YcbcrEncoding,
+        [luma, chroma]: [&TextureView; 2],
         frame_codes: &TextureView,
     ) {
-        let map = image.encoding().srgb_from_ycbcr();
+        let map = encoding.srgb_from_ycbcr();
         let column = |index| map.matrix.col(index).extend(0.0).to_array();
         let encoding = Encoding {
             srgb_from_ycbcr: [column(0), column(1), column(2)],
             origin: map.origin.extend(0.0).to_array(),
         };
-        let resources = [
-            Resource::PerUse,
-            (&planes.luma.view).into(),
-            (&planes.chroma.view).into(),
-        ];
-        let own = recorder.bind_with(&self.draw, GROUP_PASS, &encoding, &resources);
+        let resources = [Resource::PerUse, luma.into(), chroma.into()];
+        let own = recorder.bind_once_with(&self.draw, GROUP_PASS, &encoding, &resources);
         recorder.fullscreen(&self.draw, &[own], &[frame_codes]);
     }
 }

@@ -17,7 +17,9 @@ pub(crate) struct CameraTexture {
     /// The picture that is there.
     image: Option<CameraImage>,
     /// Once a picture has come as planes.
-    decoder: Option<(camera_planes::Pass, Planes)>,
+    decoder: Option<camera_planes::Pass>,
+    /// Once planes have come as bytes.
+    planes: Option<Planes>,
 }
 
 impl CameraTexture {
@@ -28,6 +30,7 @@ impl CameraTexture {
             texture,
             image: None,
             decoder: None,
+            planes: None,
         }
     }
 
@@ -58,12 +61,20 @@ impl CameraTexture {
 
     fn decode(&mut self, recorder: &mut Recorder<'_>, image: &PlanarImage) {
         let gpu = recorder.gpu;
-        let (pass, planes) = self.decoder.get_or_insert_with(|| {
-            let planes = Planes::new(gpu, image.size_px());
-            (camera_planes::Pass::new(gpu), planes)
-        });
-        planes.write(gpu, image);
-        pass.encode(recorder, (image, planes), &self.codes);
+        let pass = self.decoder.get_or_insert_with(|| camera_planes::Pass::new(gpu));
+        let opened = gpu.opened.as_ref();
+        let lent = opened.and_then(|opened| image.textures_on(&opened.device.handle()));
+        let mut encode = |planes| pass.encode(recorder, image.encoding(), planes, &self.codes);
+        if let Some(textures) = lent {
+            let [luma, chroma] = textures.map(|texture| TextureView::of_other(gpu, texture));
+            encode([&luma, &chroma]);
+        } else {
+            let planes = self
+                .planes
+                .get_or_insert_with(|| Planes::new(gpu, image.size_px()));
+            planes.write(gpu, image);
+            encode(planes.views());
+        }
     }
 
     /// Takes what is there for unknown.

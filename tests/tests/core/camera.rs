@@ -14,7 +14,7 @@ use harness::reference::camera_planes::encoded;
 
 use crate::bundled::{core, first_input, picture_of, scene};
 
-const ENCODING: YcbcrEncoding = YcbcrEncoding {
+pub(crate) const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
     range: CodeRange::Full,
 };
@@ -29,7 +29,7 @@ fn code(value: f64) -> u8 {
 }
 
 /// `image` as a camera would hand it over: chroma is the mean over four pixels.
-fn planar(image: &Image, encoding: YcbcrEncoding) -> PlanarImage {
+pub(crate) fn planar(image: &Image, encoding: YcbcrEncoding) -> PlanarImage {
     let [width, height] = [image.width_px as usize, image.height_px as usize];
     let ycbcr = |x: usize, y: usize| {
         let at = 4 * (y.min(height - 1) * width + x.min(width - 1));
@@ -154,14 +154,14 @@ fn an_effect_beyond_its_range_is_refused() {
 }
 
 /// An app's own device, a core on it, and targets to draw on.
-struct App {
-    core: Core,
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+pub(crate) struct App {
+    pub(crate) core: Core,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
 }
 
 impl App {
-    fn open() -> Self {
+    pub(crate) fn open() -> Self {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
         let opened = pollster::block_on(adapter.unwrap().request_device(&wgpu::DeviceDescriptor {

@@ -6,6 +6,7 @@ mod bundled;
 mod camera;
 mod coplanar;
 mod file;
+mod lent;
 mod normals;
 mod quirks;
 mod refused;
