@@ -75,6 +75,7 @@ impl Shell {
             self.starts = Some(starts::begin(&own_folder()));
         }
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
+            self.lend();
             // Another app than the one that threads worked for, and that was told.
             self.jobs = Jobs::default();
             (self.permission, self.thermal) = (None, None);
@@ -117,6 +118,7 @@ impl Shell {
         }
         if std::mem::take(&mut self.wants_device) {
             self.stage.reopen(layer, screen.size_px)?;
+            self.lend();
         }
         let time_s = self.start.elapsed().as_secs_f64();
         let Some(live) = self.stage.live() else {
@@ -152,8 +154,15 @@ impl Shell {
     /// Drops the app with all it holds.
     pub(crate) fn clear(&mut self) {
         self.session.pause();
+        self.session.lend_to(None);
         self.stage.clear();
         let _ = self.inbox.take();
+    }
+
+    /// Has the camera's pictures lent to the app's device.
+    fn lend(&mut self) {
+        let device = self.stage.live().and_then(|live| live.core_mut().device());
+        self.session.lend_to(device);
     }
 
     /// Tells what has to be looked for, where it changed.

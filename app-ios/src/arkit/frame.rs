@@ -52,7 +52,7 @@ pub struct RawFrame<'a> {
     pub pixel_format: u32,
     /// Width and height of the luma.
     pub size_px: [usize; 2],
-    /// Luma, then both chroma components by turns.
+    /// Luma, then both chroma components by turns; none where the picture was lent.
     pub planes: Vec<RawPlane<'a>>,
     /// Columns of `ARCamera.intrinsics`.
     pub intrinsics: [[f32; 4]; 3],
@@ -99,11 +99,15 @@ pub enum FrameError {
     Time(f64),
 }
 
-/// The frame of the core that `raw` becomes, its picture copied.
+/// The frame of the core that `raw` becomes; its picture is copied where it was not lent.
 ///
 /// # Errors
 /// Where its picture or its camera make no sense.
-pub fn camera_frame(raw: &RawFrame<'_>, count: Count) -> Result<CameraFrame, FrameError> {
+pub fn camera_frame(
+    raw: &RawFrame<'_>,
+    lent: Option<PlanarImage>,
+    count: Count,
+) -> Result<CameraFrame, FrameError> {
     let pose = (raw.tracking[0] == NORMAL).then(|| convert::world_from_camera(raw.transform));
     let exposure = raw.exposure.map(|[duration_s, iso]| Exposure { duration_s, iso });
     let anchor = raw.anchor.as_ref().and_then(|(id, transform)| {
@@ -119,7 +123,9 @@ pub fn camera_frame(raw: &RawFrame<'_>, count: Count) -> Result<CameraFrame, Fra
             world_epoch: count.world_epoch,
         },
         intrinsics: intrinsics(raw.intrinsics)?,
-        image: image(raw)?.into(),
+        image: lent
+            .map_or_else(|| image(raw.pixel_format, raw.size_px, &raw.planes), Ok)?
+            .into(),
         exposure: exposure.filter(|exposure| exposure.amount().is_some()),
         tracking: tracking(raw.tracking),
         world_from_camera: pose.flatten(),
@@ -135,24 +141,41 @@ pub fn camera_frame(raw: &RawFrame<'_>, count: Count) -> Result<CameraFrame, Fra
     })
 }
 
-fn image(raw: &RawFrame<'_>) -> Result<PlanarImage, FrameError> {
-    let range = match raw.pixel_format {
+/// What the codes of a pixel buffer mean.
+///
+/// # Errors
+/// Where it is no picture of luma and chroma.
+pub fn encoding(pixel_format: u32) -> Result<YcbcrEncoding, FrameError> {
+    let range = match pixel_format {
         FULL_RANGE => CodeRange::Full,
         VIDEO_RANGE => CodeRange::Video,
         other => return Err(FrameError::Format(other)),
     };
-    let [luma, chroma] = raw.planes[..] else {
-        return Err(FrameError::Count(raw.planes.len()));
+    Ok(YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range,
+    })
+}
+
+/// A copy of a pixel buffer's planes.
+///
+/// # Errors
+/// Where they are no picture of luma and chroma.
+pub fn image(
+    pixel_format: u32,
+    size_px: [usize; 2],
+    planes: &[RawPlane<'_>],
+) -> Result<PlanarImage, FrameError> {
+    let encoding = encoding(pixel_format)?;
+    let [luma, chroma] = planes else {
+        return Err(FrameError::Count(planes.len()));
     };
     let planes = Planes::nv12(
         // A side that has no room is too long for the planes, too.
-        raw.size_px.map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
+        size_px.map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
         (luma.bytes, luma.row_stride),
         (chroma.bytes, chroma.row_stride),
-        YcbcrEncoding {
-            coefficients: LumaCoefficients::Bt601,
-            range,
-        },
+        encoding,
     );
     Ok(PlanarImage::new(&planes)?)
 }
@@ -261,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_frame_is_taken_whole() {
-        let frame = camera_frame(&raw(), COUNT).expect("a frame");
+        let frame = camera_frame(&raw(), None, COUNT).expect("a frame");
         assert_eq!(
             (frame.stamp.id, frame.stamp.time_ns, frame.stamp.world_epoch),
             (7, 12_500_000_000, 2)
@@ -309,7 +332,7 @@ mod tests {
             ([7, 0], Tracking::Starting),
         ];
         for (tracking, expected) in told {
-            let frame = camera_frame(&RawFrame { tracking, ..raw() }, COUNT).expect("a frame");
+            let frame = camera_frame(&RawFrame { tracking, ..raw() }, None, COUNT).expect("a frame");
             assert_eq!((frame.tracking, frame.world_from_camera), (expected, None));
         }
     }
@@ -321,7 +344,7 @@ mod tests {
             anchor: Some((3, [[0.0; 4]; 4])),
             ..raw()
         };
-        let frame = camera_frame(&wrong, COUNT).expect("a frame");
+        let frame = camera_frame(&wrong, None, COUNT).expect("a frame");
         assert_eq!((frame.exposure, frame.anchors.len()), (None, 0));
     }
 
@@ -384,7 +407,7 @@ mod tests {
             ),
         ];
         for (message, raw) in wrong {
-            let error = camera_frame(&raw, COUNT).expect_err(message).to_string();
+            let error = camera_frame(&raw, None, COUNT).expect_err(message).to_string();
             assert!(error.contains(message), "{error}");
         }
     }

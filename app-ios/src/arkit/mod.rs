@@ -8,3 +8,5 @@ pub mod read;
 pub(crate) mod session;
 #[cfg(target_arch = "aarch64")]
 pub mod shim;
+#[cfg(target_os = "ios")]
+mod textures;

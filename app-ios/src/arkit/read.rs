@@ -2,6 +2,7 @@
 
 use std::ffi::c_void;
 
+use app_core::camera_frame::PlanarImage;
 use objc2::rc::Retained;
 use objc2::runtime::Sel;
 use objc2::{Message, msg_send, sel};
@@ -14,8 +15,9 @@ use objc2_core_video::{
 };
 use objc2_foundation::{NSArray, NSNumber, ns_string};
 
-use super::frame::{RawFrame, RawPlane, RawSurface};
+use super::frame::{RawFrame, RawPlane, RawSurface, image};
 use super::shim;
+use super::textures::TextureCache;
 
 /// Corners of a plane beyond which its boundary is none: ARKit's have a few dozen.
 const MAX_CORNERS: usize = 4096;
@@ -57,13 +59,22 @@ impl Drop for Locked<'_> {
     }
 }
 
-/// Lets `take` see what `frame` holds; the pixels may be read until it returns. None where the pixels cannot be.
+/// A copy of a buffer's picture; none where it cannot be read.
+pub(super) fn copied(buffer: &CVPixelBuffer) -> Option<PlanarImage> {
+    let locked = Locked::new(buffer)?;
+    let size_px = [CVPixelBufferGetWidth(buffer), CVPixelBufferGetHeight(buffer)];
+    image(CVPixelBufferGetPixelFormatType(buffer), size_px, &locked.planes()).ok()
+}
+
+/// Lets `take` see what `frame` holds, and its picture where `textures` lend it; else the pixels may be read until it returns. None
+/// where the pixels cannot be.
 ///
 /// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier.
-pub fn with_raw<T>(
+pub(super) fn with_raw<T>(
     frame: &ARFrame,
     held: Option<(u64, [u8; 16])>,
-    take: impl FnOnce(&RawFrame<'_>) -> T,
+    textures: Option<&TextureCache>,
+    take: impl FnOnce(&RawFrame<'_>, Option<PlanarImage>) -> T,
 ) -> Option<T> {
     // SAFETY: properties of a frame that was delivered, which never change.
     let (camera, buffer, timestamp, light, anchors) = unsafe {
@@ -75,7 +86,12 @@ pub fn with_raw<T>(
             frame.anchors(),
         )
     };
-    let locked = Locked::new(&buffer)?;
+    let lent = textures.and_then(|textures| textures.lend(&buffer));
+    let locked = if lent.is_none() {
+        Some(Locked::new(&buffer)?)
+    } else {
+        None
+    };
     let anchor = held.and_then(|(id, identifier)| Some((id, anchor_of(&anchors, identifier)?)));
     let surfaces = anchors
         .iter()
@@ -93,7 +109,7 @@ pub fn with_raw<T>(
         timestamp,
         pixel_format: CVPixelBufferGetPixelFormatType(&buffer),
         size_px: [CVPixelBufferGetWidth(&buffer), CVPixelBufferGetHeight(&buffer)],
-        planes: locked.planes(),
+        planes: locked.as_ref().map(Locked::planes).unwrap_or_default(),
         intrinsics,
         transform,
         tracking,
@@ -103,7 +119,7 @@ pub fn with_raw<T>(
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
         anchor,
     };
-    Some(take(&raw))
+    Some(take(&raw, lent))
 }
 
 /// The ISO speed that the picture was taken at; none where its Exif data do not say.

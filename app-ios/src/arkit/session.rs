@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use app_core::app::{ArSession, ShellEvent};
+use app_core::gpu::DeviceHandle;
 use glam::DMat4;
 use objc2::rc::{Allocated, Retained, autoreleasepool};
 use objc2::runtime::{NSObject, ProtocolObject};
@@ -17,6 +18,7 @@ use objc2_ar_kit::{
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo};
 
 use super::frame::{Count, camera_frame};
+use super::textures::TextureCache;
 use super::{read, shim};
 use crate::convert;
 use crate::guard::{Callback, guarded};
@@ -35,6 +37,8 @@ struct Shared {
     /// Frames of before belong to the world before. On the clock of the frames.
     world_since_s: Cell<f64>,
     held: RefCell<Option<Held>>,
+    /// None until there is a device.
+    textures: RefCell<Option<TextureCache>>,
     is_interrupted: Cell<bool>,
     /// A frame was refused, and why was written.
     is_refusing: Cell<bool>,
@@ -55,7 +59,11 @@ impl Shared {
         // SAFETY: a property of an anchor, which never changes.
         let identifier = |held: &Held| (held.id, unsafe { held.anchor.identifier() }.as_bytes());
         let held = self.held.borrow().as_ref().map(identifier);
-        match read::with_raw(frame, held, |raw| camera_frame(raw, count)) {
+        let textures = self.textures.borrow();
+        let taken = read::with_raw(frame, held, textures.as_ref(), |raw, lent| {
+            camera_frame(raw, lent, count)
+        });
+        match taken {
             Some(Ok(frame)) => {
                 self.is_refusing.set(false);
                 self.inbox.tell(ShellEvent::Frame(Box::new(frame)));
@@ -149,6 +157,7 @@ impl Session {
             count: Cell::default(),
             world_since_s: Cell::new(0.0),
             held: RefCell::default(),
+            textures: RefCell::default(),
             is_interrupted: Cell::new(false),
             is_refusing: Cell::new(false),
         });
@@ -162,6 +171,11 @@ impl Session {
             _delegate: delegate,
             shared,
         }
+    }
+
+    /// Lends pictures to this device from now on, or copies them where there is none.
+    pub(crate) fn lend_to(&self, device: Option<DeviceHandle>) {
+        self.shared.textures.replace(device.and_then(TextureCache::new));
     }
 
     /// Whether this phone has world tracking.
