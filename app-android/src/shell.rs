@@ -181,6 +181,7 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::Announce(step) => eprintln!("app-android: {step:?}"),
                 // ARCore keeps exposure and frame rate to itself.
                 ShellCommand::LockExposure(_)
+                | ShellCommand::Underexpose(_)
                 | ShellCommand::FrameRate(_)
                 | ShellCommand::Video(false)
                 | ShellCommand::Record(None) => {}

@@ -82,6 +82,7 @@
 pub mod alignment;
 pub mod app;
 pub mod camera_frame;
+pub mod card;
 pub mod core;
 pub mod frame;
 pub mod governor;

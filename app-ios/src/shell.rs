@@ -244,6 +244,7 @@ impl Shell {
                     let reason = "this app has one toy so far".to_owned();
                     self.inbox.tell(ShellEvent::Toy(Err(reason)));
                 }
+                ShellCommand::Underexpose(is_on) => drop(is_on),
                 ShellCommand::Video(false) | ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
             }
         }

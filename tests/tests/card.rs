@@ -7,9 +7,10 @@
     reason = "dots of a page"
 )]
 
+use app_core::card::{Gray, PATTERN_M, REFERENCE_PX, reference};
 use app_core::internals::png_chunks;
 use glam::DVec2;
-use harness::card::{CROSSES_M, DOTS_PER_M, Gray, PATTERN_M, Paper, REFERENCE_PX, page, reference};
+use harness::card::{CROSSES_M, DOTS_PER_M, Paper, page, png};
 
 /// Where a place of a square picture is turned or mirrored to, in dots; the last of a side comes after it.
 type Turn = fn([usize; 2], usize) -> [usize; 2];
@@ -38,7 +39,7 @@ fn correlation(gray: &Gray, other: impl Fn([usize; 2]) -> [usize; 2]) -> f64 {
 fn a_page_states_its_size_and_the_crosses_are_where_a_ruler_finds_them() {
     for paper in Paper::ALL {
         let page = page(paper);
-        let png = page.png().unwrap();
+        let png = png(&page).unwrap();
         let (_, density) = png_chunks(&png).find(|(name, _)| name == b"pHYs").unwrap();
         let dots = u32::from_be_bytes(density[..4].try_into().unwrap());
         assert_eq!((dots, density[8]), (DOTS_PER_M, 1));

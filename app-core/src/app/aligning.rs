@@ -34,6 +34,12 @@ impl AlignJob {
         &self.input
     }
 
+    /// The scene that it is aligned with.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        self.aligner.scene()
+    }
+
     /// Takes what is known from elsewhere in place of aligning.
     #[must_use]
     pub fn known(self, alignment: Alignment) -> AlignedJob {

@@ -97,6 +97,8 @@ pub enum Wish {
     Twist(f64),
     /// The place stays without a picture of its own.
     SkipPlate,
+    /// The lens lies in its place on the card: it is to be photographed.
+    TakeLens,
     /// The ghost stands where the toy does.
     Placed,
     /// Back to the ghost.
@@ -191,6 +193,9 @@ pub enum ShellCommand {
     PauseTracking,
     /// Hold exposure, white balance and focus, or let go of them.
     LockExposure(bool),
+    /// Expose at a sixty-fourth of what is held, or as near to that as the camera can, and hold that; or hold again what was held
+    /// before. Where the camera cannot, nothing is to be done.
+    Underexpose(bool),
     /// Hold a place of the world as an anchor of that number, in place of the one before.
     HoldAnchor {
         /// Its number.

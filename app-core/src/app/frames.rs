@@ -8,6 +8,7 @@ use super::event::{ShellCommand, Thermal};
 use super::notice::Notice;
 use super::plate_taker::{PlateShot, PlateStep};
 use super::step::{Cause, Step};
+use super::table::as_told_now;
 use crate::camera_frame::{Arrival, CameraFrame};
 use crate::frame::FrameInput;
 use crate::scene::{Pose, Receiver, Scene, Surface, Uncertainty};
@@ -43,6 +44,7 @@ impl App {
             place.follow_anchor(&frame.anchors, elapsed_s);
         }
         match self.step {
+            Step::PlaceToy => self.offer_lens(&frame),
             Step::TakePlate => self.offer_plate(&frame, elapsed_s),
             Step::Align | Step::Play => self.align(camera.is_some(), commands),
             _ => {}
@@ -74,12 +76,12 @@ impl App {
     /// The table as the tracker has corrected it, as long as nothing was placed on it.
     fn follow_table(&mut self, frame: &CameraFrame) {
         let Some(table) = &mut self.table else { return };
-        let same = frame.planes.iter().find(|plane| plane.id == table.id);
+        let same = as_told_now(table, frame);
         if let Some(plane) = same.filter(|_| self.place.is_none() && self.plates.is_empty()) {
-            *table = plane.clone();
             if let Some(ghost) = &mut self.ghost {
-                ghost.follow(plane);
+                ghost.follow(&plane);
             }
+            *table = plane;
         }
     }
 
@@ -118,7 +120,7 @@ impl App {
             }],
             lights: Vec::new(),
             plates: self.plates.clone(),
-            probe: None,
+            probe: self.lens.probe(),
             uncertainty: Uncertainty::default(),
         };
         self.n_places += 1;

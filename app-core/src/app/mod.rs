@@ -9,6 +9,7 @@ mod event;
 mod frames;
 mod ghost;
 mod ghost_shape;
+mod lens;
 mod log;
 mod notice;
 mod panics;
@@ -22,6 +23,7 @@ mod show;
 mod start;
 mod starts;
 mod step;
+mod table;
 mod wishes;
 
 use std::sync::Arc;
@@ -33,12 +35,14 @@ use crate::toy::Toy;
 use aligning::Place;
 use ghost::Ghost;
 use ghost_shape::GhostShape;
+use lens::Lens;
 use platform::{Captures, Commanded, Platform};
 use recorder::Recorder;
 use start::Start;
 
 pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
+pub use lens::LensFailure;
 pub use log::Log;
 pub use notice::Notice;
 pub use panics::Panics;
@@ -84,6 +88,7 @@ pub struct App {
     plate_exposure: Option<f64>,
     ghost: Option<Ghost>,
     ghost_shape: GhostShape,
+    lens: Lens,
     place: Option<Place>,
     n_places: u64,
     playback: Playback,
@@ -122,6 +127,7 @@ impl App {
             plates: Vec::new(),
             plate_exposure: None,
             ghost: None,
+            lens: Lens::default(),
             place: None,
             n_places: 0,
             notices: Notices::default(),
@@ -155,7 +161,8 @@ impl App {
             ShellEvent::Drawn => self.drawn(&mut commands),
             ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
         }
-        let wanted = Commanded::wanted(self.step, &self.platform, self.captures);
+        let is_lens_wanted = self.lens.is_awaited();
+        let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, is_lens_wanted));
         self.captures = wanted.captures;
         let take = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);
@@ -194,6 +201,20 @@ impl App {
     #[must_use]
     pub fn verdict(&self) -> Option<&Verdict> {
         self.place.as_ref()?.verdict.as_ref()
+    }
+
+    /// Whether the card is in the latest picture.
+    #[must_use]
+    pub fn sees_card(&self) -> bool {
+        self.latest
+            .as_ref()
+            .is_some_and(|frame| frame.world_from_card.is_some())
+    }
+
+    /// Whether a dark picture of the lens is waited for.
+    #[must_use]
+    pub fn is_taking_lens(&self) -> bool {
+        self.lens.is_awaited()
     }
 
     /// Whether there is a photograph of the empty place.
@@ -252,6 +273,7 @@ impl App {
             return;
         }
         self.step = next;
+        self.lens.give_up();
         // What was said of the step before helps no longer.
         self.notices = Notices::default();
         match next {
@@ -276,6 +298,7 @@ impl App {
         self.plates.clear();
         self.plate_exposure = None;
         self.ghost = None;
+        self.lens = Lens::default();
         self.place = None;
         self.camera = None;
         self.plate_step = None;

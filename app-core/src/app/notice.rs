@@ -1,6 +1,7 @@
 //! What a person should hear of, for some seconds.
 
 use super::event::{Recorded, Saved};
+use super::lens::LensFailure;
 use super::starts::Simplified;
 
 /// How long it stands, in seconds.
@@ -16,6 +17,10 @@ pub enum Notice {
         /// Outline to picture.
         outline_px: Option<f64>,
     },
+    /// The lens was photographed, and shows so many lights.
+    LensTaken(usize),
+    /// It was not, and why.
+    LensFailed(LensFailure),
     /// A file is no toy, and why.
     ToyRefused(String),
     /// The tracker has lost the place.

@@ -96,6 +96,7 @@ pub(super) struct Commanded {
     tracking: bool,
     finds_planes: bool,
     locks_exposure: bool,
+    underexposes: bool,
     is_awake: bool,
     frames_per_s: u32,
     pub(super) captures: Captures,
@@ -103,13 +104,18 @@ pub(super) struct Commanded {
 
 impl Commanded {
     /// What is wanted in a step.
-    pub(super) fn wanted(step: Step, platform: &Platform, captures: Captures) -> Self {
+    pub(super) fn wanted(
+        step: Step,
+        platform: &Platform,
+        (captures, is_lens_wanted): (Captures, bool),
+    ) -> Self {
         let tracking = step != Step::Welcome && platform.can_track();
         Self {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && step >= Step::PlaceToy,
+            underexposes: tracking && step == Step::PlaceToy && is_lens_wanted,
             is_awake: platform.is_foreground && step != Step::Welcome,
             frames_per_s: if platform.thermal >= Thermal::Serious {
                 30
@@ -158,8 +164,15 @@ impl Commanded {
         }
         // A camera that is started again has its exposure free.
         let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
+        let was_dark = self.underexposes && self.tracking;
+        if was_dark && !wanted.underexposes && wanted.tracking {
+            commands.push(ShellCommand::Underexpose(false));
+        }
         if wanted.locks_exposure != is_locked && wanted.tracking {
             commands.push(ShellCommand::LockExposure(wanted.locks_exposure));
+        }
+        if wanted.underexposes && !was_dark {
+            commands.push(ShellCommand::Underexpose(true));
         }
         if wanted.is_awake != self.is_awake {
             commands.push(ShellCommand::KeepAwake(wanted.is_awake));

@@ -9,6 +9,7 @@ use super::ghost_shape::GhostShape;
 use super::notice::Notice;
 use super::playback::Playback;
 use super::step::{Cause, Step};
+use super::table::table_at;
 use crate::toy::Toy;
 
 impl App {
@@ -29,6 +30,7 @@ impl App {
                     ghost.turn(angle_rad);
                 }
             }
+            Wish::TakeLens => self.take_lens(),
             Wish::SkipPlate => self.go(Cause::PlateSkipped),
             Wish::Placed => self.placed(),
             Wish::Replace => self.go(Cause::Replace),
@@ -88,21 +90,11 @@ impl App {
     fn tap(&mut self, pixel: glam::DVec2) {
         match (self.step, &self.camera, &self.latest) {
             (Step::FindTable, Some(camera), Some(latest)) => {
-                let hits = latest.planes.iter().filter_map(|plane| {
-                    let place = super::ghost::seen_at(&plane.world_from_plane, camera, pixel)?;
-                    let is_on = place.abs().cmple(plane.half_extent_m).all();
-                    let eye = plane
-                        .world_from_plane
-                        .inverse()
-                        .transform_point3(camera.world_from_camera.w_axis.truncate());
-                    is_on.then_some((place.distance(glam::DVec2::new(eye.x, eye.z)), plane))
-                });
-                let nearest = hits.min_by(|(a, _), (b, _)| a.total_cmp(b));
-                let Some((_, plane)) = nearest else {
+                let Some(plane) = table_at(latest, camera, pixel) else {
                     return self.tell(Notice::NoTableThere);
                 };
-                self.table = Some(plane.clone());
-                self.ghost = Ghost::at(&self.toy, plane, (camera, pixel)).ok().flatten();
+                self.ghost = Ghost::at(&self.toy, &plane, (camera, pixel)).ok().flatten();
+                self.table = Some(plane);
                 self.go(Cause::TableChosen);
             }
             (Step::PlaceToy, Some(camera), _) => match (&mut self.ghost, &self.table) {
@@ -115,7 +107,7 @@ impl App {
     }
 
     fn placed(&mut self) {
-        if self.ghost.is_some() && self.camera.is_some() {
+        if self.ghost.is_some() && self.camera.is_some() && !self.lens.is_awaited() {
             self.go(Cause::ToyPlaced);
         }
     }

@@ -86,6 +86,8 @@ pub struct CameraFrame {
     pub planes: Arc<[FoundPlane]>,
     /// Anchors that are followed by now.
     pub anchors: Arc<[Anchor]>,
+    /// Where the printed card is, from [card space](crate::card), rigid; none where it is not seen in this picture, or not looked for.
+    pub world_from_card: Option<DMat4>,
     /// What the platform estimates of the light.
     pub light_estimate: Option<LightEstimate>,
     /// How the picture is to be shown.

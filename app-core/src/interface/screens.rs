@@ -51,9 +51,15 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
                 wishes.push(Wish::SkipPlate);
             }
         }
+        Step::PlaceToy if app.is_taking_lens() => {
+            ui.spinner();
+        }
         Step::PlaceToy => {
             if lead(ui, text::PLACED) {
                 wishes.push(Wish::Placed);
+            }
+            if app.sees_card() && other(ui, text::TAKE_LENS) {
+                wishes.push(Wish::TakeLens);
             }
             if other(ui, text::START_OVER) {
                 wishes.push(Wish::StartOver);

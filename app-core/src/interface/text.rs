@@ -1,7 +1,7 @@
 //! Every word of the interface, in one place.
 
 use crate::app::{
-    App, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Simplified, Step, Verdict,
+    App, LensFailure, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Simplified, Step, Verdict,
 };
 use crate::camera_frame::Tracking;
 use crate::core::CoreError;
@@ -15,11 +15,18 @@ pub(super) fn of_step(app: &App) -> (&'static str, String) {
             "Bring your toy to life",
             "Put a toy on a table and look at it through the camera: it moves, and its own real shadow with it. The picture never leaves this device.",
         ),
+        Step::FindTable if app.sees_card() => (
+            "The card is seen",
+            "Take the toy off the table, then tap the place where it will stand.",
+        ),
         Step::FindTable => (
             "Show the table",
             "Take the toy off the table. Move the phone slowly, then tap the place where the toy will stand.",
         ),
         Step::TakePlate => ("Keep still", "The empty place is being photographed."),
+        Step::PlaceToy if app.is_taking_lens() => {
+            ("Keep still", "The lens on the card is being photographed.")
+        }
         Step::PlaceToy => (
             "Put the toy there",
             "Put the toy on the table. Drag the yellow outline onto it, and turn it with two fingers.",
@@ -78,6 +85,9 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::ToyMissed { outline_px: None } => {
             "The toy was not seen there. Put the outline over it.".to_owned()
         }
+        Notice::LensTaken(1) => "The lens shows one light.".to_owned(),
+        Notice::LensTaken(n_lights) => format!("The lens shows {n_lights} lights."),
+        Notice::LensFailed(failure) => of_lens_failure(*failure).to_owned(),
         Notice::ToyRefused(reason) => format!("This file is no toy for this app: {reason}"),
         Notice::WorldLost => "The phone has lost the place. Show the table again.".to_owned(),
         Notice::DeviceRestarted => "Graphics were set up again.".to_owned(),
@@ -94,6 +104,16 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::NoRoomToRecord => "Nothing is recorded: there is too little room left.".to_owned(),
         Notice::Simplified(simplified) => of_simplified(simplified),
         Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
+    }
+}
+
+fn of_lens_failure(failure: LensFailure) -> &'static str {
+    match failure {
+        LensFailure::NotDark => {
+            "This camera cannot be darkened for the lens. Lights are found by the shadow."
+        }
+        LensFailure::NoLight => "No light is seen on the lens. Lights are found by the shadow.",
+        LensFailure::NotSeen => "The lens is not in the picture. Show the whole card.",
     }
 }
 
@@ -173,6 +193,7 @@ pub(super) const BEGIN: &str = "Begin";
 pub(super) const OPEN_SETTINGS: &str = "Open settings";
 pub(super) const SKIP_PLATE: &str = "The toy cannot be moved";
 pub(super) const PLACED: &str = "It fits";
+pub(super) const TAKE_LENS: &str = "Light from the lens";
 pub(super) const BACK: &str = "Back";
 pub(super) const START_OVER: &str = "Start over";
 pub(super) const PLAY: &str = "Play";

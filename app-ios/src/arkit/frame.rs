@@ -131,6 +131,7 @@ pub fn camera_frame(
         world_from_camera: pose.flatten(),
         planes: raw.surfaces.iter().filter_map(found_plane).collect(),
         anchors: anchor.into_iter().collect(),
+        world_from_card: None,
         light_estimate: raw.light.map(|[lumen, kelvin]| LightEstimate {
             ambient_intensity: Some(lumen).filter(|lumen| lumen.is_finite()),
             color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use app_core::card::{PATTERN_M, reference};
 use clap::Parser;
-use harness::card::{CROSSES_M, PATTERN_M, Paper, page, reference};
+use harness::card::{CROSSES_M, Paper, page, png};
 use harness::output::{make_folder, write_whole};
 use harness::program::exit_code;
 
@@ -32,11 +33,11 @@ fn run(args: Args) -> Result<()> {
     make_folder(&out)?;
     for paper in Paper::ALL {
         let path = out.join(format!("card_{}.png", paper.name()));
-        write_whole(&path, &page(paper).png()?)?;
+        write_whole(&path, &png(&page(paper))?)?;
         println!("{}", path.display());
     }
     let path = out.join("card_reference.png");
-    write_whole(&path, &reference().png()?)?;
+    write_whole(&path, &png(&reference())?)?;
     println!("{}: {:.0} mm wide when printed", path.display(), 1e3 * PATTERN_M);
     let [across, down] = (1e3 * CROSSES_M).to_array();
     println!("Print at 100 %: the crosses are {across:.0} mm apart across and {down:.0} mm down.");

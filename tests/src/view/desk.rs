@@ -178,6 +178,7 @@ impl Desk {
                         }
                     }
                 }
+                ShellCommand::Underexpose(is_on) => self.feed.is_dark = is_on,
                 ShellCommand::Remember(text) => kept::store_starts(&self.out, &text),
                 ShellCommand::ReopenDevice => self.wants_device = true,
                 ShellCommand::Record(Some(take)) => {

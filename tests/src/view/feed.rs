@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use app_core::camera_frame::{Anchor, CameraFrame, Display, Exposure, FoundPlane, Stamp, Tracking};
-use app_core::scene::{Camera, Scene};
+use app_core::camera_frame::{
+    Anchor, CameraFrame, CameraImage, Display, Exposure, FoundPlane, Stamp, Tracking,
+};
+use app_core::card::card_from_lens;
+use app_core::scene::{Camera, ProbeShape, Scene};
 use app_core::session::{Capture, Files, Session, SessionError, SessionFrame};
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
@@ -39,6 +42,8 @@ pub struct Feed {
     pub is_toy_there: bool,
     /// Whether the platform has found no plane yet.
     pub hides_planes: bool,
+    /// Whether the camera is darkened: it then sees what a session has of a probe.
+    pub is_dark: bool,
     /// How well the camera is followed; other than `Normal` it has no pose.
     pub tracking: Tracking,
     /// How the picture is shown.
@@ -65,6 +70,7 @@ impl Feed {
             scene,
             is_toy_there: false,
             hides_planes: false,
+            is_dark: false,
             tracking: Tracking::Normal,
             display: Display::default(),
             world_epoch: 0,
@@ -109,7 +115,14 @@ impl Feed {
         let (image, camera) = plate.map_or((&frame.image, &frame.camera), |plate| {
             (&plate.image, &plate.camera)
         });
-        let taken = self.frame(Arc::clone(image).into(), camera, frame);
+        let probe = self.scene.probe.as_ref().filter(|_| self.is_dark);
+        let taken = match probe.and_then(|probe| probe.pictures.first()) {
+            Some(dark) => {
+                let exposure = frame.exposure * dark.exposure_ratio;
+                self.frame((Arc::clone(&dark.image).into(), exposure), &dark.camera, frame)
+            }
+            None => self.frame((Arc::clone(image).into(), frame.exposure), camera, frame),
+        };
         if self.is_toy_there {
             self.next = (self.next + 1) % self.frames.len();
         }
@@ -118,7 +131,7 @@ impl Feed {
 
     fn frame(
         &self,
-        image: app_core::camera_frame::CameraImage,
+        (image, exposure): (CameraImage, f64),
         camera: &Camera,
         of: &SessionFrame,
     ) -> CameraFrame {
@@ -132,7 +145,7 @@ impl Feed {
             image,
             intrinsics: camera.intrinsics,
             exposure: Some(Exposure {
-                duration_s: 0.01 * of.exposure,
+                duration_s: 0.01 * exposure,
                 iso: 100.0,
             }),
             tracking: self.tracking,
@@ -143,9 +156,18 @@ impl Feed {
                 Arc::clone(&self.planes)
             },
             anchors: Arc::from(Vec::<Anchor>::new()),
+            world_from_card: self.world_from_card().filter(|_| is_known && !self.is_dark),
             light_estimate: of.light_estimate,
             display: self.display,
         }
+    }
+
+    /// The card that the lens of a session would lie on.
+    fn world_from_card(&self) -> Option<DMat4> {
+        let probe = self.scene.probe.as_ref()?;
+        let is_lens = matches!(probe.shape, ProbeShape::FresnelLens { .. });
+        let first = probe.pictures.first().filter(|_| is_lens)?;
+        Some(first.world_from_probe * card_from_lens().inverse())
     }
 
     /// Where the toy really stands, and the camera that sees it first.

@@ -150,12 +150,23 @@ impl<'a> Tour<'a> {
         let at = self.toy_px(GHOST_OFF_M);
         self.tap(at)?;
         self.shoot("toy_placed")?;
+        if self.desk.live.app().sees_card() {
+            self.take_lens()?;
+        }
         self.press("It fits")?;
         self.frame()?;
         self.expect(Step::Align, "the ghost was placed")?;
         self.shoot("align")?;
         self.desk.work();
         self.wait_for(Step::Play, "the toy was found")
+    }
+
+    /// Of a session that has a picture of a lens.
+    fn take_lens(&mut self) -> Result<(), TourError> {
+        // A camera takes some frames to darken.
+        self.press("Light from the lens")?;
+        self.shoot_nothing()?;
+        self.shoot("lens_taken")
     }
 
     fn play(&mut self) -> Result<(), TourError> {

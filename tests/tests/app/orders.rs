@@ -4,7 +4,7 @@ use app_core::app::{
     AlignJob, AlignedJob, App, ArSession, Device, Notice, Permission, Saved, ShellCommand, ShellEvent, Show,
     Step, Thermal, Wish,
 };
-use app_core::camera_frame::Tracking;
+use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
 use app_core::recording::{Ending, Take};
 use glam::DVec2;
@@ -101,6 +101,7 @@ fn wish() -> impl Strategy<Value = Wish> {
         Wish::Begin,
         Wish::OpenSettings,
         Wish::SkipPlate,
+        Wish::TakeLens,
         Wish::Placed,
         Wish::Placed,
         Wish::Replace,
@@ -136,6 +137,7 @@ struct Platform {
     is_foreground: bool,
     runs: bool,
     is_locked: bool,
+    is_dark: bool,
     is_awake: bool,
     makes_video: bool,
     records: bool,
@@ -223,7 +225,13 @@ impl Platform {
     }
 
     fn frame(&self, tracking: Tracking) -> ShellEvent {
-        let frame = world::frame(self.n_frames, self.time_ns, self.world_epoch, tracking);
+        let mut frame = world::frame(self.n_frames, self.time_ns, self.world_epoch, tracking);
+        // A camera takes some frames to darken, and may not.
+        let is_dark = self.is_dark && self.n_frames.is_multiple_of(7);
+        frame.exposure = Some(Exposure {
+            duration_s: if is_dark { 0.01 / 64.0 } else { 0.01 },
+            iso: 100.0,
+        });
         ShellEvent::Frame(Box::new(frame))
     }
 
@@ -232,6 +240,8 @@ impl Platform {
         let is_wrong = match &command {
             ShellCommand::PauseTracking => !self.runs,
             ShellCommand::LockExposure(_) => !self.runs,
+            // Only what is held can be darkened.
+            ShellCommand::Underexpose(is_on) => !self.runs || !self.is_locked || *is_on == self.is_dark,
             ShellCommand::KeepAwake(is_on) => *is_on == self.is_awake,
             ShellCommand::Video(is_on) => *is_on == self.makes_video,
             ShellCommand::Record(take) => take.is_some() == self.records,
@@ -242,10 +252,13 @@ impl Platform {
         }
         match command {
             ShellCommand::RunTracking { .. } => {
-                (self.runs, self.is_locked) = (true, self.runs && self.is_locked)
+                self.is_locked &= self.runs;
+                self.is_dark &= self.runs;
+                self.runs = true;
             }
             ShellCommand::PauseTracking => self.runs = false,
             ShellCommand::LockExposure(is_on) => self.is_locked = is_on,
+            ShellCommand::Underexpose(is_on) => self.is_dark = is_on,
             ShellCommand::KeepAwake(is_on) => self.is_awake = is_on,
             ShellCommand::Video(is_on) => self.makes_video = is_on,
             ShellCommand::Record(take) => {
@@ -287,6 +300,10 @@ impl Platform {
             (
                 self.runs && self.is_locked != (step >= Step::PlaceToy),
                 "exposure is held or free at the wrong time",
+            ),
+            (
+                self.runs && self.is_dark != app.is_taking_lens(),
+                "the camera is dark at the wrong time",
             ),
             (
                 self.is_awake && step == Step::Welcome,

@@ -73,6 +73,7 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
             half_extent_m: DVec2::splat(0.5),
         }]),
         anchors: Arc::new([]),
+        world_from_card: (tracking == Tracking::Normal).then_some(DMat4::IDENTITY),
         light_estimate: None,
         display: Display::default(),
     }

@@ -40,6 +40,7 @@ const ROOMS: &[&str] = &[
     "lens",
     "geometry",
     "camera_frame",
+    "card",
     "gpu",
     "scene",
     "toy",
