@@ -42,6 +42,24 @@ pub fn size_px(size_points: [f64; 2], pixels_per_point: f64) -> Option<[u32; 2]>
     (size_px.min_element() >= 1.0).then(|| size_px.as_uvec2().to_array())
 }
 
+/// Part of the held exposure that a picture of a lens has.
+const DARK: f64 = 1.0 / 64.0;
+
+/// Duration in seconds and ISO speed of a picture as dark as that, or as near to it as `least` of both allow: less speed first, then
+/// less time. `None` where the camera tells no exposure.
+pub fn darkened(held: [f64; 2], least: [f64; 2]) -> Option<[f64; 2]> {
+    let are_numbers = held
+        .iter()
+        .chain(&least)
+        .all(|number| number.is_finite() && *number > 0.0);
+    if !are_numbers {
+        return None;
+    }
+    let iso = (DARK * held[1]).max(least[1]).min(held[1]);
+    let duration_s = (DARK * held[0] * held[1] / iso).max(least[0]).min(held[0]);
+    Some([duration_s, iso])
+}
+
 /// The camera's permission from an `AVAuthorizationStatus`. Once it was refused, iOS asks nobody again.
 pub fn permission(status: isize) -> Permission {
     match status {
@@ -85,6 +103,26 @@ mod tests {
             [100, 102, 103, 200].map(failed_session),
             [unsupported, failed, failed, failed]
         );
+    }
+
+    #[test]
+    fn a_dark_picture_has_less_speed_and_then_less_time() {
+        let dark = darkened([0.016, 400.0], [1e-5, 50.0]).expect("an exposure");
+        assert_eq!(dark, [0.002, 50.0]);
+        let amount = |[duration_s, iso]: [f64; 2]| duration_s * iso;
+        assert_eq!(amount(dark) * 64.0, amount([0.016, 400.0]));
+        assert_eq!(
+            darkened([0.016, 50.0], [0.01, 50.0]),
+            Some([0.01, 50.0]),
+            "as dark as it can be"
+        );
+        assert_eq!(
+            darkened([0.001, 40.0], [0.01, 50.0]),
+            Some([0.001, 40.0]),
+            "never brighter"
+        );
+        assert_eq!(darkened([f64::NAN, 50.0], [0.01, 50.0]), None);
+        assert_eq!(darkened([0.016, 0.0], [0.01, 50.0]), None);
     }
 
     /// A quarter turn to the left about the vertical, from a phone at (1, 2, 3).

@@ -38,6 +38,8 @@ pub(crate) struct Shell {
     looked: Option<Instant>,
     wants_device: bool,
     frames_per_s: u32,
+    /// While the camera is darkened.
+    held_exposure: Option<camera::Exposure>,
     /// For an app that is about to be made.
     starts: Option<Starts>,
     panics: Panics,
@@ -61,6 +63,7 @@ impl Shell {
             looked: None,
             wants_device: false,
             frames_per_s: 60,
+            held_exposure: None,
             starts: None,
             panics: Panics::default(),
             begins_anew: false,
@@ -217,6 +220,12 @@ impl Shell {
                 } => self.session.run(finds_planes, is_new_world),
                 ShellCommand::PauseTracking => self.session.pause(),
                 ShellCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
+                ShellCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
+                ShellCommand::Underexpose(false) => {
+                    if let Some(held) = self.held_exposure.take() {
+                        camera::restore(&held);
+                    }
+                }
                 ShellCommand::HoldAnchor {
                     id,
                     world_from_anchor,
@@ -244,7 +253,6 @@ impl Shell {
                     let reason = "this app has one toy so far".to_owned();
                     self.inbox.tell(ShellEvent::Toy(Err(reason)));
                 }
-                ShellCommand::Underexpose(is_on) => drop(is_on),
                 ShellCommand::Video(false) | ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
             }
         }

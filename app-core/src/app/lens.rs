@@ -5,7 +5,7 @@
 use glam::DMat4;
 
 use super::App;
-use super::notice::Notice;
+use super::notice::{LensFailure, Notice};
 use super::step::Step;
 use crate::camera_frame::CameraFrame;
 use crate::card::{card_from_lens, lens_shape};
@@ -18,17 +18,6 @@ const DARK: f64 = 0.125;
 const PATIENCE_S: f64 = 2.0;
 /// Pictures that are kept: the latest.
 const N_PICTURES: usize = 8;
-
-/// Why the lens was not photographed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LensFailure {
-    /// The camera cannot be darkened, or does not tell.
-    NotDark,
-    /// No light is seen on it.
-    NoLight,
-    /// It is not in the picture, or the picture makes no sense.
-    NotSeen,
-}
 
 /// A dark picture that is waited for.
 #[derive(Clone, Copy, Debug)]

@@ -42,9 +42,8 @@ use start::Start;
 
 pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
-pub use lens::LensFailure;
 pub use log::Log;
-pub use notice::Notice;
+pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
 pub use plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use platform::Obstacle;

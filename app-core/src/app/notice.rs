@@ -1,11 +1,21 @@
 //! What a person should hear of, for some seconds.
 
 use super::event::{Recorded, Saved};
-use super::lens::LensFailure;
 use super::starts::Simplified;
 
 /// How long it stands, in seconds.
 const SHOWN_S: f64 = 6.0;
+
+/// Why the lens was not photographed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LensFailure {
+    /// The camera cannot be darkened, or does not tell.
+    NotDark,
+    /// No light is seen on it.
+    NoLight,
+    /// It is not in the picture, or the picture makes no sense.
+    NotSeen,
+}
 
 /// What a person should hear of.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,11 +11,9 @@ use glam::{DMat4, DVec2, DVec3};
 
 use crate::scene::{FacetSlope, ProbeShape};
 
-pub use pattern::{Gray, REFERENCE_PX, SEED, leaves, reference};
+pub use pattern::{Gray, PATTERN_M, REFERENCE_PX, SEED, leaves, reference};
 pub use split_mix::SplitMix;
 
-/// Side of the square pattern, which a platform knows as an image of this width.
-pub const PATTERN_M: f64 = 0.150;
 /// Place for a lens of the size of a bank card, with some room: its corner and its size, from the pattern's corner.
 pub const LENS_M: [DVec2; 2] = [DVec2::new(0.0, 0.158), DVec2::new(0.092, 0.060)];
 /// Of the disc that a lens of that size has room for.

@@ -3,9 +3,10 @@
 
 use glam::{DMat2, DVec2};
 
-use super::PATTERN_M;
 use super::split_mix::SplitMix;
 
+/// Side of the square pattern, which a platform knows as an image of this width.
+pub const PATTERN_M: f64 = 0.150;
 /// Pixels along a side of the picture for a platform.
 pub const REFERENCE_PX: u32 = 600;
 /// Leaves a square metre, and their radii.

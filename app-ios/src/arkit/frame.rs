@@ -66,6 +66,8 @@ pub struct RawFrame<'a> {
     pub light: Option<[f64; 2]>,
     /// Planes found so far.
     pub surfaces: Vec<RawSurface>,
+    /// Columns of the `transform` of the card's anchor, while it is followed.
+    pub card: Option<[[f32; 4]; 4]>,
     /// The anchor that is held, by the number it was asked for, and the columns of its `transform`.
     pub anchor: Option<(u64, [[f32; 4]; 4])>,
 }
@@ -131,7 +133,7 @@ pub fn camera_frame(
         world_from_camera: pose.flatten(),
         planes: raw.surfaces.iter().filter_map(found_plane).collect(),
         anchors: anchor.into_iter().collect(),
-        world_from_card: None,
+        world_from_card: raw.card.and_then(convert::world_from_camera),
         light_estimate: raw.light.map(|[lumen, kelvin]| LightEstimate {
             ambient_intensity: Some(lumen).filter(|lumen| lumen.is_finite()),
             color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),
@@ -274,6 +276,7 @@ mod tests {
                 transform: UPRIGHT,
                 boundary: vec![[0.5, 0.0, -0.25, f32::NAN], [-0.5, 0.0, 0.75, f32::NAN]],
             }],
+            card: Some(UPRIGHT),
             anchor: Some((3, UPRIGHT)),
         }
     }
@@ -295,6 +298,8 @@ mod tests {
         };
         assert_eq!(image.luma(), [1, 2, 3, 4, 5, 6, 7, 8]);
         assert_eq!(image.chroma(), [90, 200, 91, 201]);
+        assert_eq!(frame.world_from_card, convert::world_from_camera(UPRIGHT));
+        assert!(frame.world_from_card.is_some());
         assert_eq!(image.encoding().range, CodeRange::Full);
         let pose = frame.world_from_camera.expect("a pose");
         assert_eq!(pose.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));

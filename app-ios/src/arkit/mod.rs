@@ -3,6 +3,8 @@
 pub mod frame;
 
 #[cfg(target_os = "ios")]
+mod card;
+#[cfg(target_os = "ios")]
 pub mod read;
 #[cfg(target_os = "ios")]
 pub(crate) mod session;

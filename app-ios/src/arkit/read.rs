@@ -6,7 +6,7 @@ use app_core::camera_frame::PlanarImage;
 use objc2::rc::Retained;
 use objc2::runtime::Sel;
 use objc2::{Message, msg_send, sel};
-use objc2_ar_kit::{ARAnchor, ARFrame, ARPlaneAnchor, ARPlaneGeometry};
+use objc2_ar_kit::{ARAnchor, ARFrame, ARImageAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable};
 use objc2_core_video::{
     CVPixelBuffer, CVPixelBufferGetBaseAddressOfPlane, CVPixelBufferGetBytesPerRowOfPlane,
     CVPixelBufferGetHeight, CVPixelBufferGetHeightOfPlane, CVPixelBufferGetPixelFormatType,
@@ -117,6 +117,7 @@ pub(super) fn with_raw<T>(
         // SAFETY: properties of an estimate that never changes.
         light: light.map(|light| unsafe { [light.ambientIntensity(), light.ambientColorTemperature()] }),
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
+        card: anchors.iter().find_map(|anchor| card(&anchor)),
         anchor,
     };
     Some(take(&raw, lent))
@@ -139,6 +140,17 @@ fn anchor_of(anchors: &NSArray<ARAnchor>, identifier: [u8; 16]) -> Option<[[f32;
         let is_it = anchor.identifier().as_bytes() == identifier;
         is_it.then(|| shim::columns4(pointer(&*anchor), selector(sel!(transform))).0)
     })
+}
+
+/// Where the card is, if this is its anchor and the card is in view: no other image is looked for.
+fn card(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
+    let image = anchor.downcast_ref::<ARImageAnchor>()?;
+    // SAFETY: properties of an anchor, which never change; the transform is a SIMD matrix of four columns.
+    unsafe {
+        image
+            .isTracked()
+            .then(|| shim::columns4(pointer(image), selector(sel!(transform))).0)
+    }
 }
 
 fn surface(anchor: &ARPlaneAnchor) -> RawSurface {

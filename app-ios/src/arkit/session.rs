@@ -12,14 +12,14 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARPlaneDetection, ARSession, ARSessionDelegate, ARSessionObserver,
+    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARSession, ARSessionDelegate, ARSessionObserver,
     ARSessionRunOptions, ARWorldTrackingConfiguration,
 };
-use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo};
+use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
 
 use super::frame::{Count, camera_frame};
 use super::textures::TextureCache;
-use super::{read, shim};
+use super::{card, read, shim};
 use crate::convert;
 use crate::guard::{Callback, guarded};
 use crate::inbox::Inbox;
@@ -146,6 +146,8 @@ pub(crate) struct Session {
     session: Retained<ARSession>,
     /// The session does not keep it.
     _delegate: Retained<Delegate>,
+    /// What the card is known by; none where it cannot be made.
+    card: Option<Retained<ARReferenceImage>>,
     shared: Rc<Shared>,
 }
 
@@ -169,6 +171,7 @@ impl Session {
         Self {
             session,
             _delegate: delegate,
+            card: card::reference_image(),
             shared,
         }
     }
@@ -212,6 +215,10 @@ impl Session {
             configuration.setPlaneDetection(planes);
             // Pictures whose tones are mapped place by place are not comparable with one another.
             configuration.setVideoHDRAllowed(false);
+            if let Some(card) = &self.card {
+                configuration.setDetectionImages(Some(&NSSet::from_slice(&[&**card])));
+                configuration.setMaximumNumberOfTrackedImages(1);
+            }
             self.session.runWithConfiguration_options(&configuration, options);
         }
     }
