@@ -10,7 +10,7 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use glam::DVec2;
 
-use crate::arcore::fake::{FakePlane, functions, world};
+use crate::arcore::fake::{FUNCTIONS, FakePlane, world};
 use crate::arcore::feed::Feed;
 use crate::input::{Finger, Motion, screen, touches};
 use crate::phone::{Java, Phone, permission};
@@ -66,7 +66,7 @@ fn shell() -> Shell<Desk> {
 fn shell_on(phone: Desk) -> Shell<Desk> {
     let toy = bundled_toy().expect("the bundled toy");
     let live = Live::new(Core::counting(), toy, Preset::Balanced);
-    Shell::new(live, phone, Feed::new(Some(functions())))
+    Shell::new(live, phone, Feed::new(Some(FUNCTIONS)))
 }
 
 fn calls() -> String {

@@ -3,7 +3,7 @@
 //! The library is not linked. Its functions are looked up when it is loaded, so that the app starts on a phone without
 //! ARCore, and so that tests bring functions of their own.
 
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::marker::{PhantomData, PhantomPinned};
 
 macro_rules! opaque {
@@ -19,7 +19,7 @@ macro_rules! opaque {
 }
 
 opaque! {
-    ArAnchor ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
+    ArAnchor ArAugmentedImage ArAugmentedImageDatabase ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
     ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
 }
 
@@ -31,7 +31,7 @@ macro_rules! enumeration {
 }
 
 enumeration! {
-    ArAvailability ArImageFormat ArInstallStatus ArLightEstimateState ArLightEstimationMode ArPlaneFindingMode
+    ArAugmentedImageTrackingMethod ArAvailability ArImageFormat ArInstallStatus ArLightEstimateState ArLightEstimationMode ArPlaneFindingMode
     ArPlaneType ArStatus ArTextureUpdateMode ArTrackableType ArTrackingFailureReason ArTrackingState ArUpdateMode
 }
 
@@ -140,6 +140,7 @@ functions! {
     fn ArConfig_setUpdateMode(*const ArSession, *mut ArConfig, ArUpdateMode);
     fn ArConfig_setPlaneFindingMode(*const ArSession, *mut ArConfig, ArPlaneFindingMode);
     fn ArConfig_setLightEstimationMode(*const ArSession, *mut ArConfig, ArLightEstimationMode);
+    fn ArConfig_setAugmentedImageDatabase(*const ArSession, *mut ArConfig, *const ArAugmentedImageDatabase);
     fn ArConfig_setTextureUpdateMode(*const ArSession, *mut ArConfig, ArTextureUpdateMode);
 
     fn ArFrame_create(*const ArSession, *mut *mut ArFrame);
@@ -190,6 +191,12 @@ functions! {
     fn ArPlane_getCenterPose(*const ArSession, *const ArPlane, *mut ArPose);
     fn ArPlane_getPolygonSize(*const ArSession, *const ArPlane, *mut i32);
     fn ArPlane_getPolygon(*const ArSession, *const ArPlane, *mut f32);
+
+    fn ArAugmentedImageDatabase_create(*const ArSession, *mut *mut ArAugmentedImageDatabase);
+    fn ArAugmentedImageDatabase_destroy(*mut ArAugmentedImageDatabase);
+    fn ArAugmentedImageDatabase_addImageWithPhysicalSize(*const ArSession, *mut ArAugmentedImageDatabase, *const c_char, *const u8, i32, i32, i32, f32, *mut i32) -> ArStatus;
+    fn ArAugmentedImage_getCenterPose(*const ArSession, *const ArAugmentedImage, *mut ArPose);
+    fn ArAugmentedImage_getTrackingMethod(*const ArSession, *const ArAugmentedImage, *mut ArAugmentedImageTrackingMethod);
 
     fn ArSession_acquireNewAnchor(*mut ArSession, *const ArPose, *mut *mut ArAnchor) -> ArStatus;
     fn ArAnchor_getPose(*const ArSession, *const ArAnchor, *mut ArPose);

@@ -96,7 +96,7 @@ impl Session {
             world_from_camera,
             planes: if is_tracking { self.planes() } else { Vec::new() }.into(),
             anchors: self.held().filter(|_| is_tracking).into_iter().collect(),
-            world_from_card: None,
+            world_from_card: if is_tracking { self.card() } else { None },
             light_estimate: self.light(),
             display: Display::default(),
         }))

@@ -16,6 +16,7 @@ fn in_rust(c: &str) -> String {
         "int64_t" => "i64",
         "uint8_t" => "u8",
         "float" => "f32",
+        "char" => "c_char",
         "void" => "c_void",
         name => name,
     };

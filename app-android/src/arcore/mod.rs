@@ -14,6 +14,7 @@ pub mod tracker;
 pub mod library;
 
 mod anchors;
+mod card;
 mod owned;
 mod planes;
 

@@ -17,24 +17,28 @@ const MAX_CORNERS: usize = 4096;
 
 impl Session {
     pub(super) fn planes(&self) -> Vec<FoundPlane> {
+        let found = self.trackables_of(PLANES);
+        found
+            .filter_map(|trackable| self.found_plane(&trackable))
+            .collect()
+    }
+
+    /// All that ARCore follows of a kind. The list is of one kind at a time: what is iterated over ends before another is asked for.
+    pub(super) fn trackables_of(&self, kind: i32) -> impl Iterator<Item = Owned<ArTrackable>> {
         let (api, raw, list) = (&self.api, self.raw(), self.trackables.as_ptr());
-        let mut n_planes = 0;
+        let mut n_found = 0;
         // SAFETY: session and list live, and the count is a place of ours.
         unsafe {
-            (api.ArSession_getAllTrackables)(raw, PLANES, list);
-            (api.ArTrackableList_getSize)(raw, list, &raw mut n_planes);
+            (api.ArSession_getAllTrackables)(raw, kind, list);
+            (api.ArTrackableList_getSize)(raw, list, &raw mut n_found);
         }
-        let planes = (0..n_planes).filter_map(|index| {
-            // SAFETY: the index is below the list's size, and what was acquired is ours to release.
-            let trackable: Owned<ArTrackable> = unsafe {
-                Owned::new(
-                    |place| (api.ArTrackableList_acquireItem)(raw, list, index, place),
-                    api.ArTrackable_release,
-                )
-            }?;
-            self.found_plane(&trackable)
-        });
-        planes.collect()
+        // SAFETY: the index is below the list's size, and what was acquired is ours to release.
+        (0..n_found).filter_map(move |index| unsafe {
+            Owned::new(
+                |place| (api.ArTrackableList_acquireItem)(raw, list, index, place),
+                api.ArTrackable_release,
+            )
+        })
     }
 
     /// A level plane that is being tracked. One that ARCore took into another keeps its name and has that one's shape.

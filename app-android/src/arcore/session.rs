@@ -1,8 +1,10 @@
 //! One session of ARCore: its objects, how it is configured, and the calls that may fail.
 
+use super::card;
 use super::ffi::{
-    ArAnchor, ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArCameraIntrinsics, ArConfig,
-    ArFrame, ArLightEstimate, ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
+    ArAnchor, ArAugmentedImageDatabase, ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList,
+    ArCameraIntrinsics, ArConfig, ArFrame, ArLightEstimate, ArLightEstimationMode, ArPose, ArSession,
+    ArTrackableList, Functions,
 };
 use super::owned::Owned;
 use super::status::{Failure, UNSUPPORTED_CONFIGURATION};
@@ -62,6 +64,8 @@ pub(super) struct Session {
     pub(super) intrinsics: Owned<ArCameraIntrinsics>,
     pub(super) pose: Owned<ArPose>,
     pub(super) frame: Owned<ArFrame>,
+    /// What the card is known by; none where ARCore does not take it.
+    card: Option<Owned<ArAugmentedImageDatabase>>,
     session: Owned<ArSession>,
     pub(super) api: Functions,
     has_light: bool,
@@ -69,7 +73,7 @@ pub(super) struct Session {
 }
 
 /// The failure of a function that made nothing and says nothing.
-const NOTHING: Failure = Failure(-2);
+pub(super) const NOTHING: Failure = Failure(-2);
 
 impl Session {
     /// Creates and configures a session, which is then paused.
@@ -107,6 +111,9 @@ impl Session {
             intrinsics: create!(ArCameraIntrinsics_create, ArCameraIntrinsics_destroy),
             pose: pose.ok_or(NOTHING)?,
             frame: create!(ArFrame_create, ArFrame_destroy),
+            card: card::database(&api, &session)
+                .inspect_err(|failure| eprintln!("app-android: the card is not looked for: {failure}"))
+                .ok(),
             session,
             api,
             has_light: true,
@@ -205,6 +212,9 @@ impl Session {
             (api.ArConfig_setPlaneFindingMode)(raw, config, planes);
             (api.ArConfig_setTextureUpdateMode)(raw, config, WITHOUT_GL);
             (api.ArConfig_setLightEstimationMode)(raw, config, light);
+            if let Some(card) = &self.card {
+                (api.ArConfig_setAugmentedImageDatabase)(raw, config, card.as_ptr());
+            }
             (api.ArSession_configure)(raw, config)
         })
     }

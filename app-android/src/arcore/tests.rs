@@ -4,7 +4,7 @@ use app_core::app::{ArSession, Permission, ShellEvent};
 use app_core::camera_frame::{CameraImage, Stamp, Tracking};
 use glam::{DMat4, DVec2, DVec3};
 
-use super::fake::{FakePlane, alive, functions, world};
+use super::fake::{FUNCTIONS, FakePlane, alive, world};
 use super::feed::Feed;
 use super::ffi::{Functions, SIGNATURES};
 use super::frame::FrameError;
@@ -27,7 +27,7 @@ const ANEW: Run = Run {
 };
 
 fn tracker() -> Tracker {
-    Tracker::new(functions())
+    Tracker::new(FUNCTIONS)
 }
 
 fn look(tracker: &mut Tracker) -> Step {
@@ -63,7 +63,7 @@ fn a_session_begins_pauses_resumes_and_ends() {
     assert_eq!(look(&mut tracker), Step::Ready);
     assert_eq!(
         calls(),
-        "availability create mode=2 update=1 planes=1 texture=1 light=2 configure display=1,2400,1080 resume"
+        "availability create card=600x600,0.15,true mode=2 update=1 planes=1 texture=1 light=2 images configure display=1,2400,1080 resume"
     );
     assert_eq!(look(&mut tracker), Step::Ready, "twice");
     tracker.pause();
@@ -147,7 +147,9 @@ fn a_phone_without_light_estimation_does_without() {
         world.time_ns = 5;
     });
     let mut tracker = running();
-    assert!(calls().contains("light=2 configure update=1 planes=1 texture=1 light=0 configure"));
+    assert!(
+        calls().contains("light=2 images configure update=1 planes=1 texture=1 light=0 images configure")
+    );
     let frame = tracker.update().expect("no error").expect("a frame");
     assert_eq!(frame.light_estimate, None);
     drop(tracker);
@@ -207,6 +209,42 @@ fn a_frame_is_copied_whole() {
     let centre = table.world_from_plane.transform_point3(DVec3::ZERO);
     assert_eq!(centre, DVec3::new(0.0, f64::from(-0.4_f32), 0.0));
     assert_eq!(table.half_extent_m, DVec2::new(0.5, 0.25));
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn the_card_is_where_it_is_seen_and_nowhere_else() {
+    let card = |state, method| FakePlane {
+        state,
+        kind: method,
+        pose: [0.0, 0.0, 0.0, 1.0, 0.5, -0.25, 0.0],
+        outline: Vec::new(),
+    };
+    let mut tracker = running();
+    // Tracked and seen, where it was seen last, paused, stopped.
+    let seen = [(0, 1), (0, 2), (1, 1), (2, 0)].map(|(state, method)| {
+        world(|world| {
+            world.images = vec![card(state, method)];
+            world.time_ns += 1;
+        });
+        let frame = tracker.update().expect("no error").expect("a frame");
+        assert!(frame.planes.is_empty());
+        frame.world_from_card
+    });
+    let place = DMat4::from_translation(DVec3::new(0.5, -0.25, 0.0));
+    assert_eq!(seen, [Some(place), None, None, None]);
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn a_card_that_is_refused_is_done_without() {
+    world(|world| {
+        world.fails.insert("add image", -17);
+    });
+    let tracker = running();
+    assert!(calls().contains("light=2 configure"), "no images are set");
     drop(tracker);
     assert_clean();
 }
@@ -361,7 +399,7 @@ fn planes_are_looked_for_only_while_asked_and_another_world_is_another_session()
     assert_eq!(tracker.run(&mut Desk::default(), FOLLOW), Step::Ready);
     assert_eq!(
         calls(),
-        "update=1 planes=0 texture=1 light=2 configure",
+        "update=1 planes=0 texture=1 light=2 images configure",
         "while it runs"
     );
     assert_eq!(tracker.run(&mut Desk::default(), FOLLOW), Step::Ready);
@@ -425,7 +463,7 @@ fn what_ends_tracking_is_told_by_what_helps() {
 fn a_feed_waits_for_the_answer_and_comes_back_after_an_interruption() {
     world(|world| world.availability = vec![1, 1, 203]);
     let mut desk = Desk::default();
-    let mut feed = Feed::new(Some(functions()));
+    let mut feed = Feed::new(Some(FUNCTIONS));
     assert!(feed.run(&mut desk, LOOK).is_none());
     assert!(feed.poll(&mut desk).is_none(), "still looking");
     assert!(feed.poll(&mut desk).is_none(), "found");

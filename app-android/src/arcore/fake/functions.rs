@@ -1,4 +1,4 @@
-//! The fake's functions in C.
+//! The fake's functions in C, but those of images.
 
 #![expect(
     clippy::undocumented_unsafe_blocks,
@@ -8,14 +8,14 @@
 use std::ffi::c_void;
 
 use super::super::ffi::*;
-use super::{World, world};
+use super::{IMAGES, World, world};
 
 /// Numbers of poses that were given begin here.
 const GIVEN: usize = 1000;
 
 macro_rules! give_back {
     ($($name:ident($kind:literal, $type:ty);)*) => {$(
-        unsafe extern "C" fn $name(object: *mut $type) {
+        pub(super) unsafe extern "C" fn $name(object: *mut $type) {
             world(|world| world.give_back($kind, object));
         }
     )*};
@@ -36,11 +36,12 @@ give_back! {
     list_destroy("list", ArTrackableList);
     trackable_release("plane", ArTrackable);
     anchor_release("anchor", ArAnchor);
+    database_destroy("database", ArAugmentedImageDatabase);
 }
 
 macro_rules! create {
     ($($name:ident($kind:literal, $type:ty);)*) => {$(
-        unsafe extern "C" fn $name(session: *const ArSession, place: *mut *mut $type) {
+        pub(super) unsafe extern "C" fn $name(session: *const ArSession, place: *mut *mut $type) {
             world(|world| {
                 world.used("session", session);
                 unsafe { *place = world.make($kind, 0) };
@@ -58,12 +59,13 @@ create! {
     intrinsics_create("intrinsics", ArCameraIntrinsics);
     light_create("light", ArLightEstimate);
     list_create("list", ArTrackableList);
+    database_create("database", ArAugmentedImageDatabase);
 }
 
 /// Functions that write what an object holds into places.
 macro_rules! get {
     ($($name:ident($kind:literal, $object:ty, $($place:ident: $type:ty),+) $write:expr;)*) => {$(
-        unsafe extern "C" fn $name(session: *const ArSession, object: *const $object, $($place: *mut $type),+) {
+        pub(super) unsafe extern "C" fn $name(session: *const ArSession, object: *const $object, $($place: *mut $type),+) {
             world(|world| {
                 world.used("session", session);
                 world.used($kind, object);
@@ -88,13 +90,16 @@ get! {
     image_planes("image", ArImage, n: i32) |world, n| *n = i32::try_from(world.image.len()).unwrap();
     light_state("light", ArLightEstimate, state: i32) |world, state| *state = world.light.0;
     modes_size("modes", ArCameraConfigList, n: i32) |world, n| *n = i32::try_from(world.modes.len()).unwrap();
-    list_size("list", ArTrackableList, n: i32) |world, n| *n = i32::try_from(world.planes.len()).unwrap();
+    list_size("list", ArTrackableList, n: i32) |world, n| {
+        let listed = if world.lists_images { &world.images } else { &world.planes };
+        *n = i32::try_from(listed.len()).unwrap();
+    };
 }
 
 /// Functions of one component of an image.
 macro_rules! of_plane {
     ($($name:ident($($place:ident: $type:ty),+) $write:expr;)*) => {$(
-        unsafe extern "C" fn $name(session: *const ArSession, image: *const ArImage, index: i32, $($place: *mut $type),+) {
+        pub(super) unsafe extern "C" fn $name(session: *const ArSession, image: *const ArImage, index: i32, $($place: *mut $type),+) {
             world(|world| {
                 world.used("session", session);
                 world.used("image", image);
@@ -116,7 +121,7 @@ of_plane! {
 /// Functions that only say that they were called, and maybe fail.
 macro_rules! act {
     ($($name:ident($called:literal, $($argument:ty),*);)*) => {$(
-        unsafe extern "C" fn $name(session: *mut ArSession, $(_: $argument),*) -> i32 {
+        pub(super) unsafe extern "C" fn $name(session: *mut ArSession, $(_: $argument),*) -> i32 {
             world(|world| {
                 world.used("session", session);
                 world.call($called);
@@ -135,7 +140,7 @@ act! {
 /// Functions that set one number of a configuration.
 macro_rules! set {
     ($($name:ident($called:literal);)*) => {$(
-        unsafe extern "C" fn $name(_: *const ArSession, config: *mut ArConfig, number: i32) {
+        pub(super) unsafe extern "C" fn $name(_: *const ArSession, config: *mut ArConfig, number: i32) {
             world(|world| {
                 world.used("config", config);
                 world.call(&format!("{}={number}", $called));
@@ -151,7 +156,11 @@ set! {
     set_texture("texture");
 }
 
-unsafe extern "C" fn check_availability(env: *mut c_void, activity: *mut c_void, answer: *mut i32) {
+pub(super) unsafe extern "C" fn check_availability(
+    env: *mut c_void,
+    activity: *mut c_void,
+    answer: *mut i32,
+) {
     assert!(!env.is_null() && !activity.is_null());
     let next = world(|world| {
         world.call("availability");
@@ -165,7 +174,12 @@ unsafe extern "C" fn check_availability(env: *mut c_void, activity: *mut c_void,
     unsafe { *answer = next };
 }
 
-unsafe extern "C" fn request_install(_: *mut c_void, _: *mut c_void, asked: i32, outcome: *mut i32) -> i32 {
+pub(super) unsafe extern "C" fn request_install(
+    _: *mut c_void,
+    _: *mut c_void,
+    asked: i32,
+    outcome: *mut i32,
+) -> i32 {
     let (status, installed) = world(|world| {
         world.call(&format!("install={asked}"));
         world.install
@@ -174,7 +188,11 @@ unsafe extern "C" fn request_install(_: *mut c_void, _: *mut c_void, asked: i32,
     status
 }
 
-unsafe extern "C" fn session_create(_: *mut c_void, _: *mut c_void, place: *mut *mut ArSession) -> i32 {
+pub(super) unsafe extern "C" fn session_create(
+    _: *mut c_void,
+    _: *mut c_void,
+    place: *mut *mut ArSession,
+) -> i32 {
     world(|world| {
         world.call("create");
         let status = world.status("create");
@@ -185,7 +203,7 @@ unsafe extern "C" fn session_create(_: *mut c_void, _: *mut c_void, place: *mut 
     })
 }
 
-unsafe extern "C" fn session_configure(session: *mut ArSession, config: *const ArConfig) -> i32 {
+pub(super) unsafe extern "C" fn session_configure(session: *mut ArSession, config: *const ArConfig) -> i32 {
     world(|world| {
         world.used("session", session);
         world.used("config", config);
@@ -195,11 +213,11 @@ unsafe extern "C" fn session_configure(session: *mut ArSession, config: *const A
     })
 }
 
-unsafe extern "C" fn set_display(_: *mut ArSession, rotation: i32, width: i32, height: i32) {
+pub(super) unsafe extern "C" fn set_display(_: *mut ArSession, rotation: i32, width: i32, height: i32) {
     world(|world| world.call(&format!("display={rotation},{width},{height}")));
 }
 
-unsafe extern "C" fn supported_modes(
+pub(super) unsafe extern "C" fn supported_modes(
     _: *const ArSession,
     filter: *const ArCameraConfigFilter,
     list: *mut ArCameraConfigList,
@@ -210,7 +228,7 @@ unsafe extern "C" fn supported_modes(
     });
 }
 
-unsafe extern "C" fn modes_item(
+pub(super) unsafe extern "C" fn modes_item(
     _: *const ArSession,
     _: *const ArCameraConfigList,
     index: i32,
@@ -222,7 +240,7 @@ unsafe extern "C" fn modes_item(
     });
 }
 
-unsafe extern "C" fn mode_size(
+pub(super) unsafe extern "C" fn mode_size(
     _: *const ArSession,
     mode: *const ArCameraConfig,
     width: *mut i32,
@@ -232,7 +250,7 @@ unsafe extern "C" fn mode_size(
     unsafe { [*width, *height] = world(|world| [world.modes[index][0], world.modes[index][1]]) };
 }
 
-unsafe extern "C" fn mode_hz(
+pub(super) unsafe extern "C" fn mode_hz(
     _: *const ArSession,
     mode: *const ArCameraConfig,
     least: *mut i32,
@@ -242,7 +260,7 @@ unsafe extern "C" fn mode_hz(
     unsafe { [*least, *most] = [15, world(|world| world.modes[index][2])] };
 }
 
-unsafe extern "C" fn set_mode(_: *const ArSession, mode: *const ArCameraConfig) -> i32 {
+pub(super) unsafe extern "C" fn set_mode(_: *const ArSession, mode: *const ArCameraConfig) -> i32 {
     world(|world| {
         let index = world.used("mode", mode);
         world.call(&format!("mode={index}"));
@@ -250,14 +268,22 @@ unsafe extern "C" fn set_mode(_: *const ArSession, mode: *const ArCameraConfig) 
     })
 }
 
-unsafe extern "C" fn acquire_camera(_: *const ArSession, frame: *const ArFrame, place: *mut *mut ArCamera) {
+pub(super) unsafe extern "C" fn acquire_camera(
+    _: *const ArSession,
+    frame: *const ArFrame,
+    place: *mut *mut ArCamera,
+) {
     world(|world| {
         world.used("frame", frame);
         unsafe { *place = world.make("camera", 0) };
     });
 }
 
-unsafe extern "C" fn acquire_image(_: *mut ArSession, frame: *mut ArFrame, place: *mut *mut ArImage) -> i32 {
+pub(super) unsafe extern "C" fn acquire_image(
+    _: *mut ArSession,
+    frame: *mut ArFrame,
+    place: *mut *mut ArImage,
+) -> i32 {
     world(|world| {
         world.used("frame", frame.cast_const());
         let status = world.status("image");
@@ -268,11 +294,11 @@ unsafe extern "C" fn acquire_image(_: *mut ArSession, frame: *mut ArFrame, place
     })
 }
 
-unsafe extern "C" fn camera_pose(_: *const ArSession, _: *const ArCamera, pose: *mut ArPose) {
+pub(super) unsafe extern "C" fn camera_pose(_: *const ArSession, _: *const ArCamera, pose: *mut ArPose) {
     world(|world| world.alive.get_mut(&pose.addr()).expect("a pose").1 = 0);
 }
 
-unsafe extern "C" fn camera_intrinsics(
+pub(super) unsafe extern "C" fn camera_intrinsics(
     _: *const ArSession,
     camera: *const ArCamera,
     place: *mut ArCameraIntrinsics,
@@ -283,7 +309,7 @@ unsafe extern "C" fn camera_intrinsics(
     });
 }
 
-unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32, place: *mut *mut ArPose) {
+pub(super) unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32, place: *mut *mut ArPose) {
     let raw: Option<&[f32; 7]> = unsafe { raw.cast::<[f32; 7]>().as_ref() };
     world(|world| {
         let stands_for = raw.map_or(0, |raw| {
@@ -295,73 +321,102 @@ unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32, place: *m
 }
 
 /// A pose stands for the camera's, for that of the plane before its number, or from [`GIVEN`] on for one that was given.
-unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
+pub(super) unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
     let raw = world(|world| match world.used("pose", pose) {
         0 => world.pose,
         given @ GIVEN.. => world.given[given - GIVEN],
-        plane => world.planes[plane - 1].pose,
+        plane => world.trackable(plane - 1).pose,
     });
     unsafe { numbers.cast::<[f32; 7]>().write(raw) };
 }
 
-unsafe extern "C" fn frame_light(_: *const ArSession, frame: *const ArFrame, light: *mut ArLightEstimate) {
+pub(super) unsafe extern "C" fn frame_light(
+    _: *const ArSession,
+    frame: *const ArFrame,
+    light: *mut ArLightEstimate,
+) {
     world(|world| {
         world.used("frame", frame);
         world.used("light", light);
     });
 }
 
-unsafe extern "C" fn light_direction(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+pub(super) unsafe extern "C" fn light_direction(
+    _: *const ArSession,
+    _: *const ArLightEstimate,
+    place: *mut f32,
+) {
     unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.1)) };
 }
 
-unsafe extern "C" fn light_intensity(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+pub(super) unsafe extern "C" fn light_intensity(
+    _: *const ArSession,
+    _: *const ArLightEstimate,
+    place: *mut f32,
+) {
     unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.2)) };
 }
 
-unsafe extern "C" fn light_harmonics(_: *const ArSession, _: *const ArLightEstimate, place: *mut f32) {
+pub(super) unsafe extern "C" fn light_harmonics(
+    _: *const ArSession,
+    _: *const ArLightEstimate,
+    place: *mut f32,
+) {
     unsafe { place.cast::<[f32; 27]>().write(world(|world| world.light.3)) };
 }
 
-unsafe extern "C" fn all_trackables(_: *const ArSession, kind: i32, list: *mut ArTrackableList) {
-    assert_eq!(kind, 0x4152_0101);
-    world(|world| world.used("list", list));
+pub(super) unsafe extern "C" fn all_trackables(_: *const ArSession, kind: i32, list: *mut ArTrackableList) {
+    world(|world| {
+        world.used("list", list);
+        world.lists_images = kind == 0x4152_0104;
+        assert!(world.lists_images || kind == 0x4152_0101, "{kind:#x}");
+    });
 }
 
-unsafe extern "C" fn list_item(
+pub(super) unsafe extern "C" fn list_item(
     _: *const ArSession,
     _: *const ArTrackableList,
     index: i32,
     place: *mut *mut ArTrackable,
 ) {
-    unsafe { *place = world(|world| world.make("plane", usize::try_from(index).unwrap())) };
+    let index = usize::try_from(index).unwrap();
+    unsafe {
+        *place = world(|world| {
+            let first = if world.lists_images { IMAGES } else { 0 };
+            world.make("plane", first + index)
+        });
+    }
 }
 
-unsafe extern "C" fn trackable_state(_: *const ArSession, plane: *const ArTrackable, state: *mut i32) {
+pub(super) unsafe extern "C" fn trackable_state(
+    _: *const ArSession,
+    plane: *const ArTrackable,
+    state: *mut i32,
+) {
     unsafe { *state = world(|world| world.plane(plane.cast()).state) };
 }
 
-unsafe extern "C" fn plane_kind(_: *const ArSession, plane: *const ArPlane, kind: *mut i32) {
+pub(super) unsafe extern "C" fn plane_kind(_: *const ArSession, plane: *const ArPlane, kind: *mut i32) {
     unsafe { *kind = world(|world| world.plane(plane).kind) };
 }
 
-unsafe extern "C" fn plane_pose(_: *const ArSession, plane: *const ArPlane, pose: *mut ArPose) {
+pub(super) unsafe extern "C" fn plane_pose(_: *const ArSession, plane: *const ArPlane, pose: *mut ArPose) {
     world(|world| {
         let index = world.used("plane", plane);
         world.alive.get_mut(&pose.addr()).expect("a pose").1 = 1 + index;
     });
 }
 
-unsafe extern "C" fn polygon_size(_: *const ArSession, plane: *const ArPlane, n: *mut i32) {
+pub(super) unsafe extern "C" fn polygon_size(_: *const ArSession, plane: *const ArPlane, n: *mut i32) {
     unsafe { *n = i32::try_from(world(|world| world.plane(plane).outline.len())).unwrap() };
 }
 
-unsafe extern "C" fn polygon(_: *const ArSession, plane: *const ArPlane, numbers: *mut f32) {
+pub(super) unsafe extern "C" fn polygon(_: *const ArSession, plane: *const ArPlane, numbers: *mut f32) {
     let outline = world(|world| world.plane(plane).outline);
     unsafe { numbers.copy_from_nonoverlapping(outline.as_ptr(), outline.len()) };
 }
 
-unsafe extern "C" fn acquire_anchor(
+pub(super) unsafe extern "C" fn acquire_anchor(
     session: *mut ArSession,
     pose: *const ArPose,
     place: *mut *mut ArAnchor,
@@ -378,7 +433,7 @@ unsafe extern "C" fn acquire_anchor(
     })
 }
 
-unsafe extern "C" fn anchor_detach(session: *mut ArSession, anchor: *mut ArAnchor) {
+pub(super) unsafe extern "C" fn anchor_detach(session: *mut ArSession, anchor: *mut ArAnchor) {
     world(|world| {
         world.used("session", session);
         world.used("anchor", anchor);
@@ -386,91 +441,9 @@ unsafe extern "C" fn anchor_detach(session: *mut ArSession, anchor: *mut ArAncho
     });
 }
 
-unsafe extern "C" fn anchor_pose(_: *const ArSession, anchor: *const ArAnchor, pose: *mut ArPose) {
+pub(super) unsafe extern "C" fn anchor_pose(_: *const ArSession, anchor: *const ArAnchor, pose: *mut ArPose) {
     world(|world| {
         let at = world.used("anchor", anchor);
         world.alive.get_mut(&pose.addr()).expect("a pose").1 = at;
     });
-}
-
-/// The fake's functions.
-pub(crate) fn functions() -> Functions {
-    Functions {
-        ArCoreApk_checkAvailability: check_availability,
-        ArCoreApk_requestInstall: request_install,
-        ArSession_create: session_create,
-        ArSession_destroy: session_destroy,
-        ArSession_configure: session_configure,
-        ArSession_resume: session_resume,
-        ArSession_pause: session_pause,
-        ArSession_update: session_update,
-        ArSession_setDisplayGeometry: set_display,
-        ArSession_getSupportedCameraConfigsWithFilter: supported_modes,
-        ArSession_setCameraConfig: set_mode,
-        ArSession_getAllTrackables: all_trackables,
-        ArCameraConfigFilter_create: filter_create,
-        ArCameraConfigFilter_destroy: filter_destroy,
-        ArCameraConfigList_create: modes_create,
-        ArCameraConfigList_destroy: modes_destroy,
-        ArCameraConfigList_getSize: modes_size,
-        ArCameraConfigList_getItem: modes_item,
-        ArCameraConfig_create: mode_create,
-        ArCameraConfig_destroy: mode_destroy,
-        ArCameraConfig_getImageDimensions: mode_size,
-        ArCameraConfig_getFpsRange: mode_hz,
-        ArConfig_create: config_create,
-        ArConfig_destroy: config_destroy,
-        ArConfig_setUpdateMode: set_update,
-        ArConfig_setPlaneFindingMode: set_planes,
-        ArConfig_setLightEstimationMode: set_light,
-        ArConfig_setTextureUpdateMode: set_texture,
-        ArFrame_create: frame_create,
-        ArFrame_destroy: frame_destroy,
-        ArFrame_getTimestamp: frame_time,
-        ArFrame_acquireCamera: acquire_camera,
-        ArFrame_acquireCameraImage: acquire_image,
-        ArFrame_getLightEstimate: frame_light,
-        ArCamera_release: camera_release,
-        ArCamera_getPose: camera_pose,
-        ArCamera_getTrackingState: camera_state,
-        ArCamera_getTrackingFailureReason: camera_reason,
-        ArCamera_getImageIntrinsics: camera_intrinsics,
-        ArCameraIntrinsics_create: intrinsics_create,
-        ArCameraIntrinsics_destroy: intrinsics_destroy,
-        ArCameraIntrinsics_getFocalLength: focal_length,
-        ArCameraIntrinsics_getPrincipalPoint: principal_point,
-        ArCameraIntrinsics_getImageDimensions: dimensions,
-        ArPose_create: pose_create,
-        ArPose_destroy: pose_destroy,
-        ArPose_getPoseRaw: pose_raw,
-        ArImage_release: image_release,
-        ArImage_getWidth: image_width,
-        ArImage_getHeight: image_height,
-        ArImage_getFormat: image_format,
-        ArImage_getNumberOfPlanes: image_planes,
-        ArImage_getPlaneData: plane_data,
-        ArImage_getPlanePixelStride: plane_pixel_stride,
-        ArImage_getPlaneRowStride: plane_row_stride,
-        ArLightEstimate_create: light_create,
-        ArLightEstimate_destroy: light_destroy,
-        ArLightEstimate_getState: light_state,
-        ArLightEstimate_getEnvironmentalHdrMainLightDirection: light_direction,
-        ArLightEstimate_getEnvironmentalHdrMainLightIntensity: light_intensity,
-        ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics: light_harmonics,
-        ArTrackableList_create: list_create,
-        ArTrackableList_destroy: list_destroy,
-        ArTrackableList_getSize: list_size,
-        ArTrackableList_acquireItem: list_item,
-        ArTrackable_release: trackable_release,
-        ArTrackable_getTrackingState: trackable_state,
-        ArPlane_getType: plane_kind,
-        ArPlane_getCenterPose: plane_pose,
-        ArPlane_getPolygonSize: polygon_size,
-        ArPlane_getPolygon: polygon,
-        ArSession_acquireNewAnchor: acquire_anchor,
-        ArAnchor_getPose: anchor_pose,
-        ArAnchor_getTrackingState: anchor_state,
-        ArAnchor_detach: anchor_detach,
-        ArAnchor_release: anchor_release,
-    }
 }

@@ -2,6 +2,8 @@
 //! out must come back once.
 
 mod functions;
+mod images;
+mod table;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,7 +11,7 @@ use std::fmt::Write as _;
 
 use super::ffi::ArPlane;
 
-pub(crate) use functions::functions;
+pub(crate) use table::FUNCTIONS;
 
 /// A plane that the fake has found.
 #[derive(Clone)]
@@ -40,6 +42,10 @@ pub(crate) struct World {
     pub(crate) image: Vec<(Vec<u8>, i32, i32)>,
     pub(crate) light: (i32, [f32; 3], [f32; 3], [f32; 27]),
     pub(crate) planes: Vec<FakePlane>,
+    /// Images that are followed; their kind is the tracking method.
+    pub(crate) images: Vec<FakePlane>,
+    /// Whether the list was asked for images.
+    lists_images: bool,
     pub(crate) anchor_state: i32,
     /// Poses that were given.
     given: Vec<[f32; 7]>,
@@ -74,6 +80,8 @@ impl Default for World {
             image: vec![(pixel(50, 8), 4, 1), (pixel(90, 2), 2, 1), (pixel(200, 2), 2, 1)],
             light: (1, [0.0, 0.0, 2.0], [1.0, 2.0, 3.0], [0.5; 27]),
             planes: Vec::new(),
+            images: Vec::new(),
+            lists_images: false,
             anchor_state: 0,
             given: Vec::new(),
             calls: String::new(),
@@ -83,6 +91,9 @@ impl Default for World {
         }
     }
 }
+
+/// Numbers of images begin here.
+const IMAGES: usize = 500;
 
 thread_local! {
     /// Each test runs on a thread of its own.
@@ -135,6 +146,12 @@ impl World {
 
     fn plane(&mut self, plane: *const ArPlane) -> FakePlane {
         let index = self.used("plane", plane);
-        self.planes[index].clone()
+        self.trackable(index).clone()
+    }
+
+    /// A plane, or from [`IMAGES`] on an image.
+    fn trackable(&self, index: usize) -> &FakePlane {
+        let image = index.checked_sub(IMAGES).map(|index| &self.images[index]);
+        image.unwrap_or_else(|| &self.planes[index])
     }
 }
