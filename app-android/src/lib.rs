@@ -7,9 +7,9 @@
 //! `java`, the camera's permission and the system's settings through JNI; the loading of ARCore's library.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the camera's exposure, which the app then takes to be constant; the person's size of letters;
-//! video, choosing a toy, and handing files on: photos, recordings, the log and times are written into the app's own folder.
-//! ARCore keeps exposure and frame rate to itself, so neither is held or set.
+//! What is not here yet: the person's size of letters, video, and handing files on: photos, recordings, the log and times are
+//! written into the app's own folder, and toys of the person's own are read from there.
+//! ARCore keeps exposure and frame rate to itself, so neither is held or set, and no lens is photographed.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.
 //!
@@ -19,10 +19,7 @@ pub mod arcore;
 pub mod convert;
 pub mod input;
 pub mod phone;
-pub mod record;
-pub mod save;
 pub mod shell;
-pub mod starts;
 
 mod guard;
 

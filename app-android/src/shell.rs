@@ -10,18 +10,20 @@ use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::{Take, Taken};
 use app_core::toy::{Toy, ToyError};
+use app_files::toys::{self, BUNDLED, ToyFile};
+use app_files::{record, save, starts};
 
 use crate::arcore::feed::Feed;
 use crate::arcore::tracker::{Geometry, Run};
+use crate::convert;
 use crate::guard::{Callback, guarded};
 use crate::phone::Phone;
-use crate::{convert, record, save, starts};
 
 /// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
 const LANDSCAPE: i32 = 1;
 
-/// File of the one toy that there is.
-const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
+/// The app with its version, as recordings name it.
+const APP: &str = concat!("app-android ", env!("CARGO_PKG_VERSION"));
 /// Time after which heat and free space are looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
 
@@ -30,7 +32,7 @@ const LOOK: Duration = Duration::from_secs(1);
 /// # Errors
 /// If it cannot be read.
 pub fn bundled_toy() -> Result<Arc<Toy>, ToyError> {
-    Ok(Arc::new(Toy::from_glb("toy.glb", TOY)?))
+    Ok(Arc::new(Toy::from_glb("toy.glb", BUNDLED)?))
 }
 
 /// An app and the phone that it runs on.
@@ -38,6 +40,7 @@ pub struct Shell<P> {
     live: Live,
     phone: P,
     feed: Feed,
+    toy_file: ToyFile,
     /// What other threads tell.
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     wants_device: bool,
@@ -53,6 +56,7 @@ impl<P: Phone> Shell<P> {
             live,
             phone,
             feed,
+            toy_file: ToyFile::default(),
             done: channel(),
             wants_device: false,
             looked: None,
@@ -166,8 +170,14 @@ impl<P: Phone> Shell<P> {
                 // Not there yet, and said so.
                 ShellCommand::Video(true) => self.tell(ShellEvent::Saved(Saved::Failed)),
                 ShellCommand::PickToy => {
-                    let reason = "toys cannot be chosen on Android yet".to_owned();
-                    self.tell(ShellEvent::Toy(Err(reason)));
+                    let folder = self.phone.folder();
+                    let files = toys::list(&folder.unwrap_or_default());
+                    self.tell(ShellEvent::ToyFiles(files));
+                }
+                ShellCommand::ReadToy(name) => {
+                    let (file, folder) = (self.toy_file.clone(), self.phone.folder().unwrap_or_default());
+                    let died = ShellEvent::Toy(Err("it could not be read".to_owned()));
+                    self.on_thread("toy", died, move || file.read(&folder, &name));
                 }
                 ShellCommand::Remember(text) => {
                     let kept = self
@@ -206,8 +216,9 @@ impl<P: Phone> Shell<P> {
             file: folder.display().to_string(),
             taken: Taken::died(take.number()),
         });
+        let toy = self.toy_file.bytes();
         self.on_thread("record", died, move || {
-            ShellEvent::Recorded(record::write(take, TOY, &folder))
+            ShellEvent::Recorded(record::write(take, (APP, &toy), &folder))
         });
     }
 

@@ -10,6 +10,7 @@ use app_core::preset::Preset;
 use app_core::toy::ToyError;
 use app_core::wgpu::{self, rwh};
 use app_core::{Core, CoreError};
+use app_files::starts;
 use ndk::native_window::NativeWindow;
 
 use crate::arcore::feed::Feed;
@@ -19,7 +20,6 @@ use crate::input::screen;
 use crate::java::Activity;
 use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
-use crate::starts;
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]

@@ -7,14 +7,12 @@ use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, T
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
-use app_core::scene::Image;
 use glam::DVec2;
 
 use crate::arcore::fake::{FUNCTIONS, FakePlane, world};
 use crate::arcore::feed::Feed;
 use crate::input::{Finger, Motion, screen, touches};
 use crate::phone::{Java, Phone, permission};
-use crate::save;
 use crate::shell::{Shell, bundled_toy};
 
 /// A phone that grants the camera when it is asked for.
@@ -173,22 +171,22 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
 }
 
 #[test]
-fn a_photo_is_a_png_of_the_same_pixels() {
-    use app_core::app::Saved;
-    let folder = std::env::temp_dir().join(format!("app-android-{}", std::process::id()));
-    let picture = Image {
-        width_px: 2,
-        height_px: 1,
-        rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
-    };
-    assert_eq!(save::picture(&folder, "photo.png", &picture), Saved::Done);
-    let back = image::open(folder.join("photo.png"))
-        .expect("a picture")
-        .to_rgba8();
-    assert_eq!(back.into_raw(), picture.rgba8);
-    let in_a_file = folder.join("photo.png");
-    assert_eq!(save::bytes(&in_a_file, "log.txt", b"log"), Saved::Failed);
-    std::fs::remove_dir_all(&folder).expect("a folder");
+fn the_toys_of_the_folder_are_listed_and_read_on_a_thread() {
+    let mut shell = shell_on(Desk::default());
+    shell.obey(vec![ShellCommand::PickToy]);
+    let listed = shell.live().app().toy_files().expect("a list");
+    assert_eq!(listed.first().map(String::as_str), Some("Llama"));
+    shell.obey(vec![ShellCommand::ReadToy("none.glb".to_owned())]);
+    let begun = std::time::Instant::now();
+    while shell.live().app().notice().is_none() {
+        assert!(
+            begun.elapsed() < std::time::Duration::from_secs(60),
+            "nothing was told"
+        );
+        shell.tick();
+    }
+    let told = format!("{:?}", shell.live().app().notice());
+    assert!(told.contains("none.glb"), "{told}");
 }
 
 #[test]

@@ -1,11 +1,9 @@
 //! Work on threads of its own, whose results are fetched with the next picture.
 
-use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::{fs, io, thread};
+use std::thread;
 
-use app_core::app::{Saved, ShellEvent};
-use app_core::scene::Image;
+use app_core::app::ShellEvent;
 
 use crate::guard::{Callback, guarded};
 
@@ -47,37 +45,6 @@ impl Jobs {
     }
 }
 
-/// Writes `picture` into `folder` as a PNG file of that name, and tells what became of it.
-#[must_use]
-pub fn save_picture(folder: &Path, name: &str, picture: &Image) -> Saved {
-    let (size, rgba8) = ([picture.width_px, picture.height_px], &picture.rgba8);
-    let path = folder.join(name).with_extension("png");
-    let colors = image::ExtendedColorType::Rgba8;
-    match image::save_buffer(&path, rgba8, size[0], size[1], colors) {
-        Ok(()) => Saved::Done,
-        Err(image::ImageError::IoError(error)) => failed(&path, &error),
-        Err(error) => failed(&path, &io::Error::other(error)),
-    }
-}
-
-/// Writes a file.
-#[must_use]
-pub fn save_bytes(path: &Path, bytes: &[u8]) -> Saved {
-    match fs::write(path, bytes) {
-        Ok(()) => Saved::Done,
-        Err(error) => failed(path, &error),
-    }
-}
-
-fn failed(path: &Path, error: &io::Error) -> Saved {
-    eprintln!("app-ios: {}: {error}", path.display());
-    match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Saved::NoRoom,
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => Saved::NotAllowed,
-        _ => Saved::Failed,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::{Duration, Instant};
@@ -102,26 +69,5 @@ mod tests {
         assert!(matches!(wait_for(&jobs), ShellEvent::Aligned(None)));
         jobs.start(|| ShellEvent::MemoryLow, || ShellEvent::Aligned(None));
         assert!(matches!(wait_for(&jobs), ShellEvent::MemoryLow));
-    }
-
-    #[test]
-    fn a_photo_is_a_file_of_the_same_codes_or_is_told_as_missing() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/tmp/photos");
-        fs::create_dir_all(&folder).expect("a folder");
-        let picture = Image {
-            width_px: 2,
-            height_px: 1,
-            rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
-        };
-        assert_eq!(save_picture(&folder, "photo", &picture), Saved::Done);
-        let read = image::open(folder.join("photo.png"))
-            .expect("a PNG file")
-            .to_rgba8();
-        assert_eq!(read.into_raw(), picture.rgba8);
-        assert_eq!(
-            save_picture(&folder.join("none"), "photo", &picture),
-            Saved::Failed
-        );
-        assert_eq!(save_bytes(&folder.join("none/log.txt"), b""), Saved::Failed);
     }
 }

@@ -9,6 +9,8 @@ use app_core::app::{
 };
 use app_core::interface::Screen;
 use app_core::recording::{Take, Taken};
+use app_files::toys::{self, ToyFile};
+use app_files::{record, save, starts};
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
@@ -16,10 +18,12 @@ use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
 
 use crate::arkit::session::Session;
 use crate::inbox::{Inbox, Told};
-use crate::jobs::{Jobs, save_picture};
-use crate::stage::{Fitted, Stage, StageError, TOY};
-use crate::{camera, convert, record, starts};
+use crate::jobs::Jobs;
+use crate::stage::{Fitted, Stage, StageError};
+use crate::{camera, convert};
 
+/// The app with its version, as recordings name it.
+const APP: &str = concat!("app-ios ", env!("CARGO_PKG_VERSION"));
 /// Time after which free space is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
 
@@ -38,6 +42,7 @@ pub(crate) struct Shell {
     looked: Option<Instant>,
     wants_device: bool,
     frames_per_s: u32,
+    toy_file: ToyFile,
     /// While the camera is darkened.
     held_exposure: Option<camera::Exposure>,
     /// For an app that is about to be made.
@@ -63,6 +68,7 @@ impl Shell {
             looked: None,
             wants_device: false,
             frames_per_s: 60,
+            toy_file: ToyFile::default(),
             held_exposure: None,
             starts: None,
             panics: Panics::default(),
@@ -81,6 +87,7 @@ impl Shell {
             self.lend();
             // Another app than the one that threads worked for, and that was told.
             self.jobs = Jobs::default();
+            self.toy_file = ToyFile::default();
             (self.permission, self.thermal) = (None, None);
             if std::mem::take(&mut self.is_restarted) {
                 self.inbox.tell(ShellEvent::Restarted);
@@ -249,9 +256,11 @@ impl Shell {
                         eprintln!("app-ios: the start is not kept: {error}");
                     }
                 }
-                ShellCommand::PickToy => {
-                    let reason = "this app has one toy so far".to_owned();
-                    self.inbox.tell(ShellEvent::Toy(Err(reason)));
+                ShellCommand::PickToy => self.inbox.tell(ShellEvent::ToyFiles(toys::list(&documents()))),
+                ShellCommand::ReadToy(name) => {
+                    let file = self.toy_file.clone();
+                    let died = || ShellEvent::Toy(Err("it could not be read".to_owned()));
+                    self.jobs.start(move || file.read(&documents(), &name), died);
                 }
                 ShellCommand::Video(false) | ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
             }
@@ -267,9 +276,9 @@ impl Shell {
             return self.saved(Saved::Failed);
         };
         let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-        let name = format!("photo_{}", since_1970.unwrap_or_default().as_millis());
+        let name = format!("photo_{}.png", since_1970.unwrap_or_default().as_millis());
         self.jobs.start(
-            move || ShellEvent::Saved(save_picture(&documents(), &name, &picture)),
+            move || ShellEvent::Saved(save::picture(&documents(), &name, &picture)),
             || ShellEvent::Saved(Saved::Failed),
         );
     }
@@ -280,9 +289,9 @@ impl Shell {
     }
 
     fn record(&mut self, take: Take) {
-        let number = take.number();
+        let (number, toy) = (take.number(), self.toy_file.bytes());
         self.jobs.start(
-            move || ShellEvent::Recorded(record::write(take, TOY, &documents())),
+            move || ShellEvent::Recorded(record::write(take, (APP, &toy), &documents())),
             move || {
                 ShellEvent::Recorded(Recorded {
                     file: String::new(),

@@ -7,14 +7,11 @@ use app_core::preset::Preset;
 use app_core::toy::{Toy, ToyError};
 use app_core::wgpu::{self, SurfaceTargetUnsafe};
 use app_core::{Core, CoreError};
+use app_files::record::clock;
+use app_files::toys::BUNDLED;
 use objc2::Message;
 use objc2::rc::Retained;
 use objc2_quartz_core::{CALayer, CAMetalLayer};
-
-use crate::record::clock;
-
-/// The toy to begin with: that of the session in this repository.
-pub(crate) const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -70,7 +67,7 @@ impl Stage {
                 .core_mut()
                 .resume(surface_on(&self.instance, layer)?, size_px)?,
             None => {
-                let toy = Arc::new(Toy::from_glb("toy.glb", TOY)?);
+                let toy = Arc::new(Toy::from_glb("toy.glb", BUNDLED)?);
                 let core = core_on(&self.instance, layer, size_px)?;
                 let mut live = Live::new(core, toy, Preset::default());
                 live.time_by(clock());

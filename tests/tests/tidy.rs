@@ -65,6 +65,7 @@ fn sources(folder: &str, extension: &str) -> Vec<Source> {
 fn rust_sources() -> Vec<Source> {
     let folders = [
         "app-core/src",
+        "app-core/files/src",
         "app-ios/src",
         "app-android/src",
         "tests/src",

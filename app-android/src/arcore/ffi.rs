@@ -20,7 +20,21 @@ macro_rules! opaque {
 
 opaque! {
     ArAnchor ArAugmentedImage ArAugmentedImageDatabase ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
-    ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
+    ArImageMetadata ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
+}
+
+/// An entry of what a camera says of a picture.
+#[allow(non_camel_case_types, reason = "a name of the C interface")]
+#[repr(C)]
+pub struct ArImageMetadata_const_entry {
+    /// What it is.
+    pub tag: u32,
+    /// `ACAMERA_TYPE_*`.
+    pub kind: u8,
+    /// How many numbers.
+    pub count: u32,
+    /// The first of them.
+    pub data: *const u8,
 }
 
 macro_rules! enumeration {
@@ -148,6 +162,7 @@ functions! {
     fn ArFrame_getTimestamp(*const ArSession, *const ArFrame, *mut i64);
     fn ArFrame_acquireCamera(*const ArSession, *const ArFrame, *mut *mut ArCamera);
     fn ArFrame_acquireCameraImage(*mut ArSession, *mut ArFrame, *mut *mut ArImage) -> ArStatus;
+    fn ArFrame_acquireImageMetadata(*const ArSession, *const ArFrame, *mut *mut ArImageMetadata) -> ArStatus;
     fn ArFrame_getLightEstimate(*const ArSession, *const ArFrame, *mut ArLightEstimate);
 
     fn ArCamera_release(*mut ArCamera);
@@ -173,6 +188,9 @@ functions! {
     fn ArImage_getPlaneData(*const ArSession, *const ArImage, i32, *mut *const u8, *mut i32);
     fn ArImage_getPlanePixelStride(*const ArSession, *const ArImage, i32, *mut i32);
     fn ArImage_getPlaneRowStride(*const ArSession, *const ArImage, i32, *mut i32);
+
+    fn ArImageMetadata_release(*mut ArImageMetadata);
+    fn ArImageMetadata_getConstEntry(*const ArSession, *const ArImageMetadata, u32, *mut ArImageMetadata_const_entry) -> ArStatus;
 
     fn ArLightEstimate_create(*const ArSession, *mut *mut ArLightEstimate);
     fn ArLightEstimate_destroy(*mut ArLightEstimate);

@@ -59,7 +59,7 @@ impl Session {
 
     /// The frame of the last update; none where its picture is not there, as at the start and under load.
     ///
-    /// ARCore does not tell the exposure. The picture is shown as it is: the activity lies as the sensor does.
+    /// The picture is shown as it is: the activity lies as the sensor does.
     pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {
             return Ok(None);
@@ -87,7 +87,7 @@ impl Session {
             stamp,
             intrinsics: self.intrinsics(&camera, image.size_px())?,
             image,
-            exposure: None,
+            exposure: self.exposure(),
             tracking: if is_tracking {
                 Tracking::Normal
             } else {

@@ -14,6 +14,7 @@ fn in_rust(c: &str) -> String {
     let name = match name.trim() {
         "int32_t" => "i32",
         "int64_t" => "i64",
+        "uint32_t" => "u32",
         "uint8_t" => "u8",
         "float" => "f32",
         "char" => "c_char",

@@ -15,6 +15,7 @@ pub mod library;
 
 mod anchors;
 mod card;
+mod exposure;
 mod owned;
 mod planes;
 

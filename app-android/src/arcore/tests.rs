@@ -214,6 +214,28 @@ fn a_frame_is_copied_whole() {
 }
 
 #[test]
+fn exposure_is_told_where_the_camera_tells_it() {
+    let mut tracker = running();
+    let mut exposure = |told, status| {
+        world(|world| {
+            world.exposure = told;
+            world.fails.insert("metadata", status);
+            world.time_ns += 1;
+        });
+        let frame = tracker.update().expect("no error").expect("a frame");
+        frame.exposure.and_then(|exposure| exposure.amount())
+    };
+    // A hundredth of a second at ISO 200.
+    assert_eq!(exposure((10_000_000, 200, 1), 0), Some(0.02));
+    assert_eq!(exposure((10_000_000, 200, 1), -12), None, "not yet there");
+    assert_eq!(exposure((10_000_000, 200, 3), 0), None, "another type");
+    assert_eq!(exposure((0, 200, 1), 0), None);
+    assert_eq!(exposure((10_000_000, -1, 1), 0), None);
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
 fn the_card_is_where_it_is_seen_and_nowhere_else() {
     let card = |state, method| FakePlane {
         state,

@@ -123,6 +123,8 @@ pub enum Wish {
     ShowProfile(bool),
     /// A toy of the person's own.
     PickToy,
+    /// That of [`ShellEvent::ToyFiles`], by its place there; none to keep the one of now.
+    ChooseToy(Option<usize>),
     /// The log, and the latest recording and profile.
     Share,
     /// The preset that the shell has chosen, in place of the simplest.
@@ -150,6 +152,8 @@ pub enum ShellEvent {
     MemoryLow,
     /// [`ShellCommand::Align`] ended; none where its thread did not come to an end.
     Aligned(Option<Box<AlignedJob>>),
+    /// Names of toys' files that a person can choose from, in answer to [`ShellCommand::PickToy`].
+    ToyFiles(Vec<String>),
     /// A toy was read, or why it was not.
     Toy(Result<Arc<Toy>, String>),
     /// A photo, a video or what is to be shared was saved, or not.
@@ -218,8 +222,10 @@ pub enum ShellCommand {
     /// Write this recording on another thread, and tell; none where the one before was ended: what waits of it is still
     /// written.
     Record(Option<Box<Take>>),
-    /// Let a person choose a toy's file, and tell.
+    /// Let a person choose a toy's file and tell the toy, or tell the files that there are.
     PickToy,
+    /// Read the toy's file of that name, on another thread, and tell.
+    ReadToy(String),
     /// Hand log, recording and profile to whoever the person chooses.
     Share,
     /// Keep this text for the next start, at once: see [`Starts`].

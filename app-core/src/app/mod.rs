@@ -24,6 +24,7 @@ mod start;
 mod starts;
 mod step;
 mod table;
+mod toys;
 mod wishes;
 
 use std::sync::Arc;
@@ -79,6 +80,8 @@ pub struct App {
     /// The latest that could be trusted.
     camera: Option<Camera>,
     toy: Arc<Toy>,
+    /// While a person chooses another one.
+    toy_files: Option<Vec<String>>,
     table: Option<FoundPlane>,
     plate_taker: PlateTaker,
     plate_step: Option<PlateStep>,
@@ -120,6 +123,7 @@ impl App {
             playback: Playback::of(&toy),
             ghost_shape: GhostShape::of(&toy),
             toy,
+            toy_files: None,
             table: None,
             plate_taker: PlateTaker::default(),
             plate_step: None,
@@ -150,6 +154,7 @@ impl App {
             ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
             ShellEvent::MemoryLow => self.memory_low(),
             ShellEvent::Aligned(done) => self.aligned(done),
+            ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
             ShellEvent::Saved(saved) => self.saved(saved),
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
@@ -273,6 +278,7 @@ impl App {
         }
         self.step = next;
         self.lens.give_up();
+        self.toy_files = None;
         // What was said of the step before helps no longer.
         self.notices = Notices::default();
         match next {

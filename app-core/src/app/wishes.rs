@@ -1,16 +1,11 @@
 //! What happens when a person wishes something, or the platform changes.
 
-use std::sync::Arc;
-
 use super::App;
 use super::event::{ArSession, Device, Permission, Saved, ShellCommand, Wish};
 use super::ghost::Ghost;
-use super::ghost_shape::GhostShape;
 use super::notice::Notice;
-use super::playback::Playback;
 use super::step::{Cause, Step};
 use super::table::table_at;
-use crate::toy::Toy;
 
 impl App {
     pub(super) fn wish(&mut self, wish: Wish, commands: &mut Vec<ShellCommand>) {
@@ -55,6 +50,7 @@ impl App {
             Wish::Record(is_on) => self.wish_recording(is_on),
             Wish::ShowProfile(is_on) => self.shows_profile = is_on,
             Wish::PickToy => commands.push(ShellCommand::PickToy),
+            Wish::ChooseToy(chosen) => self.choose_toy(chosen, commands),
             Wish::Share => commands.push(ShellCommand::Share),
             Wish::RestorePreset => self.restore_preset(commands),
         }
@@ -148,20 +144,6 @@ impl App {
             self.captures.video = false;
         }
         self.tell(Notice::Saved(saved));
-    }
-
-    /// A toy of the person's own; what was photographed of the place stays.
-    pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, String>) {
-        match read {
-            Ok(toy) => {
-                self.playback = Playback::of(&toy);
-                self.ghost_shape = GhostShape::of(&toy);
-                self.toy = toy;
-                self.ghost = None;
-                self.go(Cause::Replace);
-            }
-            Err(reason) => self.tell(Notice::ToyRefused(reason)),
-        }
     }
 
     pub(super) fn tell(&mut self, notice: Notice) {

@@ -29,6 +29,7 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mu
                     .min_scrolled_height(tallest);
                 scrolled.show(ui, |ui| match app.obstacle() {
                     Some(obstacle) => in_the_way(ui, app, obstacle, wishes),
+                    None if app.toy_files().is_some() => toys(ui, app, wishes),
                     None if app.step() == Step::Play => play::show(ui, app, is_menu_open, wishes),
                     None => step(ui, app, wishes),
                 });
@@ -61,6 +62,9 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
             if app.sees_card() && other(ui, text::TAKE_LENS) {
                 wishes.push(Wish::TakeLens);
             }
+            if other(ui, text::PICK_TOY) {
+                wishes.push(Wish::PickToy);
+            }
             if other(ui, text::START_OVER) {
                 wishes.push(Wish::StartOver);
             }
@@ -72,6 +76,19 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
             }
         }
         Step::FindTable | Step::Play => {}
+    }
+}
+
+/// Toys to choose from.
+fn toys(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+    words(ui, text::PICK_TOY, text::WHERE_TOYS_ARE);
+    for (index, name) in app.toy_files().unwrap_or_default().iter().enumerate() {
+        if other(ui, name) {
+            wishes.push(Wish::ChooseToy(Some(index)));
+        }
+    }
+    if other(ui, text::BACK) {
+        wishes.push(Wish::ChooseToy(None));
     }
 }
 

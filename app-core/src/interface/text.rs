@@ -212,6 +212,8 @@ pub(super) const PROFILE: &str = "Show times";
 pub(super) const REPLACE: &str = "Move the outline";
 pub(super) const RETAKE: &str = "Photograph the empty place";
 pub(super) const PICK_TOY: &str = "Another toy";
+pub(super) const WHERE_TOYS_ARE: &str =
+    "Put toys of your own, as binary glTF files (.glb), into this app's folder, and they are listed here.";
 pub(super) const SIMPLE: &str = "Simple shadow";
 pub(super) const RESTORE: &str = "Full shadow";
 pub(super) const SHARE: &str = "Share log and recording";

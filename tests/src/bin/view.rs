@@ -57,8 +57,8 @@ struct Args {
     /// Quality of a recording's pictures, 1 to 100 [default: lossless]
     #[arg(long, value_name = "QUALITY", value_parser = clap::value_parser!(u8).range(1..=100))]
     jpeg: Option<u8>,
-    /// What "Another toy" chooses: a binary glTF file; one can be dropped on the window, too
-    #[arg(long, value_name = "FILE.glb")]
+    /// What "Another toy" chooses: a binary glTF file, or a folder of them to choose from; one can be dropped on the window, too
+    #[arg(long, value_name = "PATH")]
     toy: Option<PathBuf>,
     /// Close the window after so many seconds
     #[arg(long, value_name = "N", conflicts_with = "tour")]

@@ -38,7 +38,7 @@ pub struct Desk {
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     /// Quality of a recording's pictures; lossless without one.
     pub jpeg_quality: Option<u8>,
-    /// The toy that a person chooses when asked.
+    /// The toy that a person chooses when asked, or a folder of toys to choose from.
     pub toy_to_pick: Option<PathBuf>,
     /// The thread that writes a recording.
     writer: Option<JoinHandle<()>>,
@@ -171,12 +171,20 @@ impl Desk {
                 ShellCommand::PickToy => {
                     let asked = self.toy_to_pick.clone();
                     match asked {
+                        Some(folder) if folder.is_dir() => {
+                            let files = kept::toys_of(&folder);
+                            self.tell(ShellEvent::ToyFiles(files));
+                        }
                         Some(path) => self.pick(&path),
                         None => {
                             let reason = "drop one on the window, or name one with --toy".to_owned();
                             self.tell(ShellEvent::Toy(Err(reason)));
                         }
                     }
+                }
+                ShellCommand::ReadToy(name) => {
+                    let folder = self.toy_to_pick.clone().unwrap_or_default();
+                    self.pick(&folder.join(name));
                 }
                 ShellCommand::Underexpose(is_on) => self.feed.is_dark = is_on,
                 ShellCommand::Remember(text) => kept::store_starts(&self.out, &text),

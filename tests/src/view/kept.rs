@@ -134,6 +134,20 @@ pub(super) fn read_toy(path: &Path) -> Result<(Arc<Toy>, Vec<u8>), String> {
     Ok((Arc::new(toy), file))
 }
 
+/// Names of the toys' files in a folder.
+pub(super) fn toys_of(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let is_toy = |name: &String| {
+        Path::new(name)
+            .extension()
+            .is_some_and(|extension| extension == "glb")
+    };
+    let mut toys: Vec<String> = names.filter(is_toy).collect();
+    toys.sort();
+    toys
+}
+
 /// What is free where a folder is, or is to be.
 #[cfg(unix)]
 pub(super) fn free_bytes(folder: &Path) -> Option<u64> {

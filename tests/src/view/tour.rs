@@ -202,6 +202,12 @@ impl<'a> Tour<'a> {
         self.shoot("recorded")?;
         self.press("Share log and recording")?;
         self.shoot("shared")?;
+        if self.desk.toy_to_pick.as_ref().is_some_and(|path| path.is_dir()) {
+            self.press("Another toy")?;
+            self.shoot("choose_toy")?;
+            self.press("Back")?;
+            self.shoot_nothing()?;
+        }
         // A picture is no toy.
         self.desk.toy_to_pick = self.written.first().cloned();
         self.press("Another toy")?;

@@ -8,5 +8,6 @@ mod recorded;
 mod screens;
 mod starts;
 mod table;
+mod toys;
 mod way;
 mod world;

@@ -117,6 +117,8 @@ fn wish() -> impl Strategy<Value = Wish> {
         Wish::Record(false),
         Wish::ShowProfile(true),
         Wish::PickToy,
+        Wish::ChooseToy(Some(1)),
+        Wish::ChooseToy(None),
         Wish::Share,
         Wish::RestorePreset,
     ];

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use app_core::alignment::{Alignment, AlignmentReport, PoseAlignment, PoseDeviation};
-use app_core::app::{App, Recorded};
+use app_core::app::{App, Device, Permission, Recorded, ShellEvent, Wish};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::{FrameInput, NoLight};
 use app_core::recording::Take;
@@ -27,6 +27,24 @@ pub(crate) fn toy_file() -> Vec<u8> {
 
 pub(crate) fn app() -> App {
     App::new(toy())
+}
+
+/// An app whose ghost stands on the table, without a plate.
+pub(crate) fn at_ghost() -> App {
+    let mut app = app();
+    for event in [
+        ShellEvent::Foreground(true),
+        ShellEvent::Device(Device::Ready),
+        ShellEvent::Permission(Permission::Granted),
+        ShellEvent::Wish(Wish::Begin),
+        ShellEvent::Frame(Box::new(frame(1, 0, 0, Tracking::Normal))),
+        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
+        ShellEvent::Wish(Wish::SkipPlate),
+        ShellEvent::Frame(Box::new(frame(2, 33_000_000, 0, Tracking::Normal))),
+    ] {
+        let _ = app.event(event);
+    }
+    app
 }
 
 /// A frame of a camera half a metre above the table, which looks down at it.

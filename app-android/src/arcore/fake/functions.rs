@@ -32,6 +32,7 @@ give_back! {
     intrinsics_destroy("intrinsics", ArCameraIntrinsics);
     pose_destroy("pose", ArPose);
     image_release("image", ArImage);
+    metadata_release("metadata", ArImageMetadata);
     light_destroy("light", ArLightEstimate);
     list_destroy("list", ArTrackableList);
     trackable_release("plane", ArTrackable);
@@ -291,6 +292,47 @@ pub(super) unsafe extern "C" fn acquire_image(
             unsafe { *place = world.make("image", 0) };
         }
         status
+    })
+}
+
+pub(super) unsafe extern "C" fn acquire_metadata(
+    _: *const ArSession,
+    frame: *const ArFrame,
+    place: *mut *mut ArImageMetadata,
+) -> i32 {
+    world(|world| {
+        world.used("frame", frame);
+        let status = world.status("metadata");
+        if status == 0 {
+            unsafe { *place = world.make("metadata", 0) };
+        }
+        status
+    })
+}
+
+pub(super) unsafe extern "C" fn metadata_entry(
+    _: *const ArSession,
+    metadata: *const ArImageMetadata,
+    tag: u32,
+    entry: *mut ArImageMetadata_const_entry,
+) -> i32 {
+    world(|world| {
+        world.used("metadata", metadata);
+        let (kind, data): (u8, *const u8) = match tag {
+            0xE_0000 => (3, (&raw const world.exposure.0).cast()),
+            0xE_0002 => (world.exposure.2, (&raw const world.exposure.1).cast()),
+            _ => return -1,
+        };
+        let count = 1;
+        unsafe {
+            *entry = ArImageMetadata_const_entry {
+                tag,
+                kind,
+                count,
+                data,
+            }
+        };
+        0
     })
 }
 

@@ -40,6 +40,8 @@ pub(crate) struct World {
     pub(crate) format: i32,
     /// Bytes, row stride and pixel stride of each plane.
     pub(crate) image: Vec<(Vec<u8>, i32, i32)>,
+    /// Nanoseconds and ISO speed of the picture, and the type that the camera says the speed is of.
+    pub(crate) exposure: (i64, i32, u8),
     pub(crate) light: (i32, [f32; 3], [f32; 3], [f32; 27]),
     pub(crate) planes: Vec<FakePlane>,
     /// Images that are followed; their kind is the tracking method.
@@ -78,6 +80,7 @@ impl Default for World {
             size_px: [4, 2],
             format: 0x23,
             image: vec![(pixel(50, 8), 4, 1), (pixel(90, 2), 2, 1), (pixel(200, 2), 2, 1)],
+            exposure: (10_000_000, 200, 1),
             light: (1, [0.0, 0.0, 2.0], [1.0, 2.0, 3.0], [0.5; 27]),
             planes: Vec::new(),
             images: Vec::new(),

@@ -36,3 +36,28 @@ pub fn bytes(folder: &Path, name: &str, bytes: &[u8]) -> Saved {
         Err(_) => Saved::Failed,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_photo_is_a_file_of_the_same_codes_or_is_told_as_missing() {
+        let folder = std::env::temp_dir().join(format!("app-files-photos-{}", std::process::id()));
+        let photo = Image {
+            width_px: 2,
+            height_px: 1,
+            rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
+        };
+        assert_eq!(picture(&folder, "photo.png", &photo), Saved::Done);
+        let read = image::open(folder.join("photo.png"))
+            .expect("a PNG file")
+            .to_rgba8();
+        assert_eq!(read.into_raw(), photo.rgba8);
+        // A file is no folder.
+        let no_folder = folder.join("photo.png");
+        assert_eq!(picture(&no_folder, "photo.png", &photo), Saved::Failed);
+        assert_eq!(bytes(&no_folder, "log.txt", b""), Saved::Failed);
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+}

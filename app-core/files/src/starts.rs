@@ -14,7 +14,7 @@ pub fn begin(folder: &Path) -> Starts {
     let mut starts = Starts::read(&fs::read_to_string(folder.join(FILE)).unwrap_or_default());
     starts.begin();
     if let Err(error) = store(folder, &starts.text()) {
-        eprintln!("app-ios: the start is not kept: {error}");
+        eprintln!("the start is not kept: {error}");
     }
     starts
 }

@@ -1,4 +1,4 @@
-//! Recordings: a thread of the shell's writes them into files that people get at.
+//! Recordings: a thread of a shell's writes them into files that people get at.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -11,9 +11,9 @@ use app_core::recording::{Limits, PictureCodec, Take, TakeOptions};
 
 use crate::save;
 
-/// Writes a recording of an app whose toy's file is `toy` into `folder` until it ends.
+/// Writes a recording into `folder` until it ends; `app` is the app with its version, and `toy` the file of its toy.
 #[must_use]
-pub fn write(take: Take, toy: &[u8], folder: &Path) -> Recorded {
+pub fn write(take: Take, (app, toy): (&str, &[u8]), folder: &Path) -> Recorded {
     // A clock that is set before 1970 makes every recording the same file.
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let name = format!("recording_{}.mcap", since.as_millis());
@@ -21,7 +21,7 @@ pub fn write(take: Take, toy: &[u8], folder: &Path) -> Recorded {
     let told = [
         ("system", std::env::consts::OS),
         ("architecture", std::env::consts::ARCH),
-        ("app", concat!("app-android ", env!("CARGO_PKG_VERSION"))),
+        ("app", app),
     ];
     let device = told.map(|(key, value)| (key.to_owned(), value.to_owned()));
     let taken = match file {
@@ -77,8 +77,7 @@ mod tests {
     use glam::{DMat4, DVec2, DVec3};
 
     use super::*;
-
-    const TOY: &[u8] = include_bytes!("../../tests/sessions/llama/toy.glb");
+    use crate::toys::BUNDLED as TOY;
 
     fn live(world_from_object: DMat4) -> (Scene, LiveFrame) {
         let intrinsics = Intrinsics {
@@ -126,14 +125,14 @@ mod tests {
 
     #[test]
     fn a_recording_is_a_file_that_is_read_as_a_session_or_is_told_as_missing() {
-        let folder = std::env::temp_dir().join(format!("app-android-recording-{}", std::process::id()));
+        let folder = std::env::temp_dir().join(format!("app-files-recording-{}", std::process::id()));
         let (scene, live) = live(DMat4::from_scale(DVec3::splat(0.1)));
         let (inlet, take) = Take::new(7, scene.clone(), live.camera.intrinsics);
         inlet
             .offer(0, Item::Live(Box::new(live.clone())))
             .expect("room in the queue");
         drop(inlet);
-        let Recorded { file, taken } = write(take, TOY, &folder);
+        let Recorded { file, taken } = write(take, ("app 1.0", TOY), &folder);
         assert_eq!((taken.n_frames, &taken.ending), (1, &Ending::Asked));
         let path = folder.join(file);
         let recording = Recording::open(fs::read(&path).expect("a file")).expect("a recording");
@@ -146,7 +145,7 @@ mod tests {
         assert!(codes.fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= 2);
         assert!(free_bytes(&folder).is_some_and(|free| free > 0));
         let (_, take) = Take::new(8, scene, live.camera.intrinsics);
-        let refused = write(take, TOY, &path);
+        let refused = write(take, ("app 1.0", TOY), &path);
         assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");
         fs::remove_dir_all(&folder).expect("a folder");
     }

@@ -1,0 +1,67 @@
+//! How the camera's picture was exposed, from what Android's camera says of it.
+
+use app_core::camera_frame::Exposure;
+
+use super::ffi::{ArImageMetadata, ArImageMetadata_const_entry};
+use super::owned::Owned;
+use super::session::Session;
+use super::status::Failure;
+
+/// `ACAMERA_SENSOR_EXPOSURE_TIME` of Android's `NdkCameraMetadataTags.h`: nanoseconds, 64 bits.
+const EXPOSURE_TIME: u32 = 14 << 16;
+/// `ACAMERA_SENSOR_SENSITIVITY`: ISO speed, 32 bits.
+const SENSITIVITY: u32 = (14 << 16) + 2;
+/// `ACAMERA_TYPE_INT32`.
+const INT32: u8 = 1;
+/// `ACAMERA_TYPE_INT64`.
+const INT64: u8 = 3;
+
+impl Session {
+    /// Of the frame of the last update; none where the camera does not tell.
+    pub(super) fn exposure(&self) -> Option<Exposure> {
+        let (api, raw) = (&self.api, self.raw());
+        let mut status = 0;
+        // SAFETY: session and frame live; metadata that were acquired are ours to release.
+        let metadata = unsafe {
+            Owned::new(
+                |place| status = (api.ArFrame_acquireImageMetadata)(raw, self.frame.as_ptr(), place),
+                api.ArImageMetadata_release,
+            )
+        };
+        Failure::check(status).ok()?;
+        let metadata = metadata?;
+        let (time, speed) = (
+            self.entry(&metadata, EXPOSURE_TIME, INT64)?,
+            self.entry(&metadata, SENSITIVITY, INT32)?,
+        );
+        // SAFETY: both entries have at least one number of the type that was asked for, until the metadata are released.
+        let (time_ns, iso) = unsafe {
+            (
+                time.cast::<i64>().read_unaligned(),
+                speed.cast::<i32>().read_unaligned(),
+            )
+        };
+        #[allow(clippy::cast_precision_loss, reason = "a part of a second")]
+        let duration_s = 1e-9 * time_ns as f64;
+        let iso = f64::from(iso);
+        let exposure = Exposure { duration_s, iso };
+        exposure.amount().map(|_| exposure)
+    }
+
+    /// Where the numbers of an entry are, if there are any of that type.
+    fn entry(&self, metadata: &Owned<ArImageMetadata>, tag: u32, kind: u8) -> Option<*const u8> {
+        let mut entry = ArImageMetadata_const_entry {
+            tag: 0,
+            kind: 0,
+            count: 0,
+            data: std::ptr::null(),
+        };
+        // SAFETY: session and metadata live, and the entry is a place of ours.
+        let status = unsafe {
+            let get = self.api.ArImageMetadata_getConstEntry;
+            get(self.raw(), metadata.as_ptr(), tag, &raw mut entry)
+        };
+        let is_told = status == 0 && entry.kind == kind && entry.count > 0 && !entry.data.is_null();
+        is_told.then_some(entry.data)
+    }
+}
