@@ -7,8 +7,8 @@
 //! `java`, the camera's permission and the system's settings through JNI; the loading of ARCore's library.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the person's size of letters, video, and handing files on: photos, recordings, the log and times are
-//! written into the app's own folder, and toys of the person's own are read from there.
+//! What is not here yet: the person's size of letters, the system's video encoder, and handing files on: photos, videos, recordings,
+//! the log and times are written into the app's own folder, and toys of the person's own are read from there.
 //! ARCore keeps exposure and frame rate to itself, so neither is held or set, and no lens is photographed.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.

@@ -11,6 +11,7 @@ use app_core::live::Live;
 use app_core::recording::{Take, Taken};
 use app_core::toy::{Toy, ToyError};
 use app_files::toys::{self, BUNDLED, ToyFile};
+use app_files::video::Video;
 use app_files::{record, save, starts};
 
 use crate::arcore::feed::Feed;
@@ -41,6 +42,7 @@ pub struct Shell<P> {
     phone: P,
     feed: Feed,
     toy_file: ToyFile,
+    video: Option<Video>,
     /// What other threads tell.
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     wants_device: bool,
@@ -57,6 +59,7 @@ impl<P: Phone> Shell<P> {
             phone,
             feed,
             toy_file: ToyFile::default(),
+            video: None,
             done: channel(),
             wants_device: false,
             looked: None,
@@ -119,7 +122,10 @@ impl<P: Phone> Shell<P> {
     /// Draws on the core's surface. A device or surface that is lost is to be brought anew.
     pub fn present(&mut self, screen: &Screen, time_s: f64) {
         match self.live.present(screen, time_s) {
-            Ok(commands) => self.obey(commands),
+            Ok(commands) => {
+                self.add_to_video(time_s);
+                self.obey(commands);
+            }
             Err(error) => {
                 eprintln!("app-android: nothing drawn: {error}");
                 self.tell(ShellEvent::Device(Device::Lost));
@@ -167,8 +173,8 @@ impl<P: Phone> Shell<P> {
                     self.tell(ShellEvent::Saved(saved));
                 }
                 ShellCommand::Record(Some(take)) => self.record(*take),
-                // Not there yet, and said so.
-                ShellCommand::Video(true) => self.tell(ShellEvent::Saved(Saved::Failed)),
+                ShellCommand::Video(true) => self.begin_video(),
+                ShellCommand::Video(false) => self.video = None,
                 ShellCommand::PickToy => {
                     let folder = self.phone.folder();
                     let files = toys::list(&folder.unwrap_or_default());
@@ -193,7 +199,6 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::LockExposure(_)
                 | ShellCommand::Underexpose(_)
                 | ShellCommand::FrameRate(_)
-                | ShellCommand::Video(false)
                 | ShellCommand::Record(None) => {}
             }
         }
@@ -220,6 +225,28 @@ impl<P: Phone> Shell<P> {
         self.on_thread("record", died, move || {
             ShellEvent::Recorded(record::write(take, (APP, &toy), &folder))
         });
+    }
+
+    fn begin_video(&mut self) {
+        let done = self.done.0.clone();
+        // The activity may be gone by then.
+        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
+        let begun = self.phone.folder().map(|folder| Video::begin(&folder, tell));
+        match begun {
+            Some(Ok(video)) => self.video = Some(video),
+            Some(Err(_)) => self.tell(ShellEvent::Saved(Saved::Failed)),
+            None => self.tell(ShellEvent::Saved(Saved::NotAllowed)),
+        }
+    }
+
+    /// The picture that was just drawn, for a video.
+    fn add_to_video(&mut self, time_s: f64) {
+        let Some(video) = self.video.as_mut().filter(|video| video.is_due(time_s)) else {
+            return;
+        };
+        if let Ok(picture) = self.live.read_picture() {
+            video.add(picture, time_s);
+        }
     }
 
     fn save_photo(&mut self) {

@@ -105,11 +105,14 @@ fn from_the_first_button_to_a_table() {
 }
 
 #[test]
-fn what_cannot_be_made_yet_is_said_to_have_failed() {
+fn a_video_without_a_folder_is_not_allowed() {
     let mut shell = shell();
     assert!(shell.live().app().notice().is_none());
     shell.obey(vec![ShellCommand::Video(true)]);
-    assert_eq!(shell.live().app().notice(), Some(&Notice::Saved(Saved::Failed)));
+    assert_eq!(
+        shell.live().app().notice(),
+        Some(&Notice::Saved(Saved::NotAllowed))
+    );
 }
 
 #[test]

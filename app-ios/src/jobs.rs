@@ -38,6 +38,12 @@ impl Jobs {
         }
     }
 
+    /// Takes what another thread has to tell.
+    #[must_use]
+    pub fn teller(&self) -> Sender<ShellEvent> {
+        self.done.clone()
+    }
+
     /// A result that has come.
     #[must_use]
     pub fn result(&self) -> Option<ShellEvent> {

@@ -10,6 +10,7 @@ use app_core::app::{
 use app_core::interface::Screen;
 use app_core::recording::{Take, Taken};
 use app_files::toys::{self, ToyFile};
+use app_files::video::Video;
 use app_files::{record, save, starts};
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
@@ -43,6 +44,7 @@ pub(crate) struct Shell {
     wants_device: bool,
     frames_per_s: u32,
     toy_file: ToyFile,
+    video: Option<Video>,
     /// While the camera is darkened.
     held_exposure: Option<camera::Exposure>,
     /// For an app that is about to be made.
@@ -69,6 +71,7 @@ impl Shell {
             wants_device: false,
             frames_per_s: 60,
             toy_file: ToyFile::default(),
+            video: None,
             held_exposure: None,
             starts: None,
             panics: Panics::default(),
@@ -87,7 +90,7 @@ impl Shell {
             self.lend();
             // Another app than the one that threads worked for, and that was told.
             self.jobs = Jobs::default();
-            self.toy_file = ToyFile::default();
+            (self.toy_file, self.video) = (ToyFile::default(), None);
             (self.permission, self.thermal) = (None, None);
             if std::mem::take(&mut self.is_restarted) {
                 self.inbox.tell(ShellEvent::Restarted);
@@ -135,7 +138,10 @@ impl Shell {
             return Ok(());
         };
         match live.present(screen, time_s) {
-            Ok(commands) => self.obey(commands),
+            Ok(commands) => {
+                self.add_to_video(time_s);
+                self.obey(commands);
+            }
             Err(error) => {
                 eprintln!("app-ios: {error}");
                 self.inbox.tell(ShellEvent::Device(Device::Lost));
@@ -249,8 +255,8 @@ impl Shell {
                 ShellCommand::SavePhoto => self.save_photo(),
                 ShellCommand::Share => self.share(),
                 ShellCommand::Record(Some(take)) => self.record(*take),
-                // None can be made yet, which is told as a failure.
-                ShellCommand::Video(true) => self.saved(Saved::Failed),
+                ShellCommand::Video(true) => self.begin_video(),
+                ShellCommand::Video(false) => self.video = None,
                 ShellCommand::Remember(text) => {
                     if let Err(error) = starts::store(&own_folder(), &text) {
                         eprintln!("app-ios: the start is not kept: {error}");
@@ -262,13 +268,33 @@ impl Shell {
                     let died = || ShellEvent::Toy(Err("it could not be read".to_owned()));
                     self.jobs.start(move || file.read(&documents(), &name), died);
                 }
-                ShellCommand::Video(false) | ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
+                ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
             }
         }
     }
 
     fn saved(&self, saved: Saved) {
         self.inbox.tell(ShellEvent::Saved(saved));
+    }
+
+    fn begin_video(&mut self) {
+        let done = self.jobs.teller();
+        // Whoever waited may be gone.
+        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
+        match Video::begin(&documents(), tell) {
+            Ok(video) => self.video = Some(video),
+            Err(_) => self.saved(Saved::Failed),
+        }
+    }
+
+    /// The picture that was just drawn, for a video.
+    fn add_to_video(&mut self, time_s: f64) {
+        let Some(video) = self.video.as_mut().filter(|video| video.is_due(time_s)) else {
+            return;
+        };
+        if let Some(Ok(picture)) = self.stage.live().map(|live| live.read_picture()) {
+            video.add(picture, time_s);
+        }
     }
 
     fn save_photo(&mut self) {

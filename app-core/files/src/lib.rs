@@ -1,10 +1,12 @@
-//! Files of an app on a phone, the same on both: recordings, photos, toys, and what is kept from start to start.
+//! Files of an app on a phone, the same on both: recordings, photos, videos, toys, and what is kept from start to start.
 //!
 //! The core does no input and output of its own; this is what both shells would else do twice. Whoever calls brings the folders.
 
 #![forbid(unsafe_code)]
 
+pub mod avi;
 pub mod record;
 pub mod save;
 pub mod starts;
 pub mod toys;
+pub mod video;

@@ -28,7 +28,11 @@ pub fn picture(folder: &Path, name: &str, picture: &Image) -> Saved {
 /// Writes a file into a folder, which is made where it is missing.
 #[must_use]
 pub fn bytes(folder: &Path, name: &str, bytes: &[u8]) -> Saved {
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(folder.join(name), bytes));
+    outcome(fs::create_dir_all(folder).and_then(|()| fs::write(folder.join(name), bytes)))
+}
+
+/// What to tell of a file that was written, or not.
+pub(crate) fn outcome(written: io::Result<()>) -> Saved {
     match written.map_err(|error| error.kind()) {
         Ok(()) => Saved::Done,
         Err(io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) => Saved::NoRoom,

@@ -9,6 +9,7 @@ use app_core::core::CoreError;
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::scene::Image;
+use app_files::video::Video;
 
 use super::feed::Feed;
 use super::kept;
@@ -47,7 +48,7 @@ pub struct Desk {
     /// Time since free space was told, in seconds.
     unlooked_s: f64,
     is_tracking: bool,
-    is_making_video: bool,
+    video: Option<Video>,
     n_saved: usize,
     /// Whether the device is to be opened anew.
     pub wants_device: bool,
@@ -71,7 +72,7 @@ impl Desk {
             recording: None,
             unlooked_s: f64::INFINITY,
             is_tracking: false,
-            is_making_video: false,
+            video: None,
             n_saved: 0,
             wants_device: false,
         }
@@ -117,7 +118,7 @@ impl Desk {
     /// As [`Live::screenshot`].
     pub fn screenshot(&mut self, screen: &Screen, time_s: f64) -> Result<Image, CoreError> {
         let (image, commands) = self.live.screenshot(screen, time_s)?;
-        self.drawn(commands);
+        self.drawn(commands, time_s);
         Ok(image)
     }
 
@@ -127,15 +128,27 @@ impl Desk {
     /// As [`Live::present`].
     pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<(), CoreError> {
         let commands = self.live.present(screen, time_s)?;
-        self.drawn(commands);
+        self.drawn(commands, time_s);
         Ok(())
     }
 
-    fn drawn(&mut self, commands: Vec<ShellCommand>) {
-        if self.is_making_video {
-            let _ = self.save_picture("video");
+    fn drawn(&mut self, commands: Vec<ShellCommand>, time_s: f64) {
+        if let Some(video) = self.video.as_mut().filter(|video| video.is_due(time_s))
+            && let Ok(picture) = self.live.read_picture()
+        {
+            video.add(picture, time_s);
         }
         self.obey(commands);
+    }
+
+    fn begin_video(&mut self) {
+        let done = self.done.0.clone();
+        // The window may be closed by then.
+        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
+        match Video::begin(&self.out, tell) {
+            Ok(video) => self.video = Some(video),
+            Err(_) => self.tell(ShellEvent::Saved(Saved::Failed)),
+        }
     }
 
     fn obey(&mut self, commands: Vec<ShellCommand>) {
@@ -162,12 +175,8 @@ impl Desk {
                     let saved = self.save_picture("photo");
                     self.tell(ShellEvent::Saved(saved));
                 }
-                ShellCommand::Video(is_on) => {
-                    self.is_making_video = is_on;
-                    if !is_on {
-                        self.tell(ShellEvent::Saved(Saved::Done));
-                    }
-                }
+                ShellCommand::Video(true) => self.begin_video(),
+                ShellCommand::Video(false) => self.video = None,
                 ShellCommand::PickToy => {
                     let asked = self.toy_to_pick.clone();
                     match asked {

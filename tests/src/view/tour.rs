@@ -20,6 +20,8 @@ const N_SETTLE: usize = 4;
 const N_PATIENCE: usize = 60;
 /// Frames that are recorded, and as many as screens take meanwhile.
 const N_RECORDED: usize = 24;
+/// Frames of a video.
+const N_VIDEO: usize = 15;
 /// How far off the simulated person leaves the ghost: in metres, and in radians.
 const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const GHOST_OFF_RAD: f64 = 0.1;
@@ -187,7 +189,19 @@ impl<'a> Tour<'a> {
             self.shoot_nothing()?;
         }
         self.shoot("times")?;
+        self.make_video()?;
         self.record()
+    }
+
+    /// A video of half a second.
+    fn make_video(&mut self) -> Result<(), TourError> {
+        self.press("Video")?;
+        for _ in 0..N_VIDEO {
+            self.frame()?;
+        }
+        self.shoot("video")?;
+        self.press("End video")?;
+        self.shoot_nothing()
     }
 
     /// Ends the recording after a second, and shares it.
