@@ -1,6 +1,7 @@
 //! What only Java can do: the camera's permission, the system's settings, and the pointers that ARCore asks for.
 
 use std::path::PathBuf;
+use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
 use app_core::app::Permission;
@@ -11,6 +12,7 @@ use jni::{Env, JavaVM, jni_sig, jni_str};
 
 use crate::guard::{Callback, guarded};
 use crate::heat::Thermometer;
+use crate::media_store;
 use crate::phone::{Java, Phone, permission};
 
 const CAMERA: &str = "android.permission.CAMERA";
@@ -48,6 +50,19 @@ impl Activity {
                 eprintln!("app-android: Java refused: {error}");
             }
         }));
+    }
+
+    /// Lets `act` call Java on a thread of its own, which may take its time, and writes to the log where it fails.
+    fn on_thread(&self, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<()> + Send + 'static) {
+        let app = self.app.clone();
+        let thread = thread::Builder::new().spawn(move || {
+            if let Some(Err(error)) = guarded(Callback::Thread, || with_java(&app, act)) {
+                eprintln!("app-android: Java refused: {error}");
+            }
+        });
+        if let Err(error) = thread {
+            eprintln!("app-android: no thread for Java: {error}");
+        }
     }
 }
 
@@ -204,6 +219,14 @@ impl Phone for Activity {
         self.app
             .external_data_path()
             .or_else(|| self.app.internal_data_path())
+    }
+
+    fn show_in_gallery(&mut self, file: PathBuf) {
+        self.on_thread(move |env, activity| media_store::copy(env, activity, &file).map(drop));
+    }
+
+    fn share(&mut self, files: Vec<PathBuf>) {
+        self.on_thread(move |env, activity| media_store::share(env, activity, &files));
     }
 
     fn own_folder(&self) -> Option<PathBuf> {

@@ -4,11 +4,13 @@
 //! `convert` holds everything that knows ARCore's axes and pixel rules, `input` what knows Android's fingers and screen.
 //! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
 //! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
-//! `java`, the camera's permission and the system's settings through JNI; the loading of ARCore's library.
+//! `java`, the camera's permission and the system's settings through JNI; `media_store`, which copies files to where other apps find
+//! them; `video`, the phone's encoder, whose layout of samples is in `yuv` and tested; the loading of ARCore's library.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the person's size of letters, the system's video encoder, and handing files on: photos, videos, recordings,
-//! the log and times are written into the app's own folder, and toys of the person's own are read from there.
+//! What is not here yet: the person's size of letters, and recordings by the system's encoder. Photos, videos, recordings, the log and
+//! times are written into the app's own folder, from which the gallery gets copies and whoever files are shared with; toys of the
+//! person's own are read from there.
 //! ARCore keeps exposure and frame rate to itself, so neither is held or set, and no lens is photographed.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.
@@ -20,6 +22,7 @@ pub mod convert;
 pub mod input;
 pub mod phone;
 pub mod shell;
+pub mod yuv;
 
 mod guard;
 
@@ -30,7 +33,11 @@ mod java;
 #[cfg(target_os = "android")]
 mod lifecycle;
 #[cfg(target_os = "android")]
+mod media_store;
+#[cfg(target_os = "android")]
 mod stage;
+#[cfg(target_os = "android")]
+mod video;
 
 #[cfg(test)]
 mod tests;

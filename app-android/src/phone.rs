@@ -1,7 +1,7 @@
 //! What the shell asks of the phone beside ARCore and graphics.
 
 use std::ffi::c_void;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use app_core::app::Permission;
 
@@ -30,6 +30,10 @@ pub trait Phone {
     fn thermal_status(&mut self) -> Option<i32>;
     /// Where files go that people get at, with a computer at least.
     fn folder(&self) -> Option<PathBuf>;
+    /// Has the gallery show a copy of a photo or a video.
+    fn show_in_gallery(&mut self, file: PathBuf);
+    /// Asks the person what to do with files.
+    fn share(&mut self, files: Vec<PathBuf>);
     /// Where files go that are the app's own.
     fn own_folder(&self) -> Option<PathBuf>;
 }
@@ -44,4 +48,42 @@ pub fn permission(is_granted: bool, was_asked: bool, may_explain: bool) -> Permi
         (false, _, true) => Permission::Denied,
         (false, true, false) => Permission::Barred,
     }
+}
+
+/// How Android's media store knows a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stored {
+    /// MIME type.
+    pub mime: &'static str,
+    /// The store's table: the inner class of `android.provider.MediaStore`, as Java's byte code names it.
+    pub table: &'static str,
+    /// Folder of the phone's storage: each table has its own.
+    pub folder: &'static str,
+}
+
+/// By the name's extension. What is no photo and no video is a download.
+#[must_use]
+pub fn stored(file: &Path) -> Stored {
+    const PHOTO: [&str; 2] = [
+        "android/provider/MediaStore$Images$Media",
+        "Pictures/Shadow Retargeting",
+    ];
+    const VIDEO: [&str; 2] = [
+        "android/provider/MediaStore$Video$Media",
+        "Movies/Shadow Retargeting",
+    ];
+    const OTHER: [&str; 2] = [
+        "android/provider/MediaStore$Downloads",
+        "Download/Shadow Retargeting",
+    ];
+    let extension = file.extension().and_then(|extension| extension.to_str());
+    let (mime, [table, folder]) = match extension.unwrap_or_default() {
+        "png" => ("image/png", PHOTO),
+        "mp4" => ("video/mp4", VIDEO),
+        "avi" => ("video/x-msvideo", VIDEO),
+        "txt" => ("text/plain", OTHER),
+        "json" => ("application/json", OTHER),
+        _ => ("application/octet-stream", OTHER),
+    };
+    Stored { mime, table, folder }
 }

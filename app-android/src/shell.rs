@@ -1,5 +1,6 @@
 //! The shell: what the app asks for is done, and what happens is told. All but Android itself, so that it runs in tests.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -11,7 +12,7 @@ use app_core::live::Live;
 use app_core::recording::{Take, Taken};
 use app_core::toy::{Toy, ToyError};
 use app_files::toys::{self, BUNDLED, ToyFile};
-use app_files::video::Video;
+use app_files::video::{Video, VideoFormat};
 use app_files::{record, save, starts};
 
 use crate::arcore::feed::Feed;
@@ -27,6 +28,11 @@ const LANDSCAPE: i32 = 1;
 const APP: &str = concat!("app-android ", env!("CARGO_PKG_VERSION"));
 /// Time after which heat and free space are looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
+/// Of videos, the better first.
+#[cfg(target_os = "android")]
+const VIDEOS: &[VideoFormat] = &[crate::video::H264, app_files::video::MOTION_JPEG];
+#[cfg(not(target_os = "android"))]
+const VIDEOS: &[VideoFormat] = &[app_files::video::MOTION_JPEG];
 
 /// The toy that the app comes with: the bundled session's, this project's own.
 ///
@@ -43,6 +49,8 @@ pub struct Shell<P> {
     feed: Feed,
     toy_file: ToyFile,
     video: Option<Video>,
+    /// Photos and videos that threads have written.
+    written: (Sender<PathBuf>, Receiver<PathBuf>),
     /// What other threads tell.
     done: (Sender<ShellEvent>, Receiver<ShellEvent>),
     wants_device: bool,
@@ -60,6 +68,7 @@ impl<P: Phone> Shell<P> {
             feed,
             toy_file: ToyFile::default(),
             video: None,
+            written: channel(),
             done: channel(),
             wants_device: false,
             looked: None,
@@ -72,6 +81,12 @@ impl<P: Phone> Shell<P> {
     /// The app.
     pub fn live(&mut self) -> &mut Live {
         &mut self.live
+    }
+
+    /// The phone.
+    #[cfg(test)]
+    pub(crate) fn phone(&self) -> &P {
+        &self.phone
     }
 
     /// Tells the app, and does what it asks for.
@@ -106,6 +121,9 @@ impl<P: Phone> Shell<P> {
     pub fn tick(&mut self) {
         while let Ok(event) = self.done.1.try_recv() {
             self.tell(event);
+        }
+        while let Ok(file) = self.written.1.try_recv() {
+            self.phone.show_in_gallery(file);
         }
         if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
             self.looked = Some(Instant::now());
@@ -167,11 +185,7 @@ impl<P: Phone> Shell<P> {
                 ShellCommand::Align(job) => self.align(job),
                 ShellCommand::ReopenDevice => self.wants_device = true,
                 ShellCommand::SavePhoto => self.save_photo(),
-                ShellCommand::Share => {
-                    let folder = self.phone.folder();
-                    let saved = folder.map_or(Saved::NotAllowed, |folder| record::share(&self.live, &folder));
-                    self.tell(ShellEvent::Saved(saved));
-                }
+                ShellCommand::Share => self.share(),
                 ShellCommand::Record(Some(take)) => self.record(*take),
                 ShellCommand::Video(true) => self.begin_video(),
                 ShellCommand::Video(false) => self.video = None,
@@ -227,11 +241,28 @@ impl<P: Phone> Shell<P> {
         });
     }
 
+    fn share(&mut self) {
+        let Some(folder) = self.phone.folder() else {
+            return self.tell(ShellEvent::Saved(Saved::NotAllowed));
+        };
+        let (saved, files) = record::share(&self.live, &folder);
+        if !files.is_empty() {
+            self.phone.share(files);
+        }
+        self.tell(ShellEvent::Saved(saved));
+    }
+
     fn begin_video(&mut self) {
-        let done = self.done.0.clone();
-        // The activity may be gone by then.
-        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
-        let begun = self.phone.folder().map(|folder| Video::begin(&folder, tell));
+        let (done, written) = (self.done.0.clone(), self.written.0.clone());
+        let tell = move |saved, file: Option<PathBuf>| {
+            // The activity may be gone by then.
+            let _ = done.send(ShellEvent::Saved(saved));
+            let _ = file.map(|file| written.send(file));
+        };
+        let begun = self
+            .phone
+            .folder()
+            .map(|folder| Video::begin(&folder, VIDEOS, tell));
         match begun {
             Some(Ok(video)) => self.video = Some(video),
             Some(Err(_)) => self.tell(ShellEvent::Saved(Saved::Failed)),
@@ -256,8 +287,14 @@ impl<P: Phone> Shell<P> {
         // A clock that is set before 1970 makes every photo the same file.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let name = format!("photo_{}.png", since.as_millis());
+        let written = self.written.0.clone();
         self.on_thread("photo", ShellEvent::Saved(Saved::Failed), move || {
-            ShellEvent::Saved(save::picture(&folder, &name, &picture))
+            let saved = save::picture(&folder, &name, &picture);
+            if saved == Saved::Done {
+                // The activity may be gone by then.
+                let _ = written.send(folder.join(name));
+            }
+            ShellEvent::Saved(saved)
         });
     }
 
@@ -303,5 +340,19 @@ mod tests {
         shell.on_thread("panics", ShellEvent::Aligned(None), || panic!("planted"));
         let told = shell.done.1.recv_timeout(Duration::from_secs(60));
         assert!(matches!(told, Ok(ShellEvent::Aligned(None))), "{told:?}");
+    }
+
+    #[test]
+    fn what_was_written_is_shown_in_the_gallery() {
+        let toy = bundled_toy().expect("the bundled toy");
+        let live = Live::new(Core::counting(), toy, Preset::Balanced);
+        let mut shell = Shell::new(live, Desk::default(), Feed::new(None));
+        shell
+            .written
+            .0
+            .send(PathBuf::from("photo_1.png"))
+            .expect("a receiver");
+        shell.tick();
+        assert_eq!(shell.phone.shown, ["photo_1.png"]);
     }
 }

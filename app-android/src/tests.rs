@@ -1,6 +1,6 @@
 //! The shell over the fake of ARCore, with an app whose core counts and draws nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use app_core::Core;
 use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, Wish};
@@ -12,7 +12,7 @@ use glam::DVec2;
 use crate::arcore::fake::{FUNCTIONS, FakePlane, world};
 use crate::arcore::feed::Feed;
 use crate::input::{Finger, Motion, screen, touches};
-use crate::phone::{Java, Phone, permission};
+use crate::phone::{Java, Phone, permission, stored};
 use crate::shell::{Shell, bundled_toy};
 
 /// A phone that grants the camera when it is asked for.
@@ -21,6 +21,10 @@ pub(crate) struct Desk {
     allows: bool,
     own_folder: Option<PathBuf>,
     thermal_status: Option<i32>,
+    folder: Option<PathBuf>,
+    /// Names of files that were shown in the gallery, and handed on.
+    pub(crate) shown: Vec<String>,
+    shared: Vec<String>,
 }
 
 impl Phone for Desk {
@@ -49,12 +53,27 @@ impl Phone for Desk {
     }
 
     fn folder(&self) -> Option<PathBuf> {
-        None
+        self.folder.clone()
+    }
+
+    fn show_in_gallery(&mut self, file: PathBuf) {
+        self.shown.push(name(&file));
+    }
+
+    fn share(&mut self, files: Vec<PathBuf>) {
+        self.shared.extend(files.iter().map(|file| name(file)));
     }
 
     fn own_folder(&self) -> Option<PathBuf> {
         self.own_folder.clone()
     }
+}
+
+fn name(file: &Path) -> String {
+    file.file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }
 
 fn shell() -> Shell<Desk> {
@@ -113,6 +132,44 @@ fn a_video_without_a_folder_is_not_allowed() {
         shell.live().app().notice(),
         Some(&Notice::Saved(Saved::NotAllowed))
     );
+}
+
+#[test]
+fn log_and_latest_recording_are_handed_on() {
+    let folder = std::env::temp_dir().join(format!("app-android-share-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for file in ["recording_1.mcap", "recording_2.mcap"] {
+        std::fs::write(folder.join(file), b"").expect("a file");
+    }
+    let mut shell = shell_on(Desk {
+        folder: Some(folder.clone()),
+        ..Desk::default()
+    });
+    shell.obey(vec![ShellCommand::Share]);
+    assert_eq!(shell.phone().shared, ["log.txt", "recording_2.mcap"]);
+    assert_eq!(shell.live().app().notice(), Some(&Notice::Saved(Saved::Done)));
+    std::fs::remove_dir_all(&folder).expect("a folder");
+}
+
+#[test]
+fn photos_and_videos_go_to_the_gallery_and_all_else_to_downloads() {
+    let cases = [
+        ("a.png", "image/png", "Images$Media", "Pictures/"),
+        ("a.mp4", "video/mp4", "Video$Media", "Movies/"),
+        ("a.avi", "video/x-msvideo", "Video$Media", "Movies/"),
+        ("log.txt", "text/plain", "Downloads", "Download/"),
+        ("profile.json", "application/json", "Downloads", "Download/"),
+        ("a.mcap", "application/octet-stream", "Downloads", "Download/"),
+        ("a", "application/octet-stream", "Downloads", "Download/"),
+    ];
+    for (file, mime, table, folder) in cases {
+        let stored = stored(Path::new(file));
+        assert_eq!(stored.mime, mime);
+        assert!(
+            stored.table.ends_with(table) && stored.folder.starts_with(folder),
+            "{file}: {stored:?}"
+        );
+    }
 }
 
 #[test]

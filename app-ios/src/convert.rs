@@ -42,6 +42,13 @@ pub fn size_px(size_points: [f64; 2], pixels_per_point: f64) -> Option<[u32; 2]>
     (size_px.min_element() >= 1.0).then(|| size_px.as_uvec2().to_array())
 }
 
+/// Pixels of red, green, blue and alpha in the order of Apple's buffers: blue, green, red, alpha.
+pub fn to_bgra(rgba: &[u8], bgra: &mut [u8]) {
+    for (to, from) in bgra.chunks_exact_mut(4).zip(rgba.chunks_exact(4)) {
+        to.copy_from_slice(&[from[2], from[1], from[0], from[3]]);
+    }
+}
+
 /// Part of the held exposure that a picture of a lens has.
 const DARK: f64 = 1.0 / 64.0;
 
@@ -177,5 +184,12 @@ mod tests {
         assert_eq!(size_px([844.0, 390.0], 3.0), Some([2532, 1170]));
         assert_eq!(size_px([0.0, 390.0], 3.0), None, "not laid out");
         assert_eq!(size_px([844.0, 390.0], 0.0), None, "no screen yet");
+    }
+
+    #[test]
+    fn red_and_blue_change_places() {
+        let mut bgra = [0; 8];
+        to_bgra(&[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], &mut bgra);
+        assert_eq!(bgra, [3, 2, 1, 4, 7, 6, 5, 8]);
     }
 }

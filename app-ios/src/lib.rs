@@ -8,9 +8,10 @@
 //!
 //! What is there: the app on the view's layer, with a toy to begin with; touches, safe area and letter size; the camera's
 //! permission; world tracking with level planes, interruptions and one anchor; exposure, white balance and focus held;
-//! the card, and the dark picture of its lens; alignments on a thread; photos, videos, recordings, times and the log as files that Files shows; heat, memory and free space.
-//! What is not: the system's video encoder, and words for those who do not see the screen. 30 frames a second slow the pictures rather
-//! than the camera.
+//! the card, and the dark picture of its lens; alignments on a thread; photos and videos, which Photos takes as well; recordings,
+//! times and the log as files that Files shows, and by the share sheet; heat, memory and free space.
+//! What is not: recordings by the system's encoder, and words for those who do not see the screen. 30 frames a second slow the
+//! pictures rather than the camera.
 //! Nothing of this has run on a phone.
 //!
 //! The crate is a static library with one C function, `app_ios_main`. It builds on any system, because only linking
@@ -26,11 +27,17 @@ pub mod jobs;
 #[cfg(target_os = "ios")]
 mod camera;
 #[cfg(target_os = "ios")]
+mod hand_on;
+#[cfg(target_os = "ios")]
+mod pixels;
+#[cfg(target_os = "ios")]
 mod scene;
 #[cfg(target_os = "ios")]
 mod shell;
 #[cfg(target_os = "ios")]
 mod stage;
+#[cfg(target_os = "ios")]
+mod video;
 #[cfg(target_os = "ios")]
 mod view;
 

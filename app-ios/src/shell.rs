@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant, SystemTime};
 
 use app_core::app::{
@@ -10,7 +11,7 @@ use app_core::app::{
 use app_core::interface::Screen;
 use app_core::recording::{Take, Taken};
 use app_files::toys::{self, ToyFile};
-use app_files::video::Video;
+use app_files::video::{MOTION_JPEG, Video, VideoFormat};
 use app_files::{record, save, starts};
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
@@ -18,15 +19,19 @@ use objc2_quartz_core::CALayer;
 use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
 
 use crate::arkit::session::Session;
+use crate::hand_on::{Unsuspended, into_photos};
 use crate::inbox::{Inbox, Told};
 use crate::jobs::Jobs;
 use crate::stage::{Fitted, Stage, StageError};
+use crate::video::H264;
 use crate::{camera, convert};
 
 /// The app with its version, as recordings name it.
 const APP: &str = concat!("app-ios ", env!("CARGO_PKG_VERSION"));
 /// Time after which free space is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
+/// Of videos, the better first.
+const VIDEOS: &[VideoFormat] = &[H264, MOTION_JPEG];
 
 /// The app's hands.
 pub(crate) struct Shell {
@@ -45,6 +50,10 @@ pub(crate) struct Shell {
     frames_per_s: u32,
     toy_file: ToyFile,
     video: Option<Video>,
+    /// Photos and videos that threads have written.
+    written: (Sender<PathBuf>, Receiver<PathBuf>),
+    /// For the share sheet.
+    shared: Vec<PathBuf>,
     /// While the camera is darkened.
     held_exposure: Option<camera::Exposure>,
     /// For an app that is about to be made.
@@ -72,6 +81,8 @@ impl Shell {
             frames_per_s: 60,
             toy_file: ToyFile::default(),
             video: None,
+            written: channel(),
+            shared: Vec::new(),
             held_exposure: None,
             starts: None,
             panics: Panics::default(),
@@ -156,6 +167,11 @@ impl Shell {
         self.frames_per_s
     }
 
+    /// Files that wait for the share sheet.
+    pub(crate) fn take_shared(&mut self) -> Vec<PathBuf> {
+        std::mem::take(&mut self.shared)
+    }
+
     /// A panic has left the app half changed.
     pub(crate) fn panicked(&mut self) {
         self.is_restarted = true;
@@ -199,6 +215,9 @@ impl Shell {
         }
         while let Some(event) = self.jobs.result() {
             self.inbox.tell(event);
+        }
+        while let Ok(file) = self.written.1.try_recv() {
+            into_photos(&file);
         }
     }
 
@@ -278,10 +297,16 @@ impl Shell {
     }
 
     fn begin_video(&mut self) {
-        let done = self.jobs.teller();
-        // Whoever waited may be gone.
-        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
-        match Video::begin(&documents(), tell) {
+        let (done, written) = (self.jobs.teller(), self.written.0.clone());
+        // An app that is left in the middle of a video would be stopped before its file is whole.
+        let unsuspended = Unsuspended::begin(self.main_thread);
+        let tell = move |saved, file: Option<PathBuf>| {
+            // Whoever waited may be gone.
+            let _ = done.send(ShellEvent::Saved(saved));
+            let _ = file.map(|file| written.send(file));
+            drop(unsuspended);
+        };
+        match Video::begin(&documents(), VIDEOS, tell) {
             Ok(video) => self.video = Some(video),
             Err(_) => self.saved(Saved::Failed),
         }
@@ -303,15 +328,25 @@ impl Shell {
         };
         let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         let name = format!("photo_{}.png", since_1970.unwrap_or_default().as_millis());
+        let written = self.written.0.clone();
         self.jobs.start(
-            move || ShellEvent::Saved(save::picture(&documents(), &name, &picture)),
+            move || {
+                let saved = save::picture(&documents(), &name, &picture);
+                if saved == Saved::Done {
+                    // Whoever waited may be gone.
+                    let _ = written.send(documents().join(name));
+                }
+                ShellEvent::Saved(saved)
+            },
             || ShellEvent::Saved(Saved::Failed),
         );
     }
 
     fn share(&mut self) {
-        let shared = self.stage.live().map(|live| record::share(live, &documents()));
-        shared.into_iter().for_each(|saved| self.saved(saved));
+        let Some(live) = self.stage.live() else { return };
+        let (saved, files) = record::share(live, &documents());
+        self.shared = files;
+        self.saved(saved);
     }
 
     fn record(&mut self, take: Take) {

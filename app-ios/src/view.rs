@@ -18,6 +18,7 @@ use objc2_ui_kit::{
 
 use crate::convert::size_px;
 use crate::guard::{Callback, guarded};
+use crate::hand_on::show_sheet;
 use crate::inbox::Inbox;
 use crate::shell::Shell;
 use crate::stage::StageError;
@@ -57,7 +58,16 @@ define_class!(
 
         #[unsafe(method(displayLinkDidFire:))]
         fn display_link_did_fire(&self, _link: &CADisplayLink) {
-            self.run(Callback::Picture, |shell| autoreleasepool(|_| self.draw(shell)));
+            let mut shared = Vec::new();
+            self.run(Callback::Picture, |shell| {
+                autoreleasepool(|_| self.draw(shell))?;
+                shared = shell.take_shared();
+                Ok(())
+            });
+            if !shared.is_empty() {
+                // The shell is free by now: a sheet may have the view laid out.
+                guarded(Callback::Picture, || show_sheet(self, &shared));
+            }
         }
 
         #[unsafe(method(touchesBegan:withEvent:))]

@@ -17,7 +17,7 @@ const HEAD_BYTES: u32 = 8;
 /// From the file's begin to the type of the list of pictures.
 const MOVIE_AT: u32 = 12 + HEAD_BYTES + list_bytes() + HEAD_BYTES;
 /// A file does not grow beyond: players count its bytes in 31 bits.
-pub const MAX_BYTES: u32 = 1 << 30;
+const MAX_BYTES: u32 = 1 << 30;
 
 /// Contents of the list `hdrl`.
 const fn list_bytes() -> u32 {
@@ -27,7 +27,7 @@ const fn list_bytes() -> u32 {
 
 /// Writes one video; [`Avi::finish`] makes it whole.
 #[derive(Debug)]
-pub struct Avi<W> {
+pub(crate) struct Avi<W> {
     file: W,
     size_px: [u32; 2],
     hz: u32,
@@ -43,7 +43,7 @@ impl<W: Write + Seek> Avi<W> {
     ///
     /// # Errors
     /// As the file's.
-    pub fn begin(file: W, size_px: [u32; 2], hz: u32) -> io::Result<Self> {
+    pub(crate) fn begin(file: W, size_px: [u32; 2], hz: u32) -> io::Result<Self> {
         let mut avi = Self {
             file,
             size_px,
@@ -58,13 +58,13 @@ impl<W: Write + Seek> Avi<W> {
 
     /// Pictures so far.
     #[must_use]
-    pub fn n_pictures(&self) -> usize {
+    pub(crate) fn n_pictures(&self) -> usize {
         self.pictures.len()
     }
 
     /// Whether there is room for another picture of that size.
     #[must_use]
-    pub fn has_room(&self, jpeg: &[u8]) -> bool {
+    pub(crate) fn has_room(&self, jpeg: &[u8]) -> bool {
         let index = u32::try_from(16 * self.pictures.len()).unwrap_or(u32::MAX);
         let picture = u32::try_from(jpeg.len()).unwrap_or(u32::MAX);
         let all = [MOVIE_AT, self.movie_bytes, index, picture, 4 * HEAD_BYTES];
@@ -75,7 +75,7 @@ impl<W: Write + Seek> Avi<W> {
     ///
     /// # Errors
     /// As the file's; [`io::ErrorKind::FileTooLarge`] where there is no room for it.
-    pub fn add(&mut self, jpeg: &[u8]) -> io::Result<()> {
+    pub(crate) fn add(&mut self, jpeg: &[u8]) -> io::Result<()> {
         if !self.has_room(jpeg) {
             return Err(io::ErrorKind::FileTooLarge.into());
         }
@@ -94,7 +94,7 @@ impl<W: Write + Seek> Avi<W> {
     ///
     /// # Errors
     /// As the file's.
-    pub fn finish(mut self) -> io::Result<W> {
+    pub(crate) fn finish(mut self) -> io::Result<W> {
         let n_pictures = u32::try_from(self.pictures.len()).map_err(io::Error::other)?;
         chunk(&mut self.file, *b"idx1", 16 * n_pictures)?;
         for [offset, n_bytes] in &self.pictures {

@@ -4,7 +4,8 @@
 
 #![forbid(unsafe_code)]
 
-pub mod avi;
+mod avi;
+mod motion_jpeg;
 pub mod record;
 pub mod save;
 pub mod starts;

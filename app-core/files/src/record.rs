@@ -1,7 +1,7 @@
 //! Recordings: a thread of a shell's writes them into files that people get at.
 
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use app_core::app::{Recorded, Saved};
@@ -39,16 +39,26 @@ pub fn write(take: Take, (app, toy): (&str, &[u8]), folder: &Path) -> Recorded {
     Recorded { file: name, taken }
 }
 
-/// Log and times, beside the recordings, as files that people hand on.
+/// What people hand on, as files of the folder: the log, the times, and the latest recording, as far as there are any.
 #[must_use]
-pub fn share(live: &Live, folder: &Path) -> Saved {
-    let log = save::bytes(folder, "log.txt", live.app().log().text().as_bytes());
-    let times = live.times().map(serde_json::to_vec);
-    match (log, times) {
-        (Saved::Done, Some(Ok(times))) => save::bytes(folder, "profile.json", &times),
-        (Saved::Done, Some(Err(_))) => Saved::Failed,
-        (saved, _) => saved,
+pub fn share(live: &Live, folder: &Path) -> (Saved, Vec<PathBuf>) {
+    let mut files = vec![folder.join("log.txt")];
+    let mut saved = save::bytes(folder, "log.txt", live.app().log().text().as_bytes());
+    if let (Saved::Done, Some(times)) = (saved, live.times()) {
+        files.push(folder.join("profile.json"));
+        let written = serde_json::to_vec(&times).map(|times| save::bytes(folder, "profile.json", &times));
+        saved = written.unwrap_or(Saved::Failed);
     }
+    files.extend(latest(folder));
+    files.retain(|file| file.is_file());
+    (saved, files)
+}
+
+/// The latest recording of a folder: their names grow with time.
+fn latest(folder: &Path) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_recording = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "mcap");
+    entries.map(|entry| entry.path()).filter(is_recording).max()
 }
 
 /// What is free where a folder is, in bytes.
@@ -144,6 +154,8 @@ mod tests {
         let codes = read.image.rgba8.iter().zip(&live.image.rgba().rgba8);
         assert!(codes.fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= 2);
         assert!(free_bytes(&folder).is_some_and(|free| free > 0));
+        fs::write(folder.join("recording_1.mcap"), b"").expect("an older one");
+        assert_eq!(latest(&folder), Some(path.clone()));
         let (_, take) = Take::new(8, scene, live.camera.intrinsics);
         let refused = write(take, ("app 1.0", TOY), &path);
         assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");

@@ -1,29 +1,66 @@
-//! A video of what is shown: pictures go to a thread, which writes them into a file at a constant rate.
+//! A video of what is shown: pictures go to a thread, which has them encoded into a file.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::fs;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use app_core::app::Saved;
 use app_core::scene::Image;
-use image::ExtendedColorType;
-use image::codecs::jpeg::JpegEncoder;
 
-use crate::avi::Avi;
+use crate::motion_jpeg;
 use crate::save::outcome;
 
-/// Pictures a second.
-const HZ: u32 = 30;
+/// Pictures a second, at most.
+pub const HZ: u32 = 30;
 /// Pictures that wait for the thread; what comes while as many do is left out.
 const N_WAITING: usize = 4;
-/// Of the pictures, of 100: beyond it files grow faster than what is seen of them.
-const QUALITY: u8 = 92;
 /// A picture stands no longer than this, in seconds, whatever its time says.
 const LONGEST_S: f64 = 2.0;
+
+/// Encodes pictures of one size into one file.
+pub trait VideoEncoder {
+    /// Adds the picture that is shown from `since_s` on, in seconds after the first, later than the one before; false where the
+    /// file has no more room.
+    ///
+    /// # Errors
+    /// As the encoder's and the file's.
+    fn add(&mut self, picture: &Image, since_s: f64) -> io::Result<bool>;
+
+    /// Makes the file whole; the last picture is shown until `until_s`.
+    ///
+    /// # Errors
+    /// As the encoder's and the file's.
+    fn finish(self: Box<Self>, until_s: f64) -> io::Result<()>;
+}
+
+/// Begins a file of pictures of so many pixels.
+pub type BeginVideo = fn(&Path, [u32; 2]) -> io::Result<Box<dyn VideoEncoder>>;
+
+/// A way to encode.
+#[derive(Clone, Copy, Debug)]
+pub struct VideoFormat {
+    /// Of the file's name.
+    pub extension: &'static str,
+    /// Where it cannot begin, the next format is asked.
+    pub begin: BeginVideo,
+}
+
+/// Columns and rows that both are even, as encoders of platforms want them: an odd last one is left out. None where none is left.
+#[must_use]
+pub fn even(size_px: [u32; 2]) -> Option<[usize; 2]> {
+    let size = size_px.map(|side| (side & !1) as usize);
+    (!size.contains(&0)).then_some(size)
+}
+
+/// The format that is everywhere, and larger than any of a platform's own.
+pub const MOTION_JPEG: VideoFormat = VideoFormat {
+    extension: "avi",
+    begin: motion_jpeg::begin,
+};
 
 /// A video that is being made. It ends when this is dropped.
 #[derive(Debug)]
@@ -34,18 +71,26 @@ pub struct Video {
 }
 
 impl Video {
-    /// Begins a video in `folder`; `done` is told what became of it, by the thread.
+    /// Begins a video in `folder`, by the first of `formats` that can; `done` is told what became of it, by the thread, with
+    /// the file if there is one.
     ///
     /// # Errors
     /// When there is no thread for it.
-    pub fn begin(folder: &Path, done: impl FnOnce(Saved) + Send + 'static) -> io::Result<Self> {
+    pub fn begin(
+        folder: &Path,
+        formats: &'static [VideoFormat],
+        done: impl FnOnce(Saved, Option<PathBuf>) + Send + 'static,
+    ) -> io::Result<Self> {
         let (pictures, taken) = sync_channel(N_WAITING);
         // A clock that is set before 1970 makes every video the same file.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let path = folder.join(format!("video_{}.avi", since.as_millis()));
+        let stem = folder.join(format!("video_{}", since.as_millis()));
         thread::Builder::new().name("video".to_owned()).spawn(move || {
-            let written = catch_unwind(AssertUnwindSafe(|| write(&path, &taken)));
-            done(written.map_or(Saved::Failed, outcome));
+            match catch_unwind(AssertUnwindSafe(|| write(&stem, formats, &taken))) {
+                Ok(Ok(file)) => done(Saved::Done, file),
+                Ok(Err(error)) => done(outcome(Err(error)), None),
+                Err(_) => done(Saved::Failed, None),
+            }
         })?;
         let due_s = f64::NEG_INFINITY;
         Ok(Self { pictures, due_s })
@@ -68,56 +113,87 @@ impl Video {
     }
 }
 
-/// Writes what comes until no more does. A video without a picture is no file.
-fn write(path: &Path, pictures: &Receiver<(Image, f64)>) -> io::Result<()> {
+/// Seconds since the first picture, by times that may stand still, jump, or be no number.
+struct Timeline {
+    last_s: f64,
+    since_s: f64,
+}
+
+impl Timeline {
+    /// The next picture's; none where no time has passed.
+    fn advance(&mut self, time_s: f64) -> Option<f64> {
+        if !time_s.is_finite() {
+            return None;
+        }
+        let step_s = (time_s - self.last_s).clamp(0.0, LONGEST_S);
+        self.last_s = time_s;
+        self.since_s += step_s;
+        (step_s > 0.0).then_some(self.since_s)
+    }
+}
+
+/// Has encoded what comes until no more does. A video without a picture is no file; one that fails is taken away.
+fn write(
+    stem: &Path,
+    formats: &[VideoFormat],
+    pictures: &Receiver<(Image, f64)>,
+) -> io::Result<Option<PathBuf>> {
     let Ok((first, begin_s)) = pictures.recv() else {
-        return Ok(());
+        return Ok(None);
     };
-    if let Some(folder) = path.parent() {
+    if let Some(folder) = stem.parent() {
         fs::create_dir_all(folder)?;
     }
+    let (file, encoder) = begin(stem, formats, [first.width_px, first.height_px])?;
+    let encoded = encode(encoder, (&first, begin_s), pictures);
+    if encoded.is_err() {
+        // It failed already: what else there is to say is the first reason.
+        let _ = fs::remove_file(&file);
+    }
+    encoded.map(|()| Some(file))
+}
+
+/// By the first format that can; the error is the last one's.
+fn begin(
+    stem: &Path,
+    formats: &[VideoFormat],
+    size_px: [u32; 2],
+) -> io::Result<(PathBuf, Box<dyn VideoEncoder>)> {
+    let mut refused = io::ErrorKind::Unsupported.into();
+    for format in formats {
+        let file = stem.with_extension(format.extension);
+        match (format.begin)(&file, size_px) {
+            Ok(encoder) => return Ok((file, encoder)),
+            Err(error) => {
+                // What it may have begun.
+                let _ = fs::remove_file(&file);
+                refused = error;
+            }
+        }
+    }
+    Err(refused)
+}
+
+fn encode(
+    mut encoder: Box<dyn VideoEncoder>,
+    (first, begin_s): (&Image, f64),
+    pictures: &Receiver<(Image, f64)>,
+) -> io::Result<()> {
     let size_px = [first.width_px, first.height_px];
-    let mut avi = Avi::begin(BufWriter::new(File::create(path)?), size_px, HZ)?;
-    let mut shown = jpeg(&first)?;
-    for (picture, time_s) in pictures {
+    let mut timeline = Timeline {
+        last_s: begin_s,
+        since_s: 0.0,
+    };
+    let mut has_room = encoder.add(first, 0.0)?;
+    while has_room && let Ok((picture, time_s)) = pictures.recv() {
         if [picture.width_px, picture.height_px] != size_px {
             break;
         }
-        let n_due = n_pictures_until(time_s - begin_s).min(avi.n_pictures() + n_pictures_until(LONGEST_S));
-        // Of two in one period the later is shown.
-        while avi.n_pictures() < n_due && avi.has_room(&shown) {
-            avi.add(&shown)?;
-        }
-        shown = jpeg(&picture)?;
-        if !avi.has_room(&shown) {
-            break;
+        if let Some(since_s) = timeline.advance(time_s) {
+            has_room = encoder.add(&picture, since_s)?;
         }
     }
-    avi.add(&shown)?;
-    avi.finish()?;
-    Ok(())
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the conversion saturates, and what is no number becomes 0"
-)]
-fn n_pictures_until(since_s: f64) -> usize {
-    (since_s * f64::from(HZ)).round() as usize
-}
-
-fn jpeg(picture: &Image) -> io::Result<Vec<u8>> {
-    let rgb: Vec<u8> = picture
-        .rgba8
-        .chunks_exact(4)
-        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-        .collect();
-    let mut jpeg = Vec::new();
-    JpegEncoder::new_with_quality(&mut jpeg, QUALITY)
-        .encode(&rgb, picture.width_px, picture.height_px, ExtendedColorType::Rgb8)
-        .map_err(io::Error::other)?;
-    Ok(jpeg)
+    encoder.finish(timeline.since_s + 1.0 / f64::from(HZ))
 }
 
 #[cfg(test)]
@@ -164,22 +240,24 @@ mod tests {
     }
 
     /// What becomes of pictures with their times.
-    fn video(name: &str, pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
+    fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
         let folder = std::env::temp_dir().join(format!("app-files-{name}-{}", std::process::id()));
         let (done, saved) = channel();
-        let mut video =
-            Video::begin(&folder, move |saved| done.send(saved).expect("a receiver")).expect("a thread");
+        let mut video = Video::begin(&folder, formats, move |saved, file| {
+            drop(done.send((saved, file)))
+        })
+        .expect("a thread");
         for (code, time_s) in pictures {
             while !video.add(picture(*code, [16, 8]), *time_s) {
                 thread::yield_now();
             }
         }
         drop(video);
-        let saved = saved.recv().expect("an end");
+        let (saved, file) = saved.recv().expect("an end");
         let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
-        let files = entries
-            .map(|entry| fs::read(entry.path()).expect("a file"))
-            .collect();
+        let paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        assert_eq!(paths, Vec::from_iter(file), "what is there is what is told");
+        let files = paths.iter().map(|path| fs::read(path).expect("a file")).collect();
         let _ = fs::remove_dir_all(&folder);
         (saved, files)
     }
@@ -188,7 +266,7 @@ mod tests {
     fn pictures_stand_as_long_as_they_were_shown() {
         // The second stands for three periods, the third comes in the same one as the fourth.
         let shown = [(10, 5.0), (60, 5.033), (110, 5.13), (160, 5.135), (210, 5.166)];
-        let (saved, files) = video("video", &shown);
+        let (saved, files) = video("video", &[MOTION_JPEG], &shown);
         assert_eq!(saved, Saved::Done);
         assert_eq!(files.len(), 1);
         let expected = [10, 60, 60, 60, 160, 210];
@@ -202,25 +280,74 @@ mod tests {
 
     #[test]
     fn times_that_make_no_sense_do_not_fill_the_disc() {
-        let (saved, files) = video("times", &[(10, 1.0), (20, 1e9), (30, f64::NAN), (40, -5.0)]);
+        let (saved, files) = video(
+            "times",
+            &[MOTION_JPEG],
+            &[(10, 1.0), (20, 1e9), (30, f64::NAN), (40, -5.0)],
+        );
         assert_eq!(saved, Saved::Done);
         assert_eq!(greys(&files[0]).len(), 61);
     }
 
     #[test]
     fn without_a_picture_there_is_no_file_and_without_a_folder_it_is_told() {
-        let (saved, files) = video("none", &[]);
+        let (saved, files) = video("none", &[MOTION_JPEG], &[]);
         assert_eq!((saved, files.len()), (Saved::Done, 0));
         let file = std::env::temp_dir().join(format!("app-files-no-folder-{}", std::process::id()));
         fs::write(&file, b"").expect("a file");
         let (done, saved) = channel();
-        let mut video =
-            Video::begin(&file, move |saved| done.send(saved).expect("a receiver")).expect("a thread");
+        let tell = move |saved, _| done.send(saved).expect("a receiver");
+        let mut video = Video::begin(&file, &[MOTION_JPEG], tell).expect("a thread");
         assert!(video.is_due(0.0));
         assert!(video.add(picture(1, [16, 8]), 0.0));
         assert!(!video.is_due(0.016) && video.is_due(0.033));
         drop(video);
         assert_ne!(saved.recv().expect("an end"), Saved::Done);
         fs::remove_file(&file).expect("a file");
+    }
+
+    /// Takes two pictures and fails with the third.
+    struct Breaks(u32);
+
+    impl VideoEncoder for Breaks {
+        fn add(&mut self, _picture: &Image, _since_s: f64) -> io::Result<bool> {
+            self.0 += 1;
+            if self.0 > 2 {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            Ok(true)
+        }
+
+        fn finish(self: Box<Self>, _until_s: f64) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_format_that_cannot_begin_leaves_it_to_the_next() {
+        const REFUSES: VideoFormat = VideoFormat {
+            extension: "mp4",
+            begin: |path, _| {
+                fs::write(path, b"begun")?;
+                Err(io::ErrorKind::Unsupported.into())
+            },
+        };
+        let (saved, files) = video("refuses", &[REFUSES, MOTION_JPEG], &[(10, 0.0)]);
+        assert_eq!((saved, greys(&files[0]).len()), (Saved::Done, 1));
+        let (saved, files) = video("none-can", &[REFUSES], &[(10, 0.0)]);
+        assert_eq!((saved, files.len()), (Saved::Failed, 0));
+    }
+
+    #[test]
+    fn a_video_that_breaks_off_is_told_and_leaves_no_file() {
+        const BREAKS: VideoFormat = VideoFormat {
+            extension: "mp4",
+            begin: |path, _| {
+                fs::write(path, b"begun")?;
+                Ok(Box::new(Breaks(0)))
+            },
+        };
+        let (saved, files) = video("breaks", &[BREAKS], &[(10, 0.0), (10, 0.1), (10, 0.2)]);
+        assert_eq!((saved, files.len()), (Saved::NoRoom, 0));
     }
 }

@@ -9,7 +9,7 @@ use app_core::core::CoreError;
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::scene::Image;
-use app_files::video::Video;
+use app_files::video::{MOTION_JPEG, Video};
 
 use super::feed::Feed;
 use super::kept;
@@ -144,8 +144,8 @@ impl Desk {
     fn begin_video(&mut self) {
         let done = self.done.0.clone();
         // The window may be closed by then.
-        let tell = move |saved| drop(done.send(ShellEvent::Saved(saved)));
-        match Video::begin(&self.out, tell) {
+        let tell = move |saved, _| drop(done.send(ShellEvent::Saved(saved)));
+        match Video::begin(&self.out, &[MOTION_JPEG], tell) {
             Ok(video) => self.video = Some(video),
             Err(_) => self.tell(ShellEvent::Saved(Saved::Failed)),
         }

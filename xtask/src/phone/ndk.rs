@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 
 /// Oldest Android that the shell runs on, as an API level. The manifest says the same, and the list of imports why.
-pub(super) const ANDROID_API: u32 = 27;
+pub(super) const ANDROID_API: u32 = 28;
 
 /// Where cargo finds the NDK's linker, and build scripts its compiler.
 pub(super) fn ndk_tools() -> Result<[(&'static str, PathBuf); 3]> {

@@ -1,0 +1,143 @@
+//! Copies of files where other apps find them: Android's media store, since Android 10 without a permission; and the question what to
+//! do with them.
+
+use std::fs::File;
+use std::io;
+use std::os::fd::{FromRawFd, OwnedFd};
+use std::path::{Path, PathBuf};
+
+use jni::errors::Result;
+use jni::objects::{JObject, JValue};
+use jni::strings::JNIString;
+use jni::{Env, jni_sig, jni_str};
+
+use crate::phone::stored;
+
+const SEND: &str = "android.intent.action.SEND_MULTIPLE";
+const STREAM: &str = "android.intent.extra.STREAM";
+/// `Intent.FLAG_GRANT_READ_URI_PERMISSION`.
+const MAY_READ: i32 = 1;
+
+/// Copies a file into the store; its address there. An exception where there is no such store, or no room.
+pub(crate) fn copy<'local>(
+    env: &mut Env<'local>,
+    activity: &JObject<'_>,
+    file: &Path,
+) -> Result<JObject<'local>> {
+    let stored = stored(file);
+    let resolver = env
+        .call_method(
+            activity,
+            jni_str!("getContentResolver"),
+            jni_sig!("()Landroid/content/ContentResolver;"),
+            &[],
+        )?
+        .l()?;
+    let values = env.new_object(jni_str!("android/content/ContentValues"), jni_sig!("()V"), &[])?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    for (column, value) in [
+        ("_display_name", name.as_ref()),
+        ("mime_type", stored.mime),
+        ("relative_path", stored.folder),
+    ] {
+        let (column, value) = (env.new_string(column)?, env.new_string(value)?);
+        env.call_method(
+            &values,
+            jni_str!("put"),
+            jni_sig!("(Ljava/lang/String;Ljava/lang/String;)V"),
+            &[JValue::Object(&column), JValue::Object(&value)],
+        )?;
+    }
+    let volume = env.new_string("external")?;
+    let table = env
+        .call_static_method(
+            JNIString::from(stored.table),
+            jni_str!("getContentUri"),
+            jni_sig!("(Ljava/lang/String;)Landroid/net/Uri;"),
+            &[JValue::Object(&volume)],
+        )?
+        .l()?;
+    let address = env
+        .call_method(
+            &resolver,
+            jni_str!("insert"),
+            jni_sig!("(Landroid/net/Uri;Landroid/content/ContentValues;)Landroid/net/Uri;"),
+            &[JValue::Object(&table), JValue::Object(&values)],
+        )?
+        .l()?;
+    let mode = env.new_string("w")?;
+    let opened = env
+        .call_method(
+            &resolver,
+            jni_str!("openFileDescriptor"),
+            jni_sig!("(Landroid/net/Uri;Ljava/lang/String;)Landroid/os/ParcelFileDescriptor;"),
+            &[JValue::Object(&address), JValue::Object(&mode)],
+        )?
+        .l()?;
+    let descriptor = env
+        .call_method(&opened, jni_str!("detachFd"), jni_sig!("()I"), &[])?
+        .i()?;
+    // SAFETY: the descriptor is open, and Java gave it away.
+    let mut copy = File::from(unsafe { OwnedFd::from_raw_fd(descriptor) });
+    if let Err(error) = File::open(file).and_then(|mut file| io::copy(&mut file, &mut copy)) {
+        eprintln!("app-android: {} is not copied whole: {error}", file.display());
+    }
+    Ok(address)
+}
+
+/// `startActivity(Intent.createChooser(new Intent(SEND_MULTIPLE)…, null))`.
+pub(crate) fn share(env: &mut Env<'_>, activity: &JObject<'_>, files: &[PathBuf]) -> Result<()> {
+    let addresses = env.new_object(jni_str!("java/util/ArrayList"), jni_sig!("()V"), &[])?;
+    for file in files {
+        let address = copy(env, activity, file)?;
+        env.call_method(
+            &addresses,
+            jni_str!("add"),
+            jni_sig!("(Ljava/lang/Object;)Z"),
+            &[JValue::Object(&address)],
+        )?;
+    }
+    let (action, any, stream) = (
+        env.new_string(SEND)?,
+        env.new_string("*/*")?,
+        env.new_string(STREAM)?,
+    );
+    let intent = env.new_object(
+        jni_str!("android/content/Intent"),
+        jni_sig!("(Ljava/lang/String;)V"),
+        &[JValue::Object(&action)],
+    )?;
+    env.call_method(
+        &intent,
+        jni_str!("setType"),
+        jni_sig!("(Ljava/lang/String;)Landroid/content/Intent;"),
+        &[JValue::Object(&any)],
+    )?;
+    env.call_method(
+        &intent,
+        jni_str!("putParcelableArrayListExtra"),
+        jni_sig!("(Ljava/lang/String;Ljava/util/ArrayList;)Landroid/content/Intent;"),
+        &[JValue::Object(&stream), JValue::Object(&addresses)],
+    )?;
+    env.call_method(
+        &intent,
+        jni_str!("addFlags"),
+        jni_sig!("(I)Landroid/content/Intent;"),
+        &[JValue::Int(MAY_READ)],
+    )?;
+    let chooser = env
+        .call_static_method(
+            jni_str!("android/content/Intent"),
+            jni_str!("createChooser"),
+            jni_sig!("(Landroid/content/Intent;Ljava/lang/CharSequence;)Landroid/content/Intent;"),
+            &[JValue::Object(&intent), JValue::Object(&JObject::null())],
+        )?
+        .l()?;
+    env.call_method(
+        activity,
+        jni_str!("startActivity"),
+        jni_sig!("(Landroid/content/Intent;)V"),
+        &[JValue::Object(&chooser)],
+    )?;
+    Ok(())
+}
