@@ -121,6 +121,10 @@ pub enum Wish {
     Record(bool),
     /// Times of passes over the picture, on or off.
     ShowProfile(bool),
+    /// The questions of a new phone, from the first on, or no more of them.
+    CheckPhone(bool),
+    /// To the question of [`App::phone_question`](super::App::phone_question).
+    Answer(bool),
     /// A toy of the person's own.
     PickToy,
     /// That of [`ShellEvent::ToyFiles`], by its place there; none to keep the one of now.

@@ -40,6 +40,7 @@ impl App {
         let frame = Arc::new(frame);
         self.latest = Some(Arc::clone(&frame));
         self.follow_table(&frame);
+        self.place_check(&frame);
         if let Some(place) = &mut self.place {
             place.follow_anchor(&frame.anchors, elapsed_s);
         }

@@ -13,6 +13,7 @@ mod lens;
 mod log;
 mod notice;
 mod panics;
+mod phone_check;
 mod plate_taker;
 mod platform;
 mod playback;
@@ -37,7 +38,8 @@ use aligning::Place;
 use ghost::Ghost;
 use ghost_shape::GhostShape;
 use lens::Lens;
-use platform::{Captures, Commanded, Platform};
+use phone_check::PhoneCheck;
+use platform::{Asked, Captures, Commanded, Platform};
 use recorder::Recorder;
 use start::Start;
 
@@ -46,6 +48,7 @@ pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, Sh
 pub use log::Log;
 pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
+pub use phone_check::{CheckInk, PhoneQuestion};
 pub use plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use platform::Obstacle;
 pub use playback::Playback;
@@ -72,6 +75,8 @@ pub struct App {
     /// The platform is to hold the toy's place.
     wants_anchor: bool,
     shows_profile: bool,
+    /// While a new phone is looked at.
+    phone_check: Option<PhoneCheck>,
     arrivals: Arrivals,
     /// Seconds between frames that were taken, all in all.
     time_s: f64,
@@ -115,6 +120,7 @@ impl App {
             wants_new_world: false,
             wants_anchor: false,
             shows_profile: false,
+            phone_check: None,
             arrivals: Arrivals::default(),
             time_s: 0.0,
             fade: Fade::default(),
@@ -165,8 +171,11 @@ impl App {
             ShellEvent::Drawn => self.drawn(&mut commands),
             ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
         }
-        let is_lens_wanted = self.lens.is_awaited();
-        let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, is_lens_wanted));
+        let asked = Asked {
+            lens: self.lens.is_awaited(),
+            held_exposure: self.phone_check.is_some_and(|check| check.holds_exposure()),
+        };
+        let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
         self.captures = wanted.captures;
         let take = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);
@@ -282,7 +291,12 @@ impl App {
         // What was said of the step before helps no longer.
         self.notices = Notices::default();
         match next {
-            Step::Welcome | Step::FindTable => self.forget_place(),
+            Step::Welcome | Step::FindTable => {
+                self.forget_place();
+                if next == Step::Welcome {
+                    self.check_phone(false);
+                }
+            }
             Step::TakePlate => {
                 self.place = None;
                 self.plate_taker = PlateTaker::default();
@@ -304,6 +318,9 @@ impl App {
         self.plate_exposure = None;
         self.ghost = None;
         self.lens = Lens::default();
+        if let Some(check) = &mut self.phone_check {
+            check.forget_place();
+        }
         self.place = None;
         self.camera = None;
         self.plate_step = None;

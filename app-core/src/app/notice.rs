@@ -51,6 +51,11 @@ pub enum Notice {
     NoRoomToRecord,
     /// Memory is short: what was being kept was ended.
     MemoryLow,
+    /// The questions of a new phone were answered, so many by yes.
+    PhoneChecked {
+        /// Of [`PhoneQuestion::ALL`](super::PhoneQuestion::ALL).
+        n_yes: usize,
+    },
     /// The simplest preset is used.
     Simplified(Simplified),
 }

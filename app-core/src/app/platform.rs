@@ -90,6 +90,14 @@ pub(super) struct Captures {
     pub(super) recording: bool,
 }
 
+/// What is wanted of the camera for a while.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Asked {
+    /// A dark picture of the lens.
+    pub(super) lens: bool,
+    pub(super) held_exposure: bool,
+}
+
 /// What the shell was asked for and holds until it is asked for something else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Commanded {
@@ -104,18 +112,14 @@ pub(super) struct Commanded {
 
 impl Commanded {
     /// What is wanted in a step.
-    pub(super) fn wanted(
-        step: Step,
-        platform: &Platform,
-        (captures, is_lens_wanted): (Captures, bool),
-    ) -> Self {
+    pub(super) fn wanted(step: Step, platform: &Platform, (captures, asked): (Captures, Asked)) -> Self {
         let tracking = step != Step::Welcome && platform.can_track();
         Self {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
             // Plate and frames are compared with one another.
-            locks_exposure: tracking && step >= Step::PlaceToy,
-            underexposes: tracking && step == Step::PlaceToy && is_lens_wanted,
+            locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
+            underexposes: tracking && step == Step::PlaceToy && asked.lens,
             is_awake: platform.is_foreground && step != Step::Welcome,
             frames_per_s: if platform.thermal >= Thermal::Serious {
                 30

@@ -9,7 +9,13 @@ use super::table::table_at;
 
 impl App {
     pub(super) fn wish(&mut self, wish: Wish, commands: &mut Vec<ShellCommand>) {
+        let is_on_picture = matches!(wish, Wish::Tap(_) | Wish::Drag { .. } | Wish::Twist(_));
+        if is_on_picture && self.phone_check.is_some() {
+            return;
+        }
         match wish {
+            Wish::CheckPhone(is_on) => self.check_phone(is_on && self.step != Step::Welcome),
+            Wish::Answer(is_yes) => self.answer(is_yes),
             Wish::Begin => self.begin(commands),
             Wish::OpenSettings => commands.push(ShellCommand::OpenSettings),
             Wish::Tap(pixel) => self.tap(pixel),

@@ -3,6 +3,7 @@
 //! It reads the [`App`] and returns what the person wishes; it keeps nothing but where fingers are and which menu is open.
 //! Sizes are in points of the platform, and nothing to be touched is lower than 44 of them.
 
+mod check;
 mod input;
 mod painter;
 mod parts;

@@ -4,7 +4,7 @@ use egui::{Pos2, Sense, Stroke, Ui};
 use glam::{DAffine2, DVec2};
 
 use super::input::{Screen, narrowed};
-use super::style;
+use super::{check, style};
 use crate::app::{App, Step, Wish};
 
 /// What one step of a mouse's wheel turns, in radians.
@@ -41,14 +41,17 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, wi
     if matches!(app.step(), Step::PlaceToy | Step::Align) {
         ghost(ui, app, &picture_from_screen, units);
     }
+    check::picture(ui, app, |pixel| on_screen(&picture_from_screen, units, pixel));
+}
+
+/// Where a pixel of the camera's picture is on the screen, in the interface's points.
+fn on_screen(picture_from_screen: &DAffine2, units: f64, pixel: DVec2) -> Pos2 {
+    let at = picture_from_screen.inverse().transform_point2(pixel) / units;
+    Pos2::new(narrowed(at.x), narrowed(at.y))
 }
 
 fn ghost(ui: &Ui, app: &App, picture_from_screen: &DAffine2, units: f64) {
-    let screen_from_picture = picture_from_screen.inverse();
-    let at = |pixel: DVec2| {
-        let on_screen = screen_from_picture.transform_point2(pixel) / units;
-        Pos2::new(narrowed(on_screen.x), narrowed(on_screen.y))
-    };
+    let at = |pixel| on_screen(picture_from_screen, units, pixel);
     let painter = ui.painter();
     for [from, to] in app.ghost_contour_px() {
         painter.line_segment([at(from), at(to)], Stroke::new(2.0, style::GHOST));

@@ -94,6 +94,7 @@ fn menu(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
     let entries = [
         (record, Wish::Record(!is_recording)),
         (text::PROFILE, Wish::ShowProfile(!app.shows_profile())),
+        (text::CHECK, Wish::CheckPhone(true)),
         (text::REPLACE, Wish::Replace),
         (text::RETAKE, Wish::RetakePlate),
         (text::PICK_TOY, Wish::PickToy),

@@ -3,7 +3,7 @@
 use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 
 use super::parts::{lead, other, words};
-use super::{play, style, text};
+use super::{check, play, style, text};
 use crate::app::{App, Obstacle, Step, Wish};
 
 /// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
@@ -29,6 +29,7 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mu
                     .min_scrolled_height(tallest);
                 scrolled.show(ui, |ui| match app.obstacle() {
                     Some(obstacle) => in_the_way(ui, app, obstacle, wishes),
+                    None if app.phone_question().is_some() => check::sheet(ui, app, wishes),
                     None if app.toy_files().is_some() => toys(ui, app, wishes),
                     None if app.step() == Step::Play => play::show(ui, app, is_menu_open, wishes),
                     None => step(ui, app, wishes),
@@ -75,7 +76,12 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
                 wishes.push(Wish::Replace);
             }
         }
-        Step::FindTable | Step::Play => {}
+        Step::FindTable => {
+            if other(ui, text::CHECK) {
+                wishes.push(Wish::CheckPhone(true));
+            }
+        }
+        Step::Play => {}
     }
 }
 

@@ -1,7 +1,8 @@
 //! Every word of the interface, in one place.
 
 use crate::app::{
-    App, LensFailure, Notice, Obstacle, PlateRefusal, PlateStep, Recorded, Saved, Simplified, Step, Verdict,
+    App, LensFailure, Notice, Obstacle, PhoneQuestion, PlateRefusal, PlateStep, Recorded, Saved, Simplified,
+    Step, Verdict,
 };
 use crate::camera_frame::Tracking;
 use crate::core::CoreError;
@@ -102,6 +103,10 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::NothingRecorded => "Nothing was recorded: no frame came with a place.".to_owned(),
         Notice::RecordingDrops => "Writing is too slow: the recording lacks some frames.".to_owned(),
         Notice::NoRoomToRecord => "Nothing is recorded: there is too little room left.".to_owned(),
+        Notice::PhoneChecked { n_yes } => {
+            let n_asked = PhoneQuestion::ALL.len();
+            format!("{n_yes} of {n_asked} are as they should be. The log has the answers.")
+        }
         Notice::Simplified(simplified) => of_simplified(simplified),
         Notice::MemoryLow => "Memory is short: the recording was ended and saved.".to_owned(),
     }
@@ -188,6 +193,44 @@ pub(super) fn of_verdict(verdict: &Verdict) -> String {
     }
 }
 
+/// What is asked of a new phone.
+pub(super) fn of_question(question: PhoneQuestion) -> &'static str {
+    match question {
+        PhoneQuestion::Axes => {
+            "Does green point up, do red and blue lie on the table, and do all stay in their place as you walk around them?"
+        }
+        PhoneQuestion::Turned => {
+            "Turn the phone like a steering wheel, to the right and to the left. Do the arrows stay with the table?"
+        }
+        PhoneQuestion::Square => {
+            "Look at the printed card. Does the white line lie on the edge of its pattern, in the middle of the picture and in each corner?"
+        }
+        PhoneQuestion::Greys => {
+            "Hold white paper and something black beside the patches. Is the paper nearly as white, the other nearly as black, and neither tinted?"
+        }
+        PhoneQuestion::Colours => {
+            "Hold something red, something green and something blue there. Do they look as in the phone's own camera app?"
+        }
+        PhoneQuestion::Upright => {
+            "Is the picture upright, can letters be read, and is a cup seen from above as round as the circle?"
+        }
+        PhoneQuestion::Ruler => "Lay a ruler along the line. Is it 10 cm long, to a millimetre?",
+        PhoneQuestion::Delay => {
+            "Hold the phone before a mirror. In the mirror, is the same cell lit, or the one below it?"
+        }
+        PhoneQuestion::Held => {
+            "Hold a white sheet into the picture, and take it away. Is the table as bright all the time?"
+        }
+        PhoneQuestion::Return => {
+            "Lock the phone, or take a call, and come back. Is the picture there again, or a word on what to do?"
+        }
+    }
+}
+
+pub(super) const CHECK: &str = "Check this phone";
+pub(super) const YES: &str = "Yes";
+pub(super) const NO: &str = "No";
+pub(super) const STOP: &str = "Enough";
 pub(super) const ALLOW_CAMERA: &str = "Allow the camera";
 pub(super) const BEGIN: &str = "Begin";
 pub(super) const OPEN_SETTINGS: &str = "Open settings";

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use app_core::app::{Permission, ShellEvent, Step};
+use app_core::app::{Permission, PhoneQuestion, ShellEvent, Step};
 use app_core::core::CoreError;
 use app_core::interface::{Screen, Touch, TouchPhase};
 use glam::{DMat4, DVec2, DVec3};
@@ -128,6 +128,7 @@ impl<'a> Tour<'a> {
             self.during(fault)?;
         }
         self.shoot("find_table")?;
+        self.check_phone()?;
         let at = self.toy_px(DVec3::ZERO);
         self.desk.feed.hides_planes = true;
         self.frame()?;
@@ -138,6 +139,16 @@ impl<'a> Tour<'a> {
         self.tap(at)?;
         self.frame()?;
         self.expect(Step::TakePlate, "the table was tapped")
+    }
+
+    /// Each question of a new phone.
+    fn check_phone(&mut self) -> Result<(), TourError> {
+        self.press("Check this phone")?;
+        for number in 1..=PhoneQuestion::ALL.len() {
+            self.shoot(&format!("check_{number}"))?;
+            self.press(if number == 3 { "No" } else { "Yes" })?;
+        }
+        self.shoot("checked")
     }
 
     fn take_plate(&mut self) -> Result<(), TourError> {

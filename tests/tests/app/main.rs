@@ -4,6 +4,7 @@
 
 mod lens;
 mod orders;
+mod phone_check;
 mod recorded;
 mod screens;
 mod starts;

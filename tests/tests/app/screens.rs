@@ -64,6 +64,11 @@ fn events() -> Vec<ShellEvent> {
         ShellEvent::Device(Device::Ready),
         ShellEvent::Frame(Box::new(world::frame(1, 0, 0, Tracking::TooDark))),
         ShellEvent::Frame(Box::new(world::frame(2, 33_000_000, 0, Tracking::Normal))),
+        ShellEvent::Wish(Wish::CheckPhone(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::CheckPhone(false)),
         // Beside the table.
         ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, -400.0))),
         ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
