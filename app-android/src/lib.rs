@@ -8,7 +8,8 @@
 //! them; `video`, the phone's encoder, whose layout of samples is in `yuv` and tested; the loading of ARCore's library.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the person's size of letters, and recordings by the system's encoder. Photos, videos, recordings, the log and
+//! What is not here yet: the person's size of letters. Recordings are JPEG pictures by this project's own code: Android's encoders make
+//! streams of video, which nothing on the desktop reads without a C library. Photos, videos, recordings, the log and
 //! times are written into the app's own folder, from which the gallery gets copies and whoever files are shared with; toys of the
 //! person's own are read from there.
 //! ARCore keeps exposure and frame rate to itself, so neither is held or set, and no lens is photographed.

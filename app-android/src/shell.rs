@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use app_core::app::{AlignJob, Device, Recorded, Saved, ShellCommand, ShellEvent};
 use app_core::interface::Screen;
 use app_core::live::Live;
-use app_core::recording::{Take, Taken};
+use app_core::recording::{PictureCodec, Take, Taken};
 use app_core::toy::{Toy, ToyError};
 use app_files::toys::{self, BUNDLED, ToyFile};
 use app_files::video::{Video, VideoFormat};
@@ -237,7 +237,7 @@ impl<P: Phone> Shell<P> {
         });
         let toy = self.toy_file.bytes();
         self.on_thread("record", died, move || {
-            ShellEvent::Recorded(record::write(take, (APP, &toy), &folder))
+            ShellEvent::Recorded(record::write(take, (APP, &toy), PictureCodec::PHONE, &folder))
         });
     }
 

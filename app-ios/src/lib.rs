@@ -10,8 +10,7 @@
 //! permission; world tracking with level planes, interruptions and one anchor; exposure, white balance and focus held;
 //! the card, and the dark picture of its lens; alignments on a thread; photos and videos, which Photos takes as well; recordings,
 //! times and the log as files that Files shows, and by the share sheet; heat, memory and free space.
-//! What is not: recordings by the system's encoder, and words for those who do not see the screen. 30 frames a second slow the
-//! pictures rather than the camera.
+//! What is not: words for those who do not see the screen. 30 frames a second slow the pictures rather than the camera.
 //! Nothing of this has run on a phone.
 //!
 //! The crate is a static library with one C function, `app_ios_main`. It builds on any system, because only linking
@@ -28,6 +27,8 @@ pub mod jobs;
 mod camera;
 #[cfg(target_os = "ios")]
 mod hand_on;
+#[cfg(target_os = "ios")]
+mod jpeg;
 #[cfg(target_os = "ios")]
 mod pixels;
 #[cfg(target_os = "ios")]

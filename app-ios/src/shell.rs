@@ -24,7 +24,7 @@ use crate::inbox::{Inbox, Told};
 use crate::jobs::Jobs;
 use crate::stage::{Fitted, Stage, StageError};
 use crate::video::H264;
-use crate::{camera, convert};
+use crate::{camera, convert, jpeg};
 
 /// The app with its version, as recordings name it.
 const APP: &str = concat!("app-ios ", env!("CARGO_PKG_VERSION"));
@@ -352,7 +352,7 @@ impl Shell {
     fn record(&mut self, take: Take) {
         let (number, toy) = (take.number(), self.toy_file.bytes());
         self.jobs.start(
-            move || ShellEvent::Recorded(record::write(take, (APP, &toy), &documents())),
+            move || ShellEvent::Recorded(record::write(take, (APP, &toy), jpeg::codec(), &documents())),
             move || {
                 ShellEvent::Recorded(Recorded {
                     file: String::new(),

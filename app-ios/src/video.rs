@@ -136,7 +136,7 @@ impl VideoEncoder for Encoder {
         autoreleasepool(|_| {
             self.wait()?;
             let row_bytes = 4 * picture.width_px as usize;
-            let buffer = pixels::buffer(self.size_px, |row, bgra| {
+            let buffer = pixels::bgra(self.size_px, |row, bgra| {
                 convert::to_bgra(&picture.rgba8[row * row_bytes..], bgra);
             });
             let buffer = buffer.ok_or(io::ErrorKind::OutOfMemory)?;

@@ -13,7 +13,7 @@ use crate::save;
 
 /// Writes a recording into `folder` until it ends; `app` is the app with its version, and `toy` the file of its toy.
 #[must_use]
-pub fn write(take: Take, (app, toy): (&str, &[u8]), folder: &Path) -> Recorded {
+pub fn write(take: Take, (app, toy): (&str, &[u8]), codec: PictureCodec, folder: &Path) -> Recorded {
     // A clock that is set before 1970 makes every recording the same file.
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let name = format!("recording_{}.mcap", since.as_millis());
@@ -29,7 +29,7 @@ pub fn write(take: Take, (app, toy): (&str, &[u8]), folder: &Path) -> Recorded {
             file,
             TakeOptions {
                 toy,
-                codec: PictureCodec::PHONE,
+                codec,
                 device: device.into(),
                 limits: Limits::APP,
             },
@@ -142,7 +142,7 @@ mod tests {
             .offer(0, Item::Live(Box::new(live.clone())))
             .expect("room in the queue");
         drop(inlet);
-        let Recorded { file, taken } = write(take, ("app 1.0", TOY), &folder);
+        let Recorded { file, taken } = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &folder);
         assert_eq!((taken.n_frames, &taken.ending), (1, &Ending::Asked));
         let path = folder.join(file);
         let recording = Recording::open(fs::read(&path).expect("a file")).expect("a recording");
@@ -157,7 +157,7 @@ mod tests {
         fs::write(folder.join("recording_1.mcap"), b"").expect("an older one");
         assert_eq!(latest(&folder), Some(path.clone()));
         let (_, take) = Take::new(8, scene, live.camera.intrinsics);
-        let refused = write(take, ("app 1.0", TOY), &path);
+        let refused = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &path);
         assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");
         fs::remove_dir_all(&folder).expect("a folder");
     }

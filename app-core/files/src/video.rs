@@ -87,9 +87,9 @@ impl Video {
         let stem = folder.join(format!("video_{}", since.as_millis()));
         thread::Builder::new().name("video".to_owned()).spawn(move || {
             match catch_unwind(AssertUnwindSafe(|| write(&stem, formats, &taken))) {
-                Ok(Ok(file)) => done(Saved::Done, file),
+                Ok(Ok(Some(file))) => done(Saved::Done, Some(file)),
                 Ok(Err(error)) => done(outcome(Err(error)), None),
-                Err(_) => done(Saved::Failed, None),
+                Ok(Ok(None)) | Err(_) => done(Saved::Failed, None),
             }
         })?;
         let due_s = f64::NEG_INFINITY;
@@ -292,7 +292,7 @@ mod tests {
     #[test]
     fn without_a_picture_there_is_no_file_and_without_a_folder_it_is_told() {
         let (saved, files) = video("none", &[MOTION_JPEG], &[]);
-        assert_eq!((saved, files.len()), (Saved::Done, 0));
+        assert_eq!((saved, files.len()), (Saved::Failed, 0));
         let file = std::env::temp_dir().join(format!("app-files-no-folder-{}", std::process::id()));
         fs::write(&file, b"").expect("a file");
         let (done, saved) = channel();

@@ -9,9 +9,13 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::error::WriteError;
 use crate::camera_frame::CameraImage;
 use crate::scene::Image;
+use crate::session::tags::{JPEG_MAGIC, PNG_MAGIC};
 
-/// A platform's own encoder: a camera picture in, the bytes of a PNG or JPEG file out, or why there are none.
-pub type PlatformEncoder = Box<dyn FnMut(&CameraImage) -> Result<Vec<u8>, String> + Send>;
+/// A platform's own encoder: a camera picture in, the bytes of a PNG or JPEG file out, or none where it cannot.
+pub type PlatformEncoder = Box<dyn FnMut(&CameraImage) -> Option<Vec<u8>> + Send>;
+
+/// Of JPEG files that are written on a phone.
+const PHONE_QUALITY: u8 = 95;
 
 /// How camera pictures become files.
 #[derive(Default)]
@@ -24,20 +28,25 @@ pub enum PictureCodec {
         /// From 1 to 100; the page on recordings tells what each costs.
         quality: u8,
     },
-    /// As the platform does it, such as by its hardware.
+    /// As the platform does it, such as by its hardware; what it cannot encode is written as [`PictureCodec::PHONE`] does.
     Platform(PlatformEncoder),
 }
 
 impl PictureCodec {
     /// On a phone, where files that are not lossy would be too slow to write.
-    pub const PHONE: Self = Self::Jpeg { quality: 95 };
+    pub const PHONE: Self = Self::Jpeg {
+        quality: PHONE_QUALITY,
+    };
 
     /// The file.
     pub(super) fn encode(&mut self, image: &CameraImage) -> Result<Vec<u8>, WriteError> {
         match self {
             Self::Lossless => png(image.rgba()),
             Self::Jpeg { quality } => jpeg(image.rgba(), *quality),
-            Self::Platform(encode) => encode(image).map_err(WriteError::Picture),
+            Self::Platform(encode) => match encode(image).filter(|file| is_picture(file)) {
+                Some(file) => Ok(file),
+                None => jpeg(image.rgba(), PHONE_QUALITY),
+            },
         }
     }
 }
@@ -50,6 +59,11 @@ impl fmt::Debug for PictureCodec {
             Self::Platform(_) => f.write_str("Platform"),
         }
     }
+}
+
+/// Whether it begins as a picture that can be read back.
+fn is_picture(file: &[u8]) -> bool {
+    file.starts_with(JPEG_MAGIC) || file.starts_with(PNG_MAGIC)
 }
 
 /// A photograph as PNG, without its alpha, which photographs have not.

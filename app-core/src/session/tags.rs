@@ -6,7 +6,7 @@ use image::ImageDecoder;
 use image::codecs::jpeg::JpegDecoder;
 use image::metadata::Orientation;
 
-pub(super) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
+pub(crate) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 pub(crate) const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
 /// Name and data of each chunk of a PNG, in order, as far as the file goes. None of another file.

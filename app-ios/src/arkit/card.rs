@@ -13,7 +13,7 @@ use crate::pixels;
 pub(super) fn reference_image() -> Option<Retained<ARReferenceImage>> {
     let pattern = reference();
     let [columns, rows] = pattern.size_px.map(|side| side as usize);
-    let buffer = pixels::buffer([columns, rows], |row, bgra| {
+    let buffer = pixels::bgra([columns, rows], |row, bgra| {
         let codes = &pattern.codes[row * columns..][..columns];
         for (pixel, code) in bgra.chunks_exact_mut(4).zip(codes) {
             pixel.copy_from_slice(&[*code, *code, *code, 255]);

@@ -23,6 +23,8 @@ use harness::progress::Quiet;
 use harness::replay::{Options, picture_file, replay};
 use harness::report::Report;
 use harness::stored::Stored;
+use image::ExtendedColorType;
+use image::codecs::jpeg::JpegEncoder;
 
 use crate::orders::{happen, straight};
 use crate::way::{OFF_M, placed};
@@ -290,6 +292,33 @@ fn a_recording_is_replayed_as_what_was_fed() {
         assert!(lossy > exact && lossy < exact + more, "{exact}, {lossy}");
     }
     compare_converted(&folder.0, &path);
+}
+
+#[test]
+fn what_a_platform_cannot_encode_is_encoded_all_the_same() {
+    // Mean absolute difference of the first picture from what was fed, in codes.
+    let off = |encode: fn([u32; 2]) -> Option<Vec<u8>>| {
+        let codec = PictureCodec::Platform(Box::new(move |image| encode(image.size_px())));
+        let (fed, bytes) = fed_and_recorded(codec);
+        let recorded = Capture::open(Recording::open(bytes).unwrap()).unwrap();
+        let pair = [Arc::clone(&fed.frames[0].image), recorded.frame(0).unwrap().image];
+        let codes = pair[0].rgba8.iter().zip(&pair[1].rgba8);
+        let sum: u64 = codes.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        sum as f64 / pair[0].rgba8.len() as f64
+    };
+    let own = off(|size_px| Some(dark_jpeg(size_px)));
+    assert!(own > 50.0, "the platform's file is kept: {own}");
+    let (refused, no_picture) = (off(|_| None), off(|_| Some(b"no picture".to_vec())));
+    assert!(refused < 2.0 && no_picture < 2.0, "{refused}, {no_picture}");
+}
+
+fn dark_jpeg([width, height]: [u32; 2]) -> Vec<u8> {
+    let codes = vec![7; 3 * (width * height) as usize];
+    let mut file = Vec::new();
+    JpegEncoder::new(&mut file)
+        .encode(&codes, width, height, ExtendedColorType::Rgb8)
+        .unwrap();
+    file
 }
 
 /// A folder of a recording, and a recording of that folder, are the same session.
