@@ -24,7 +24,8 @@ use harness::view::window::{self, Options};
 /// Where photos and the tour's pictures go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/view";
 
-/// Run the app on a desktop: a session is its camera, the mouse a finger, the wheel turns the toy's outline.
+/// Run the app on a desktop: a session is its camera, the mouse a finger, the wheel turns the toy's outline; I writes a page of the
+/// moment that is shown, with all presets side by side, maps, lights and times.
 #[derive(Parser)]
 #[command(name = "view", bin_name = "cargo xtask view")]
 struct Args {

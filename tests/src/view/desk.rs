@@ -13,6 +13,7 @@ use app_files::video::{MOTION_JPEG, Video};
 
 use super::feed::Feed;
 use super::kept;
+use super::moment::Moment;
 use crate::output::{make_folder, write_png};
 
 /// Where alignments run.
@@ -218,6 +219,21 @@ impl Desk {
                 _ => {}
             }
         }
+    }
+
+    /// Writes a page of the moment that is shown, with every preset, on a thread that tells where it is; none while the toy does not
+    /// move.
+    pub fn look_into(&mut self) -> Option<JoinHandle<()>> {
+        let moment = Moment::of(self.live.app())?;
+        let folder = self.out.join(format!("moment_{:04}", self.n_saved));
+        self.n_saved += 1;
+        Some(thread::spawn(move || match moment.write(&folder) {
+            Ok(page) => println!(
+                "all presets, maps, lights and times of this moment: {}",
+                page.display()
+            ),
+            Err(error) => eprintln!("no page of this moment: {error:#}"),
+        }))
     }
 
     /// A person chose a toy's file, which may be none.

@@ -192,6 +192,9 @@ impl<'a> Tour<'a> {
         self.shoot("photo_saved")?;
         self.press("Pause")?;
         self.shoot("paused")?;
+        if let Some(page) = self.desk.look_into() {
+            let _ = page.join();
+        }
         self.press("More")?;
         self.shoot("menu")?;
         // Each of these changes what the sheet is made of, and with it where its buttons are.

@@ -269,6 +269,13 @@ impl ApplicationHandler for Shell {
             WindowEvent::KeyboardInput { event, .. } if event.logical_key == Key::Named(NamedKey::Escape) => {
                 event_loop.exit();
             }
+            WindowEvent::KeyboardInput { event, .. }
+                if event.state == ElementState::Pressed && event.logical_key.to_text() == Some("i") =>
+            {
+                if let Some(Opened { desk, .. }) = &mut self.opened {
+                    let _ = desk.look_into();
+                }
+            }
             WindowEvent::DroppedFile(path) => {
                 if let Some(Opened { desk, .. }) = &mut self.opened {
                     desk.pick(&path);
