@@ -4,10 +4,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Where Android, or a thread, calls this shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    not(target_os = "android"),
-    allow(dead_code, reason = "most are called by Android alone")
-)]
 pub(crate) enum Callback {
     /// A change of the activity's life cycle.
     LifeCycle,
@@ -92,7 +88,6 @@ mod tests {
         let sources = [
             include_str!("lifecycle.rs"),
             include_str!("java.rs"),
-            include_str!("shell.rs"),
             include_str!("stage.rs"),
         ];
         for source in sources {

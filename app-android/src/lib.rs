@@ -25,6 +25,7 @@ pub mod phone;
 pub mod shell;
 pub mod yuv;
 
+#[cfg(any(target_os = "android", test))]
 mod guard;
 
 #[cfg(target_os = "android")]

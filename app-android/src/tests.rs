@@ -7,6 +7,7 @@ use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, T
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
+use app_files::worker::Outcome;
 use glam::DVec2;
 
 use crate::arcore::fake::{FUNCTIONS, FakePlane, world};
@@ -19,11 +20,9 @@ use crate::shell::{Shell, bundled_toy};
 #[derive(Default)]
 pub(crate) struct Desk {
     allows: bool,
-    own_folder: Option<PathBuf>,
     thermal_status: Option<i32>,
-    folder: Option<PathBuf>,
     /// Names of files that were shown in the gallery, and handed on.
-    pub(crate) shown: Vec<String>,
+    shown: Vec<String>,
     shared: Vec<String>,
 }
 
@@ -53,7 +52,7 @@ impl Phone for Desk {
     }
 
     fn folder(&self) -> Option<PathBuf> {
-        self.folder.clone()
+        None
     }
 
     fn show_in_gallery(&mut self, file: PathBuf) {
@@ -65,7 +64,7 @@ impl Phone for Desk {
     }
 
     fn own_folder(&self) -> Option<PathBuf> {
-        self.own_folder.clone()
+        None
     }
 }
 
@@ -124,10 +123,10 @@ fn from_the_first_button_to_a_table() {
 }
 
 #[test]
-fn a_video_without_a_folder_is_not_allowed() {
+fn what_the_worker_cannot_keep_is_told_with_the_next_picture() {
     let mut shell = shell();
-    assert!(shell.live().app().notice().is_none());
     shell.obey(vec![ShellCommand::Video(true)]);
+    shell.tick();
     assert_eq!(
         shell.live().app().notice(),
         Some(&Notice::Saved(Saved::NotAllowed))
@@ -135,20 +134,12 @@ fn a_video_without_a_folder_is_not_allowed() {
 }
 
 #[test]
-fn log_and_latest_recording_are_handed_on() {
-    let folder = std::env::temp_dir().join(format!("app-android-share-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
-    for file in ["recording_1.mcap", "recording_2.mcap"] {
-        std::fs::write(folder.join(file), b"").expect("a file");
-    }
-    let mut shell = shell_on(Desk {
-        folder: Some(folder.clone()),
-        ..Desk::default()
-    });
-    shell.obey(vec![ShellCommand::Share]);
+fn files_go_to_the_gallery_or_to_whoever_they_are_shared_with() {
+    let mut shell = shell();
+    shell.settle(Outcome::Written("photo_1.png".into()));
+    assert_eq!(shell.phone().shown, ["photo_1.png"]);
+    shell.settle(Outcome::Share(vec!["log.txt".into(), "recording_2.mcap".into()]));
     assert_eq!(shell.phone().shared, ["log.txt", "recording_2.mcap"]);
-    assert_eq!(shell.live().app().notice(), Some(&Notice::Saved(Saved::Done)));
-    std::fs::remove_dir_all(&folder).expect("a folder");
 }
 
 #[test]
@@ -228,25 +219,6 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
     let unknown = screen([2400, 1080], None, [0; 4]);
     assert_eq!(unknown.insets, Insets::default());
     assert_eq!(unknown.pixels_per_point.to_bits(), 1.0_f64.to_bits());
-}
-
-#[test]
-fn the_toys_of_the_folder_are_listed_and_read_on_a_thread() {
-    let mut shell = shell_on(Desk::default());
-    shell.obey(vec![ShellCommand::PickToy]);
-    let listed = shell.live().app().toy_files().expect("a list");
-    assert_eq!(listed.first().map(String::as_str), Some("Llama"));
-    shell.obey(vec![ShellCommand::ReadToy("none.glb".to_owned())]);
-    let begun = std::time::Instant::now();
-    while shell.live().app().notice().is_none() {
-        assert!(
-            begun.elapsed() < std::time::Duration::from_secs(60),
-            "nothing was told"
-        );
-        shell.tick();
-    }
-    let told = format!("{:?}", shell.live().app().notice());
-    assert!(told.contains("none.glb"), "{told}");
 }
 
 #[test]

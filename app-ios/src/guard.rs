@@ -4,10 +4,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Where iOS, or a thread, calls this shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    not(target_os = "ios"),
-    allow(dead_code, reason = "most are called by iOS alone")
-)]
 pub(crate) enum Callback {
     /// The view was laid out.
     Layout,
@@ -33,7 +29,7 @@ pub(crate) enum Callback {
     SessionInterrupted,
     /// A camera frame.
     SessionFrame,
-    /// A thread of the shell's.
+    /// A thread of an encoder's, or of the shell's.
     Thread,
 }
 
@@ -124,7 +120,8 @@ mod tests {
             include_str!("view.rs"),
             include_str!("scene.rs"),
             include_str!("arkit/session.rs"),
-            include_str!("jobs.rs"),
+            include_str!("jpeg.rs"),
+            include_str!("video.rs"),
         ];
         for source in sources {
             assert_eq!(unguarded(source), [""; 0]);

@@ -52,8 +52,13 @@ pub(crate) fn into_photos(file: &Path) {
     }
 }
 
-/// Lets the app run on in the background until this is dropped, for a file that has to be made whole.
-pub(crate) struct Unsuspended {
+/// Lets the app run on in the background until what is returned is dropped.
+pub(crate) fn keep_running() -> Box<dyn Send> {
+    Box::new(MainThreadMarker::new().map(Unsuspended::begin))
+}
+
+/// A task of UIKit's, which ends when this is dropped.
+struct Unsuspended {
     application: Retained<UIApplication>,
     task: UIBackgroundTaskIdentifier,
 }
@@ -63,7 +68,7 @@ pub(crate) struct Unsuspended {
 unsafe impl Send for Unsuspended {}
 
 impl Unsuspended {
-    pub(crate) fn begin(main_thread: MainThreadMarker) -> Self {
+    fn begin(main_thread: MainThreadMarker) -> Self {
         let application = UIApplication::sharedApplication(main_thread);
         let task = application.beginBackgroundTaskWithExpirationHandler(None);
         Self { application, task }

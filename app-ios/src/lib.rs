@@ -2,7 +2,7 @@
 //!
 //! It translates and decides nothing. UIKit calls `scene` and `view`, ARKit a delegate in `arkit`; what they tell waits in
 //! `inbox` for the `shell`, which hands it to the one `app_core::live::Live` on the `stage` with each picture, and does what
-//! that then asks for: by `arkit`, `camera`, and `jobs` for what takes long.
+//! that then asks for: by `arkit`, `camera`, and the worker of `app_files` for files and threads.
 //! `convert` holds everything that knows ARKit's axes and pixel rules, UIKit's points and the platform's numbers; the core
 //! knows none of them.
 //!
@@ -19,9 +19,9 @@
 
 pub mod arkit;
 pub mod convert;
+#[cfg(any(target_os = "ios", test))]
 mod guard;
 pub mod inbox;
-pub mod jobs;
 
 #[cfg(target_os = "ios")]
 mod camera;

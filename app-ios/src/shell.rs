@@ -2,36 +2,31 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::Instant;
 
-use app_core::app::{
-    ArSession, Device, Panics, Permission, Recorded, Saved, ShellCommand, ShellEvent, Starts, Thermal,
-};
+use app_core::app::{ArSession, Device, Panics, Permission, ShellCommand, ShellEvent, Starts, Thermal};
 use app_core::interface::Screen;
-use app_core::recording::{Take, Taken};
-use app_files::toys::{self, ToyFile};
-use app_files::video::{MOTION_JPEG, Video, VideoFormat};
-use app_files::{record, save, starts};
+use app_files::starts;
+use app_files::video::MOTION_JPEG;
+use app_files::worker::{Folders, Outcome, Platform, Worker};
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
 use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
 
 use crate::arkit::session::Session;
-use crate::hand_on::{Unsuspended, into_photos};
+use crate::hand_on::{self, into_photos};
 use crate::inbox::{Inbox, Told};
-use crate::jobs::Jobs;
 use crate::stage::{Fitted, Stage, StageError};
 use crate::video::H264;
 use crate::{camera, convert, jpeg};
 
-/// The app with its version, as recordings name it.
-const APP: &str = concat!("app-ios ", env!("CARGO_PKG_VERSION"));
-/// Time after which free space is looked at anew.
-const LOOK: Duration = Duration::from_secs(1);
-/// Of videos, the better first.
-const VIDEOS: &[VideoFormat] = &[H264, MOTION_JPEG];
+const PLATFORM: Platform = Platform {
+    app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
+    videos: &[H264, MOTION_JPEG],
+    codec: jpeg::codec,
+    keep_running: hand_on::keep_running,
+};
 
 /// The app's hands.
 pub(crate) struct Shell {
@@ -39,19 +34,13 @@ pub(crate) struct Shell {
     stage: Stage,
     session: Session,
     inbox: Rc<Inbox>,
-    jobs: Jobs,
+    worker: Worker,
     start: Instant,
     /// As told last.
     permission: Option<Permission>,
     thermal: Option<Thermal>,
-    /// When free space was looked at.
-    looked: Option<Instant>,
     wants_device: bool,
     frames_per_s: u32,
-    toy_file: ToyFile,
-    video: Option<Video>,
-    /// Photos and videos that threads have written.
-    written: (Sender<PathBuf>, Receiver<PathBuf>),
     /// For the share sheet.
     shared: Vec<PathBuf>,
     /// While the camera is darkened.
@@ -72,16 +61,12 @@ impl Shell {
             stage: Stage::new(),
             session: Session::new(main_thread, Rc::clone(&inbox)),
             inbox,
-            jobs: Jobs::default(),
+            worker: worker(),
             start: Instant::now(),
             permission: None,
             thermal: None,
-            looked: None,
             wants_device: false,
             frames_per_s: 60,
-            toy_file: ToyFile::default(),
-            video: None,
-            written: channel(),
             shared: Vec::new(),
             held_exposure: None,
             starts: None,
@@ -100,8 +85,7 @@ impl Shell {
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
             self.lend();
             // Another app than the one that threads worked for, and that was told.
-            self.jobs = Jobs::default();
-            (self.toy_file, self.video) = (ToyFile::default(), None);
+            self.worker = worker();
             (self.permission, self.thermal) = (None, None);
             if std::mem::take(&mut self.is_restarted) {
                 self.inbox.tell(ShellEvent::Restarted);
@@ -150,7 +134,7 @@ impl Shell {
         };
         match live.present(screen, time_s) {
             Ok(commands) => {
-                self.add_to_video(time_s);
+                self.worker.drawn(live, time_s);
                 self.obey(commands);
             }
             Err(error) => {
@@ -207,17 +191,12 @@ impl Shell {
         if self.thermal.replace(thermal) != Some(thermal) {
             self.inbox.tell(ShellEvent::Thermal(thermal));
         }
-        if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
-            self.looked = Some(Instant::now());
-            if let Some(free_bytes) = record::free_bytes(&documents()) {
-                self.inbox.tell(ShellEvent::FreeSpace(free_bytes));
+        while let Some(outcome) = self.worker.outcome() {
+            match outcome {
+                Outcome::Tell(event) => self.inbox.tell(event),
+                Outcome::Written(file) => into_photos(&file),
+                Outcome::Share(files) => self.shared = files,
             }
-        }
-        while let Some(event) = self.jobs.result() {
-            self.inbox.tell(event);
-        }
-        while let Ok(file) = self.written.1.try_recv() {
-            into_photos(&file);
         }
     }
 
@@ -243,6 +222,10 @@ impl Shell {
 
     fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
+            let Some(live) = self.stage.live() else { return };
+            let Some(command) = self.worker.take(live, command) else {
+                continue;
+            };
             match command {
                 ShellCommand::AskPermission => camera::ask_permission(),
                 ShellCommand::OpenSettings => self.open_settings(),
@@ -266,100 +249,19 @@ impl Shell {
                     UIApplication::sharedApplication(self.main_thread).setIdleTimerDisabled(is_kept);
                 }
                 ShellCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
-                ShellCommand::Align(job) => self.jobs.start(
-                    move || ShellEvent::Aligned(Some(Box::new(job.run()))),
-                    || ShellEvent::Aligned(None),
-                ),
                 ShellCommand::ReopenDevice => self.wants_device = true,
-                ShellCommand::SavePhoto => self.save_photo(),
-                ShellCommand::Share => self.share(),
-                ShellCommand::Record(Some(take)) => self.record(*take),
-                ShellCommand::Video(true) => self.begin_video(),
-                ShellCommand::Video(false) => self.video = None,
-                ShellCommand::Remember(text) => {
-                    if let Err(error) = starts::store(&own_folder(), &text) {
-                        eprintln!("app-ios: the start is not kept: {error}");
-                    }
-                }
-                ShellCommand::PickToy => self.inbox.tell(ShellEvent::ToyFiles(toys::list(&documents()))),
-                ShellCommand::ReadToy(name) => {
-                    let file = self.toy_file.clone();
-                    let died = || ShellEvent::Toy(Err("it could not be read".to_owned()));
-                    self.jobs.start(move || file.read(&documents(), &name), died);
-                }
-                ShellCommand::Record(None) | ShellCommand::Announce(_) => {}
+                ShellCommand::Announce(_) => {}
+                // The worker's.
+                ShellCommand::Align(_)
+                | ShellCommand::SavePhoto
+                | ShellCommand::Video(_)
+                | ShellCommand::Record(_)
+                | ShellCommand::Share
+                | ShellCommand::PickToy
+                | ShellCommand::ReadToy(_)
+                | ShellCommand::Remember(_) => {}
             }
         }
-    }
-
-    fn saved(&self, saved: Saved) {
-        self.inbox.tell(ShellEvent::Saved(saved));
-    }
-
-    fn begin_video(&mut self) {
-        let (done, written) = (self.jobs.teller(), self.written.0.clone());
-        // An app that is left in the middle of a video would be stopped before its file is whole.
-        let unsuspended = Unsuspended::begin(self.main_thread);
-        let tell = move |saved, file: Option<PathBuf>| {
-            // Whoever waited may be gone.
-            let _ = done.send(ShellEvent::Saved(saved));
-            let _ = file.map(|file| written.send(file));
-            drop(unsuspended);
-        };
-        match Video::begin(&documents(), VIDEOS, tell) {
-            Ok(video) => self.video = Some(video),
-            Err(_) => self.saved(Saved::Failed),
-        }
-    }
-
-    /// The picture that was just drawn, for a video.
-    fn add_to_video(&mut self, time_s: f64) {
-        let Some(video) = self.video.as_mut().filter(|video| video.is_due(time_s)) else {
-            return;
-        };
-        if let Some(Ok(picture)) = self.stage.live().map(|live| live.read_picture()) {
-            video.add(picture, time_s);
-        }
-    }
-
-    fn save_photo(&mut self) {
-        let Some(Ok(picture)) = self.stage.live().map(|live| live.read_picture()) else {
-            return self.saved(Saved::Failed);
-        };
-        let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-        let name = format!("photo_{}.png", since_1970.unwrap_or_default().as_millis());
-        let written = self.written.0.clone();
-        self.jobs.start(
-            move || {
-                let saved = save::picture(&documents(), &name, &picture);
-                if saved == Saved::Done {
-                    // Whoever waited may be gone.
-                    let _ = written.send(documents().join(name));
-                }
-                ShellEvent::Saved(saved)
-            },
-            || ShellEvent::Saved(Saved::Failed),
-        );
-    }
-
-    fn share(&mut self) {
-        let Some(live) = self.stage.live() else { return };
-        let (saved, files) = record::share(live, &documents());
-        self.shared = files;
-        self.saved(saved);
-    }
-
-    fn record(&mut self, take: Take) {
-        let (number, toy) = (take.number(), self.toy_file.bytes());
-        self.jobs.start(
-            move || ShellEvent::Recorded(record::write(take, (APP, &toy), jpeg::codec(), &documents())),
-            move || {
-                ShellEvent::Recorded(Recorded {
-                    file: String::new(),
-                    taken: Taken::died(number),
-                })
-            },
-        );
     }
 
     fn open_settings(&self) {
@@ -373,12 +275,18 @@ impl Shell {
     }
 }
 
+/// A worker for an app that begins.
+fn worker() -> Worker {
+    let home = PathBuf::from(NSHomeDirectory().to_string());
+    let folders = Folders {
+        // What Files shows.
+        shared: Some(home.join("Documents")),
+        own: Some(own_folder()),
+    };
+    Worker::new(PLATFORM, folders)
+}
+
 /// The folder of what is the app's own; a system makes it with the app's home.
 fn own_folder() -> PathBuf {
     PathBuf::from(NSHomeDirectory().to_string()).join("Library")
-}
-
-/// The folder that Files shows.
-fn documents() -> PathBuf {
-    PathBuf::from(NSHomeDirectory().to_string()).join("Documents")
 }
