@@ -5,15 +5,16 @@ use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
 use app_core::app::Permission;
+use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
 use jni::refs::Global;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
-use crate::guard::{Callback, guarded};
 use crate::heat::Thermometer;
 use crate::media_store;
-use crate::phone::{Java, Phone, permission};
+use crate::phone::{Phone, permission};
+use app_shell::guard::guarded;
 
 const CAMERA: &str = "android.permission.CAMERA";
 const DETAILS: &str = "android.settings.APPLICATION_DETAILS_SETTINGS";
@@ -46,7 +47,7 @@ impl Activity {
     fn on_java_thread(&self, act: fn(&mut Env<'_>, &JObject<'_>) -> Result<()>) {
         let app = self.app.clone();
         self.app.run_on_java_main_thread(Box::new(move || {
-            if let Some(Err(error)) = guarded(Callback::Java, || with_java(&app, act)) {
+            if let Some(Err(error)) = guarded("a call of Java", || with_java(&app, act)) {
                 eprintln!("app-android: Java refused: {error}");
             }
         }));
@@ -56,7 +57,7 @@ impl Activity {
     fn on_thread(&self, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<()> + Send + 'static) {
         let app = self.app.clone();
         let thread = thread::Builder::new().spawn(move || {
-            if let Some(Err(error)) = guarded(Callback::Thread, || with_java(&app, act)) {
+            if let Some(Err(error)) = guarded("a thread", || with_java(&app, act)) {
                 eprintln!("app-android: Java refused: {error}");
             }
         });
@@ -86,7 +87,7 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
 pub(crate) fn say(app: &AndroidApp, words: &'static str) {
     let of_java = app.clone();
     app.run_on_java_main_thread(Box::new(move || {
-        let said = guarded(Callback::Java, || {
+        let said = guarded("a call of Java", || {
             with_java(&of_java, |env, activity| toast(env, activity, words))
         });
         if let Some(Err(error)) = said {
@@ -181,7 +182,7 @@ fn show_settings(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     Ok(())
 }
 
-impl Phone for Activity {
+impl JavaHost for Activity {
     fn java(&mut self) -> Java {
         let env = with_java(&self.app, |env, _| Ok(env.get_raw()));
         Java {
@@ -190,7 +191,9 @@ impl Phone for Activity {
             activity: self.app.activity_as_ptr(),
         }
     }
+}
 
+impl Phone for Activity {
     fn permission(&mut self) -> Permission {
         let (is_granted, may_explain) = with_java(&self.app, permission_of).unwrap_or_default();
         permission(is_granted, self.was_asked, may_explain)

@@ -1,11 +1,11 @@
 //! The Android shell: a native activity over the app that both phones share, `app_core::live::Live`.
 //!
-//! `shell` tells the app what happens and does what it asks for; `arcore` is its camera, over a table of ARCore's functions;
-//! `convert` holds everything that knows ARCore's axes and pixel rules, `input` what knows Android's fingers and screen.
+//! `shell` tells the app what happens and does what it asks for: by the `arcore` package, its camera, by the worker of `app_shell`,
+//! and by `phone`, everything else; `input` knows Android's fingers and screen.
 //! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
 //! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
 //! `java`, the camera's permission and the system's settings through JNI; `media_store`, which copies files to where other apps find
-//! them; `video`, the phone's encoder, whose layout of samples is in `yuv` and tested; the loading of ARCore's library.
+//! them. Videos are encoded by the `android_media` package.
 //!
 //! Nothing of this has run on a phone.
 //! What is not here yet: the person's size of letters. Recordings are JPEG pictures by this project's own code: Android's encoders make
@@ -18,15 +18,9 @@
 //!
 //! [`android_main`]: https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
 
-pub mod arcore;
-pub mod convert;
 pub mod input;
 pub mod phone;
 pub mod shell;
-pub mod yuv;
-
-#[cfg(any(target_os = "android", test))]
-mod guard;
 
 #[cfg(target_os = "android")]
 mod heat;
@@ -38,8 +32,6 @@ mod lifecycle;
 mod media_store;
 #[cfg(target_os = "android")]
 mod stage;
-#[cfg(target_os = "android")]
-mod video;
 
 #[cfg(test)]
 mod tests;

@@ -9,9 +9,9 @@ use std::time::Duration;
 use android_activity::input::{InputEvent, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
 
-use crate::guard::{Callback, guarded};
 use crate::input::{Finger, Motion, touches};
 use crate::stage::{Stage, StageError};
+use app_shell::guard::guarded;
 
 /// Runs until the activity is destroyed.
 ///
@@ -27,7 +27,7 @@ pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
         app.poll_events(timeout, |event| {
             if let PollEvent::Main(event) = event {
                 is_destroyed |= matches!(event, MainEvent::Destroy);
-                let handled = guarded(Callback::LifeCycle, || handle(&event, app, &mut stage));
+                let handled = guarded("the life cycle", || handle(&event, app, &mut stage));
                 outcome = stage.settle(handled);
             }
         });
@@ -35,10 +35,10 @@ pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
         if is_destroyed {
             return Ok(());
         }
-        let taken = guarded(Callback::Input, || take_input(app, &mut stage));
+        let taken = guarded("input", || take_input(app, &mut stage));
         stage.settle(taken.map(Ok))?;
         if stage.draws() {
-            let drawn = guarded(Callback::Picture, || stage.present());
+            let drawn = guarded("a picture", || stage.present());
             stage.settle(drawn)?;
         }
     }

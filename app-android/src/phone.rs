@@ -1,23 +1,12 @@
 //! What the shell asks of the phone beside ARCore and graphics.
 
-use std::ffi::c_void;
 use std::path::{Path, PathBuf};
 
-use app_core::app::Permission;
-
-/// Two pointers of Java: the environment of this thread, and the activity.
-#[derive(Clone, Copy, Debug)]
-pub struct Java {
-    /// `JNIEnv *`.
-    pub env: *mut c_void,
-    /// `jobject` of the activity.
-    pub activity: *mut c_void,
-}
+use app_core::app::{Permission, Thermal};
+use arcore::java::JavaHost;
 
 /// A phone: Android's own, or a test's.
-pub trait Phone {
-    /// The pointers that ARCore is called with, valid on this thread until the next call.
-    fn java(&mut self) -> Java;
+pub trait Phone: JavaHost {
     /// Whether the app may use the camera.
     fn permission(&mut self) -> Permission;
     /// Shows Android's question. The activity pauses and resumes around it.
@@ -47,6 +36,19 @@ pub fn permission(is_granted: bool, was_asked: bool, may_explain: bool) -> Permi
         (false, false, false) => Permission::Unknown,
         (false, _, true) => Permission::Denied,
         (false, true, false) => Permission::Barred,
+    }
+}
+
+/// How hot the phone is from an `AThermalStatus`, which has seven steps, -1 for an error.
+///
+/// From "severe" on the system slows down what a person sees; before that only what no one notices.
+#[must_use]
+pub fn thermal(status: i32) -> Thermal {
+    match status {
+        ..=0 => Thermal::Nominal,
+        1 | 2 => Thermal::Fair,
+        3 => Thermal::Serious,
+        4.. => Thermal::Critical,
     }
 }
 

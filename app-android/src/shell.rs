@@ -8,15 +8,14 @@ use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
-use app_files::record;
-use app_files::toys::BUNDLED;
-use app_files::video::{MOTION_JPEG, VideoFormat};
-use app_files::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::record;
+use app_shell::toys::BUNDLED;
+use app_shell::video::{MOTION_JPEG, VideoFormat};
+use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use arcore::feed::Feed;
+use arcore::tracker::{Geometry, Run};
 
-use crate::arcore::feed::Feed;
-use crate::arcore::tracker::{Geometry, Run};
-use crate::convert;
-use crate::phone::Phone;
+use crate::phone::{self, Phone};
 
 /// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
 const LANDSCAPE: i32 = 1;
@@ -25,7 +24,7 @@ const LANDSCAPE: i32 = 1;
 const LOOK: Duration = Duration::from_secs(1);
 /// Of videos, the better first.
 #[cfg(target_os = "android")]
-const VIDEOS: &[VideoFormat] = &[crate::video::H264, MOTION_JPEG];
+const VIDEOS: &[VideoFormat] = &[android_media::video::H264, MOTION_JPEG];
 #[cfg(not(target_os = "android"))]
 const VIDEOS: &[VideoFormat] = &[MOTION_JPEG];
 const PLATFORM: Platform = Platform {
@@ -123,7 +122,7 @@ impl<P: Phone> Shell<P> {
         if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
             self.looked = Some(Instant::now());
             if let Some(status) = self.phone.thermal_status() {
-                self.tell(ShellEvent::Thermal(convert::thermal(status)));
+                self.tell(ShellEvent::Thermal(phone::thermal(status)));
             }
         }
         let event = self.feed.poll(&mut self.phone);

@@ -10,16 +10,16 @@ use app_core::preset::Preset;
 use app_core::toy::ToyError;
 use app_core::wgpu::{self, rwh};
 use app_core::{Core, CoreError};
-use app_files::starts;
+use app_shell::starts;
+use arcore::feed::Feed;
+use arcore::library;
 use ndk::native_window::NativeWindow;
 
-use crate::arcore::feed::Feed;
-use crate::arcore::library;
-use crate::guard::{Callback, guarded};
 use crate::input::screen;
 use crate::java::Activity;
 use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
+use app_shell::guard::guarded;
 
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
@@ -82,7 +82,7 @@ impl Stage {
             return outcome;
         }
         let shell = self.shell.take();
-        guarded(Callback::Drop, || drop(shell));
+        guarded("dropping the app", || drop(shell));
         self.is_restarted = true;
         if self.panics.begins_anew(self.start.elapsed().as_secs_f64()) {
             Ok(())

@@ -7,18 +7,19 @@ use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, T
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
-use app_files::worker::Outcome;
+use app_shell::worker::Outcome;
+use arcore::fake::{FUNCTIONS, FakePlane, world};
+use arcore::feed::Feed;
+use arcore::java::{Java, JavaHost};
 use glam::DVec2;
 
-use crate::arcore::fake::{FUNCTIONS, FakePlane, world};
-use crate::arcore::feed::Feed;
 use crate::input::{Finger, Motion, screen, touches};
-use crate::phone::{Java, Phone, permission, stored};
+use crate::phone::{Phone, permission, stored, thermal};
 use crate::shell::{Shell, bundled_toy};
 
 /// A phone that grants the camera when it is asked for.
 #[derive(Default)]
-pub(crate) struct Desk {
+struct Desk {
     allows: bool,
     thermal_status: Option<i32>,
     /// Names of files that were shown in the gallery, and handed on.
@@ -26,7 +27,7 @@ pub(crate) struct Desk {
     shared: Vec<String>,
 }
 
-impl Phone for Desk {
+impl JavaHost for Desk {
     fn java(&mut self) -> Java {
         let somewhere = std::ptr::without_provenance_mut(8);
         Java {
@@ -34,7 +35,9 @@ impl Phone for Desk {
             activity: somewhere,
         }
     }
+}
 
+impl Phone for Desk {
     fn permission(&mut self) -> Permission {
         permission(self.allows, false, false)
     }
@@ -229,4 +232,46 @@ fn heat_is_told() {
     });
     shell.tick();
     assert_eq!(shell.live().app().thermal(), Thermal::Serious);
+}
+
+#[test]
+fn heat_has_four_steps_of_androids_seven() {
+    use Thermal::{Critical, Fair, Nominal, Serious};
+    let told = [-1, 0, 1, 2, 3, 4, 5, 6].map(thermal);
+    assert_eq!(
+        told,
+        [
+            Nominal, Nominal, Fair, Fair, Serious, Critical, Critical, Critical
+        ]
+    );
+}
+
+#[test]
+fn the_manifest_names_the_library_that_cargo_builds() {
+    let library_name = format!("android:value=\"{}\"", env!("CARGO_PKG_NAME").replace('-', "_"));
+    assert!(include_str!("../AndroidManifest.xml").contains(&library_name));
+}
+
+/// Calls of functions that take a callback, without a guard right at its beginning.
+fn unguarded(source: &str) -> Vec<&str> {
+    let takers = [".poll_events(", ".run_on_java_main_thread(", ".spawn(", ".next(|"];
+    let calls = takers.iter().flat_map(|taker| source.split(taker).skip(1));
+    calls
+        .map(|rest| rest.split_once("\n    }\n").map_or(rest, |(body, _)| body))
+        .filter(|body| !body.contains("guarded(\""))
+        .collect()
+}
+
+#[test]
+fn whatever_android_calls_is_guarded() {
+    let sources = [
+        include_str!("lifecycle.rs"),
+        include_str!("java.rs"),
+        include_str!("stage.rs"),
+    ];
+    for source in sources {
+        assert_eq!(unguarded(source), [""; 0]);
+    }
+    let planted = "fn a() {\n        app.poll_events(None, |event| handle(event));\n    }\n";
+    assert_eq!(unguarded(planted).len(), 1);
 }

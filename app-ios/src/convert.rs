@@ -1,79 +1,13 @@
-//! ARKit's and UIKit's conventions turned into ours. The only file of this shell that knows platform axes and points.
-//!
-//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z in the unrotated
-//! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
-//! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
+//! UIKit's points and the system's numbers turned into ours.
 
-use app_core::app::{ArSession, Permission, Thermal};
-use glam::{DMat3, DMat4, DVec2, DVec3};
-
-/// How far ARKit's single precision may be from a rigid motion, with room for the roundings of a product.
-const RIGID_TOLERANCE: f64 = 1e-3;
-
-/// Our `world_from_camera` from the columns of `ARCamera.transform`, metres.
-///
-/// ARKit's camera axes belong to the sensor image in landscape and are ours already. `None` if the matrix is not a
-/// rotation with a translation, as ARKit may report before it tracks.
-pub fn world_from_camera(transform_columns: [[f32; 4]; 4]) -> Option<DMat4> {
-    let world_from_camera = DMat4::from_cols_array_2d(&transform_columns.map(|column| column.map(f64::from)));
-    let rotation = DMat3::from_mat4(world_from_camera);
-    let is_rotation = (rotation.transpose() * rotation).abs_diff_eq(DMat3::IDENTITY, RIGID_TOLERANCE)
-        && rotation.determinant() > 0.0;
-    let is_affine = world_from_camera.row(3) == glam::DVec4::W;
-    (is_rotation && is_affine && world_from_camera.is_finite()).then_some(world_from_camera)
-}
-
-/// Our `sensor_px_from_camera_rdf` from the columns of `ARCamera.intrinsics`.
-///
-/// A column is a `simd_float3` of four lanes; the last lane holds nothing in particular and is not read. ARKit puts
-/// (0, 0) on the centre of the first pixel, so the principal point moves by half a pixel.
-pub fn sensor_px_from_camera_rdf(intrinsics_columns: [[f32; 4]; 3]) -> DMat3 {
-    let mut sensor_px_from_camera_rdf = DMat3::from_cols_array_2d(
-        &intrinsics_columns.map(|[x, y, z, _unused]| [f64::from(x), f64::from(y), f64::from(z)]),
-    );
-    sensor_px_from_camera_rdf.z_axis += DVec3::new(0.5, 0.5, 0.0);
-    sensor_px_from_camera_rdf
-}
+use app_core::app::Thermal;
+use glam::DVec2;
 
 /// Whole pixels from a size in UIKit's points. `None` while there is no area, as before the first layout.
 pub fn size_px(size_points: [f64; 2], pixels_per_point: f64) -> Option<[u32; 2]> {
     let size_px = (DVec2::from(size_points) * pixels_per_point).round();
     // The conversion saturates; no number here is anywhere near a limit of u32.
     (size_px.min_element() >= 1.0).then(|| size_px.as_uvec2().to_array())
-}
-
-/// Pixels of red, green, blue and alpha in the order of Apple's buffers: blue, green, red, alpha.
-pub fn to_bgra(rgba: &[u8], bgra: &mut [u8]) {
-    for (to, from) in bgra.chunks_exact_mut(4).zip(rgba.chunks_exact(4)) {
-        to.copy_from_slice(&[from[2], from[1], from[0], from[3]]);
-    }
-}
-
-/// Part of the held exposure that a picture of a lens has.
-const DARK: f64 = 1.0 / 64.0;
-
-/// Duration in seconds and ISO speed of a picture as dark as that, or as near to it as `least` of both allow: less speed first, then
-/// less time. `None` where the camera tells no exposure.
-pub fn darkened(held: [f64; 2], least: [f64; 2]) -> Option<[f64; 2]> {
-    let are_numbers = held
-        .iter()
-        .chain(&least)
-        .all(|number| number.is_finite() && *number > 0.0);
-    if !are_numbers {
-        return None;
-    }
-    let iso = (DARK * held[1]).max(least[1]).min(held[1]);
-    let duration_s = (DARK * held[0] * held[1] / iso).max(least[0]).min(held[0]);
-    Some([duration_s, iso])
-}
-
-/// The camera's permission from an `AVAuthorizationStatus`. Once it was refused, iOS asks nobody again.
-pub fn permission(status: isize) -> Permission {
-    match status {
-        3 => Permission::Granted,
-        0 => Permission::Unknown,
-        _ => Permission::Barred,
-    }
 }
 
 /// How hot the phone is from an `NSProcessInfoThermalState`.
@@ -86,97 +20,14 @@ pub fn thermal(state: isize) -> Thermal {
     }
 }
 
-/// What a session of ARKit is after it failed with an `ARErrorCode`.
-pub fn failed_session(code: isize) -> ArSession {
-    match code {
-        // The configuration is one that the phone does not have.
-        100 => ArSession::Unsupported,
-        _ => ArSession::Failed,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_platforms_numbers_have_their_meanings() {
-        use Permission::{Barred, Granted, Unknown};
+    fn heat_has_four_steps() {
         use Thermal::{Critical, Fair, Nominal, Serious};
-        assert_eq!([0, 1, 2, 3].map(permission), [Unknown, Barred, Barred, Granted]);
         assert_eq!([0, 1, 2, 3].map(thermal), [Nominal, Fair, Serious, Critical]);
-        let [unsupported, failed] = [ArSession::Unsupported, ArSession::Failed];
-        assert_eq!(
-            [100, 102, 103, 200].map(failed_session),
-            [unsupported, failed, failed, failed]
-        );
-    }
-
-    #[test]
-    fn a_dark_picture_has_less_speed_and_then_less_time() {
-        let dark = darkened([0.016, 400.0], [1e-5, 50.0]).expect("an exposure");
-        assert_eq!(dark, [0.002, 50.0]);
-        let amount = |[duration_s, iso]: [f64; 2]| duration_s * iso;
-        assert_eq!(amount(dark) * 64.0, amount([0.016, 400.0]));
-        assert_eq!(
-            darkened([0.016, 50.0], [0.01, 50.0]),
-            Some([0.01, 50.0]),
-            "as dark as it can be"
-        );
-        assert_eq!(
-            darkened([0.001, 40.0], [0.01, 50.0]),
-            Some([0.001, 40.0]),
-            "never brighter"
-        );
-        assert_eq!(darkened([f64::NAN, 50.0], [0.01, 50.0]), None);
-        assert_eq!(darkened([0.016, 0.0], [0.01, 50.0]), None);
-    }
-
-    /// A quarter turn to the left about the vertical, from a phone at (1, 2, 3).
-    const TURNED_LEFT: [[f32; 4]; 4] = [
-        [0.0, 0.0, -1.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0, 0.0],
-        [1.0, 2.0, 3.0, 1.0],
-    ];
-
-    #[test]
-    fn a_quarter_turn_to_the_left_looks_along_minus_x_from_where_the_phone_is() {
-        let world_from_camera = world_from_camera(TURNED_LEFT).expect("a rigid pose");
-        assert_eq!(world_from_camera.transform_vector3(DVec3::NEG_Z), DVec3::NEG_X);
-        assert_eq!(world_from_camera.transform_vector3(DVec3::X), DVec3::NEG_Z);
-        assert_eq!(
-            world_from_camera.transform_point3(DVec3::ZERO),
-            DVec3::new(1.0, 2.0, 3.0)
-        );
-    }
-
-    #[test]
-    fn what_is_not_a_rigid_motion_is_refused() {
-        let with = |column: usize, row: usize, value: f32| {
-            let mut columns = TURNED_LEFT;
-            columns[column][row] = value;
-            world_from_camera(columns)
-        };
-        assert_eq!(world_from_camera([[0.0; 4]; 4]), None);
-        assert_eq!(with(1, 1, -1.0), None, "mirrored");
-        assert_eq!(with(1, 1, 1.1), None, "scaled");
-        assert_eq!(with(3, 0, f32::NAN), None, "no position");
-        assert_eq!(with(0, 3, 0.5), None, "a projection");
-    }
-
-    #[test]
-    fn the_centre_of_the_first_pixel_moves_to_one_half() {
-        let unused = f32::NAN;
-        let intrinsics_columns = [
-            [1000.0, 0.0, 0.0, unused],
-            [0.0, 1000.0, 0.0, unused],
-            [960.0, 720.0, 1.0, unused],
-        ];
-        // ARKit sees this direction at (0, 0): 960 left of and 720 above a principal point at (960, 720).
-        let towards_first_pixel = DVec3::new(-0.96, -0.72, 1.0);
-        let pixel = sensor_px_from_camera_rdf(intrinsics_columns) * towards_first_pixel;
-        assert!(pixel.abs_diff_eq(DVec3::new(0.5, 0.5, 1.0), 1e-9), "{pixel}");
     }
 
     #[test]
@@ -184,12 +35,5 @@ mod tests {
         assert_eq!(size_px([844.0, 390.0], 3.0), Some([2532, 1170]));
         assert_eq!(size_px([0.0, 390.0], 3.0), None, "not laid out");
         assert_eq!(size_px([844.0, 390.0], 0.0), None, "no screen yet");
-    }
-
-    #[test]
-    fn red_and_blue_change_places() {
-        let mut bgra = [0; 8];
-        to_bgra(&[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], &mut bgra);
-        assert_eq!(bgra, [3, 2, 1, 4, 7, 6, 5, 8]);
     }
 }

@@ -1,10 +1,9 @@
 //! The iPhone shell: one window scene with one Metal view, and a camera, for the app that both phones share.
 //!
-//! It translates and decides nothing. UIKit calls `scene` and `view`, ARKit a delegate in `arkit`; what they tell waits in
-//! `inbox` for the `shell`, which hands it to the one `app_core::live::Live` on the `stage` with each picture, and does what
-//! that then asks for: by `arkit`, `camera`, and the worker of `app_files` for files and threads.
-//! `convert` holds everything that knows ARKit's axes and pixel rules, UIKit's points and the platform's numbers; the core
-//! knows none of them.
+//! It translates and decides nothing. UIKit calls `scene` and `view`, ARKit a delegate in the `arkit` package; what they tell waits
+//! in `inbox` for the `shell`, which hands it to the one `app_core::live::Live` on the `stage` with each picture, and does what
+//! that then asks for: by `arkit`, `ios_media`, and the worker of `app_shell` for files and threads.
+//! `convert` knows UIKit's points and the system's numbers, `arkit::convert` ARKit's axes and pixel rules; the core knows none.
 //!
 //! What is there: the app on the view's layer, with a toy to begin with; touches, safe area and letter size; the camera's
 //! permission; world tracking with level planes, interruptions and one anchor; exposure, white balance and focus held;
@@ -17,28 +16,17 @@
 //! needs Apple's SDK; `README.md` beside this crate tells how a Mac makes an app of it.
 //! On other systems only what is free of Apple's is compiled.
 
-pub mod arkit;
 pub mod convert;
-#[cfg(any(target_os = "ios", test))]
-mod guard;
 pub mod inbox;
 
 #[cfg(target_os = "ios")]
-mod camera;
-#[cfg(target_os = "ios")]
 mod hand_on;
-#[cfg(target_os = "ios")]
-mod jpeg;
-#[cfg(target_os = "ios")]
-mod pixels;
 #[cfg(target_os = "ios")]
 mod scene;
 #[cfg(target_os = "ios")]
 mod shell;
 #[cfg(target_os = "ios")]
 mod stage;
-#[cfg(target_os = "ios")]
-mod video;
 #[cfg(target_os = "ios")]
 mod view;
 
@@ -53,18 +41,4 @@ pub extern "C" fn app_ios_main() -> ! {
 }
 
 #[cfg(test)]
-mod tests {
-    #[test]
-    fn the_property_list_names_the_scene_delegate() {
-        let named_in_property_list = include_str!("../Info.plist")
-            .split_once("<key>UISceneDelegateClassName</key>")
-            .and_then(|(_, rest)| rest.split_once("<string>")?.1.split_once("</string>"))
-            .map(|(name, _)| name)
-            .expect("a scene delegate in Info.plist");
-        let declared_in_code = format!("#[name = \"{named_in_property_list}\"]");
-        assert!(
-            include_str!("scene.rs").contains(&declared_in_code),
-            "no {declared_in_code} in scene.rs"
-        );
-    }
-}
+mod tests;

@@ -14,8 +14,8 @@ use objc2_ui_kit::{
     UISceneSession, UIViewController, UIWindow, UIWindowScene, UIWindowSceneDelegate,
 };
 
-use crate::guard::{Callback, guarded};
 use crate::view::MetalView;
+use app_shell::guard::guarded;
 
 /// Hands the main thread to UIKit.
 pub(crate) fn run_app() -> ! {
@@ -86,22 +86,22 @@ define_class!(
             _session: &UISceneSession,
             _options: &UISceneConnectionOptions,
         ) {
-            guarded(Callback::Connect, || self.connect(scene));
+            guarded("a scene that connects", || self.connect(scene));
         }
 
         #[unsafe(method(sceneDidDisconnect:))]
         fn scene_did_disconnect(&self, _scene: &UIScene) {
-            guarded(Callback::Disconnect, || self.disconnect());
+            guarded("a scene that disconnects", || self.disconnect());
         }
 
         #[unsafe(method(sceneWillEnterForeground:))]
         fn scene_will_enter_foreground(&self, _scene: &UIScene) {
-            guarded(Callback::Foreground, || self.with_view(MetalView::enter_foreground));
+            guarded("entering the foreground", || self.with_view(MetalView::enter_foreground));
         }
 
         #[unsafe(method(sceneDidEnterBackground:))]
         fn scene_did_enter_background(&self, _scene: &UIScene) {
-            guarded(Callback::Background, || self.with_view(MetalView::enter_background));
+            guarded("entering the background", || self.with_view(MetalView::enter_background));
         }
     }
 

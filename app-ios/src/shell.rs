@@ -6,20 +6,22 @@ use std::time::Instant;
 
 use app_core::app::{ArSession, Device, Panics, Permission, ShellCommand, ShellEvent, Starts, Thermal};
 use app_core::interface::Screen;
-use app_files::starts;
-use app_files::video::MOTION_JPEG;
-use app_files::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::starts;
+use app_shell::video::MOTION_JPEG;
+use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use arkit::camera;
+use arkit::session::Session;
+use ios_media::jpeg;
+use ios_media::video::H264;
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
 use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
 
-use crate::arkit::session::Session;
+use crate::convert;
 use crate::hand_on::{self, into_photos};
 use crate::inbox::{Inbox, Told};
 use crate::stage::{Fitted, Stage, StageError};
-use crate::video::H264;
-use crate::{camera, convert, jpeg};
 
 const PLATFORM: Platform = Platform {
     app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
@@ -59,7 +61,7 @@ impl Shell {
         Self {
             main_thread,
             stage: Stage::new(),
-            session: Session::new(main_thread, Rc::clone(&inbox)),
+            session: Session::new(main_thread, told_to(&inbox)),
             inbox,
             worker: worker(),
             start: Instant::now(),
@@ -273,6 +275,12 @@ impl Shell {
         // SAFETY: without options and without a handler there is nothing that could be of a wrong type.
         unsafe { application.openURL_options_completionHandler(&url, &NSDictionary::new(), None) };
     }
+}
+
+/// Leaves an event for the shell.
+fn told_to(inbox: &Rc<Inbox>) -> Rc<dyn Fn(ShellEvent)> {
+    let inbox = Rc::clone(inbox);
+    Rc::new(move |event| inbox.tell(event))
 }
 
 /// A worker for an app that begins.

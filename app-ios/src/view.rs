@@ -17,11 +17,11 @@ use objc2_ui_kit::{
 };
 
 use crate::convert::size_px;
-use crate::guard::{Callback, guarded};
 use crate::hand_on::show_sheet;
 use crate::inbox::Inbox;
 use crate::shell::Shell;
 use crate::stage::StageError;
+use app_shell::guard::guarded;
 
 /// The view's state.
 pub(crate) struct ViewState {
@@ -53,46 +53,46 @@ define_class!(
         fn layout_subviews(&self) {
             // SAFETY: the method of the superclass takes nothing and returns nothing.
             let () = unsafe { msg_send![super(self), layoutSubviews] };
-            self.run(Callback::Layout, |shell| self.fit(shell));
+            self.run("layout", |shell| self.fit(shell));
         }
 
         #[unsafe(method(displayLinkDidFire:))]
         fn display_link_did_fire(&self, _link: &CADisplayLink) {
             let mut shared = Vec::new();
-            self.run(Callback::Picture, |shell| {
+            self.run("a picture", |shell| {
                 autoreleasepool(|_| self.draw(shell))?;
                 shared = shell.take_shared();
                 Ok(())
             });
             if !shared.is_empty() {
                 // The shell is free by now: a sheet may have the view laid out.
-                guarded(Callback::Picture, || show_sheet(self, &shared));
+                guarded("a picture", || show_sheet(self, &shared));
             }
         }
 
         #[unsafe(method(touchesBegan:withEvent:))]
         fn touches_began(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Began));
+            guarded("touches", || self.touch(touches, TouchPhase::Began));
         }
 
         #[unsafe(method(touchesMoved:withEvent:))]
         fn touches_moved(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Moved));
+            guarded("touches", || self.touch(touches, TouchPhase::Moved));
         }
 
         #[unsafe(method(touchesEnded:withEvent:))]
         fn touches_ended(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Ended));
+            guarded("touches", || self.touch(touches, TouchPhase::Ended));
         }
 
         #[unsafe(method(touchesCancelled:withEvent:))]
         fn touches_cancelled(&self, touches: &NSSet<UITouch>, _event: Option<&UIEvent>) {
-            guarded(Callback::Touches, || self.touch(touches, TouchPhase::Cancelled));
+            guarded("touches", || self.touch(touches, TouchPhase::Cancelled));
         }
 
         #[unsafe(method(memoryIsLow:))]
         fn memory_is_low(&self, _notification: &NSNotification) {
-            guarded(Callback::MemoryLow, || self.ivars().inbox.tell(ShellEvent::MemoryLow));
+            guarded("a memory warning", || self.ivars().inbox.tell(ShellEvent::MemoryLow));
         }
     }
 );
@@ -134,7 +134,7 @@ impl MetalView {
     /// Creates the surface, and with the first one the app, and starts the clock.
     pub(crate) fn enter_foreground(&self) {
         self.ivars().in_foreground.set(true);
-        self.run(Callback::Foreground, |shell| {
+        self.run("entering the foreground", |shell| {
             self.fit(shell)?;
             shell.enter_foreground();
             Ok(())
@@ -146,7 +146,7 @@ impl MetalView {
     pub(crate) fn enter_background(&self) {
         self.ivars().in_foreground.set(false);
         self.pause_clock(true);
-        self.run(Callback::Background, |shell| {
+        self.run("entering the background", |shell| {
             shell.enter_background();
             Ok(())
         });
@@ -242,7 +242,7 @@ impl MetalView {
 
     /// Lets `act` work on the shell. After an error the app is dropped, and the next layout or return to the foreground starts a
     /// new one; after a panic the next picture does, unless one comes after the other. Until then the view keeps its last picture.
-    fn run(&self, callback: Callback, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
+    fn run(&self, callback: &str, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
         let Ok(mut shell) = self.ivars().shell.try_borrow_mut() else {
             // UIKit laid the view out while the shell was at work; the size is read again at the next layout.
             return;
@@ -253,6 +253,6 @@ impl MetalView {
             Some(Err(error)) => eprintln!("app-ios: {callback:?}: {error}"),
             None => shell.panicked(),
         }
-        guarded(Callback::Drop, || shell.clear());
+        guarded("dropping the app", || shell.clear());
     }
 }

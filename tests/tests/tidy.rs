@@ -65,9 +65,13 @@ fn sources(folder: &str, extension: &str) -> Vec<Source> {
 fn rust_sources() -> Vec<Source> {
     let folders = [
         "app-core/src",
-        "app-core/files/src",
+        "app-core/shell/src",
         "app-ios/src",
+        "app-ios/arkit/src",
+        "app-ios/media/src",
         "app-android/src",
+        "app-android/arcore/src",
+        "app-android/media/src",
         "tests/src",
         "tests/tests",
         "xtask/src",
@@ -230,4 +234,18 @@ fn the_core_has_no_clock_no_files_no_platform_and_no_unsafe_code() {
         |file| file.path.ends_with("src/lib.rs") && !file.text.contains("#![forbid(unsafe_code)]"),
     );
     assert_none(root);
+}
+
+/// What decides belongs to the core, and what knows a platform's interfaces to the packages beside a shell.
+#[test]
+fn shells_are_thin() {
+    let n_lines = |shell: &str| -> usize {
+        let sources = sources(&format!("{shell}/src"), "rs").into_iter();
+        let counted = sources.filter(|source| !source.path.ends_with("tests.rs"));
+        counted.map(|source| source.n_lines()).sum()
+    };
+    for shell in ["app-ios", "app-android"] {
+        let n_lines = n_lines(shell);
+        assert!(n_lines <= 1200, "{shell}: {n_lines} lines");
+    }
 }

@@ -9,7 +9,7 @@ use app_core::core::CoreError;
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::scene::Image;
-use app_files::video::{MOTION_JPEG, Video};
+use app_shell::video::{MOTION_JPEG, Video};
 
 use super::feed::Feed;
 use super::kept;

@@ -26,14 +26,16 @@ struct Source {
     path: String,
 }
 
-fn sources(shell: &Path) -> Result<Vec<Source>> {
+/// The sources of a shell and of the packages beside it.
+fn sources(shell: &Path, packages: [&str; 2]) -> Result<Vec<Source>> {
     let mut folders = vec![shell.join("src")];
+    folders.extend(packages.map(|package| shell.join(package).join("src")));
     let mut sources = Vec::new();
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(&folder)?.flatten().map(|entry| entry.path()) {
             if path.is_dir() {
                 folders.push(path);
-            } else {
+            } else if !path.ends_with("tests.rs") {
                 let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
                 let path = path.strip_prefix(shell)?.display().to_string();
                 sources.push(Source { text, path });
@@ -74,7 +76,7 @@ pub(crate) fn table(root: &Path) -> Result<String> {
     text.push_str("\n## iPhone\n");
     let mut calls = Calls::default();
     calls.linked(&Imports::read(&ios.join("imports.txt"), false)?);
-    for source in sources(&ios)? {
+    for source in sources(&ios, ["arkit", "media"])? {
         for selector in inside(&source.text, "selector(sel!(") {
             calls.add(
                 "emulated",
@@ -91,8 +93,8 @@ pub(crate) fn table(root: &Path) -> Result<String> {
         }
         for message in source.text.split("msg_send![").skip(1) {
             let message = message.split(']').next().unwrap_or_default();
-            let selector = message.split_once(", ").map_or(message, |(_, selector)| selector);
-            let selector = selector.split(':').next().unwrap_or_default();
+            let selector = message.split_once(',').map_or(message, |(_, selector)| selector);
+            let selector = selector.split(':').next().unwrap_or_default().trim();
             calls.add(
                 "untried",
                 &format!("messages by name in {}", source.path),
@@ -107,8 +109,8 @@ pub(crate) fn table(root: &Path) -> Result<String> {
     text.push_str("\n## Android\n");
     let mut calls = Calls::default();
     calls.linked(&Imports::read(&android.join("imports.txt"), true)?);
-    for source in sources(&android)? {
-        if source.path.ends_with("arcore/ffi.rs") {
+    for source in sources(&android, ["arcore", "media"])? {
+        if source.path.ends_with("arcore/src/ffi.rs") {
             for name in inside(&source.text, "    fn Ar") {
                 calls.add(
                     "faked",

@@ -1,0 +1,140 @@
+//! ARCore's conventions turned into ours. The only file that knows ARCore's axes.
+//!
+//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z in the unrotated
+//! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
+//! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
+
+use app_core::scene::Intrinsics;
+use glam::{DMat4, DQuat, DVec2, DVec3};
+
+/// How far a unit quaternion in single precision may be from length one (squared), with room for a few roundings.
+const UNIT_TOLERANCE: f64 = 1e-3;
+
+/// Our `world_from_camera` from the seven numbers of `ArPose_getPoseRaw`: `qx qy qz qw tx ty tz`, metres.
+///
+/// The pose must come from `ArCamera_getPose`, whose axes follow the sensor image and are ours already; the
+/// display-oriented pose is turned by quarter turns. `None` if a number is not finite or the quaternion is not a
+/// rotation, as ARCore may report before it tracks.
+pub fn world_from_camera(pose_raw: [f32; 7]) -> Option<DMat4> {
+    let [qx, qy, qz, qw, tx, ty, tz] = pose_raw.map(f64::from);
+    let rotation = DQuat::from_xyzw(qx, qy, qz, qw);
+    let translation_m = DVec3::new(tx, ty, tz);
+    let is_rotation = (rotation.length_squared() - 1.0).abs() < UNIT_TOLERANCE;
+    (is_rotation && translation_m.is_finite())
+        .then(|| DMat4::from_rotation_translation(rotation.normalize(), translation_m))
+}
+
+/// Our intrinsics from an `ArCameraIntrinsics`: focal length and principal point in pixels of the same image stream,
+/// `[x, y]` each. `None` unless both lengths are positive and all is finite.
+///
+/// ARCore does not state where in a pixel its coordinates are whole. They are taken as given, which is half a pixel
+/// off should ARCore count from pixel centres.
+pub fn intrinsics(focal_length_px: [f32; 2], principal_point_px: [f32; 2]) -> Option<Intrinsics> {
+    let [fx_px, fy_px] = focal_length_px.map(f64::from);
+    let [cx_px, cy_px] = principal_point_px.map(f64::from);
+    let is_finite = [fx_px, fy_px, cx_px, cy_px]
+        .iter()
+        .all(|number| number.is_finite());
+    (is_finite && fx_px > 0.0 && fy_px > 0.0).then_some(Intrinsics {
+        fx_px,
+        fy_px,
+        cx_px,
+        cy_px,
+    })
+}
+
+/// A plane by its centre pose and its outline, `x` and `z` in turn, in metres about that centre: the rectangle round the
+/// outline, whose own centre becomes the plane's origin. `None` without an outline that is finite and has an area.
+pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, DVec2)> {
+    let corners = outline_m
+        .chunks_exact(2)
+        .map(|corner| DVec2::new(corner[0].into(), corner[1].into()));
+    let (low, high) = corners
+        .clone()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        });
+    let (middle, half_extent_m) = (0.5 * (low + high), 0.5 * (high - low));
+    let is_finite = corners.clone().all(DVec2::is_finite) && half_extent_m.is_finite();
+    (is_finite && half_extent_m.cmpgt(DVec2::ZERO).all()).then(|| {
+        let centre_from_plane = DMat4::from_translation(DVec3::new(middle.x, 0.0, middle.y));
+        (world_from_centre * centre_from_plane, half_extent_m)
+    })
+}
+
+/// The seven numbers of `ArPose_create` of a rigid transform of ours; the inverse of [`world_from_camera`].
+#[allow(clippy::cast_possible_truncation, reason = "ARCore takes single precision")]
+pub fn pose_raw(rigid: &DMat4) -> [f32; 7] {
+    let (_, rotation, translation_m) = rigid.to_scale_rotation_translation();
+    let [qx, qy, qz, qw] = rotation.to_array().map(|number| number as f32);
+    let [tx, ty, tz] = translation_m.to_array().map(|number| number as f32);
+    [qx, qy, qz, qw, tx, ty, tz]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_about_x_looks_up_from_where_the_phone_is() {
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        let world_from_camera =
+            world_from_camera([half, 0.0, 0.0, half, 1.0, 2.0, 3.0]).expect("a rigid pose");
+        let forward_in_world = world_from_camera.transform_vector3(DVec3::NEG_Z);
+        let up_in_world = world_from_camera.transform_vector3(DVec3::Y);
+        let origin_in_world = world_from_camera.transform_point3(DVec3::ZERO);
+        assert!(
+            forward_in_world.abs_diff_eq(DVec3::Y, 1e-12),
+            "{forward_in_world}"
+        );
+        assert!(up_in_world.abs_diff_eq(DVec3::Z, 1e-12), "{up_in_world}");
+        assert_eq!(origin_in_world, DVec3::new(1.0, 2.0, 3.0));
+    }
+
+    #[test]
+    fn a_pose_before_tracking_is_refused() {
+        assert_eq!(world_from_camera([0.0; 7]), None);
+        assert_eq!(world_from_camera([0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 0.0]), None);
+        assert_eq!(
+            world_from_camera([f32::INFINITY, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+            None
+        );
+    }
+
+    #[test]
+    fn a_point_to_the_right_and_below_the_axis_lands_right_and_below_the_principal_point() {
+        let intrinsics = intrinsics([500.0, 510.0], [320.0, 240.0]).expect("a camera");
+        let point_px = intrinsics.pixel_of(DVec3::new(0.2, -0.1, -2.0));
+        assert_eq!(point_px, Some(DVec2::new(370.0, 265.5)));
+    }
+
+    #[test]
+    fn a_plane_is_the_rectangle_round_its_outline() {
+        let turned = world_from_camera([0.0, 1.0, 0.0, 0.0, 0.0, -0.5, 0.0]).expect("half a turn about +Y");
+        let (world_from_plane, half_extent_m) =
+            rectangle(turned, &[0.5, 0.25, -0.25, 0.25, 0.0, -0.75]).expect("a rectangle");
+        assert_eq!(half_extent_m, DVec2::new(0.375, 0.5));
+        let centre = world_from_plane.transform_point3(DVec3::ZERO);
+        assert!(
+            centre.abs_diff_eq(DVec3::new(-0.125, -0.5, 0.25), 1e-12),
+            "{centre}"
+        );
+        for without_area in [
+            &[][..],
+            &[0.0, 0.0, 1.0, 0.0],
+            &[0.0, 0.0, f32::NAN, 1.0, 1.0, 1.0],
+        ] {
+            assert_eq!(rectangle(turned, without_area), None, "{without_area:?}");
+        }
+    }
+
+    #[test]
+    fn a_pose_goes_to_arcore_and_back() {
+        let pose = DMat4::from_rotation_translation(
+            DQuat::from_euler(glam::EulerRot::YXZ, 1.0, -0.5, 0.25),
+            DVec3::new(0.5, -0.25, 2.0),
+        );
+        let back = world_from_camera(pose_raw(&pose)).expect("a rigid pose");
+        assert!(back.abs_diff_eq(pose, 1e-6), "{back}");
+    }
+}

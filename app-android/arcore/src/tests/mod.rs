@@ -1,0 +1,337 @@
+//! The session's life, against the fake.
+
+mod frames;
+
+use app_core::app::{ArSession, Permission, ShellEvent};
+use glam::{DMat4, DVec3};
+
+use super::fake::{FUNCTIONS, alive, world};
+use super::feed::Feed;
+use super::ffi::{Functions, SIGNATURES};
+use super::frame::FrameError;
+use super::session::{CameraMode, best_mode};
+use super::status::{Failure, Remedy, STATUSES, told};
+use super::tracker::{Geometry, Run, Step, Tracker, Wait};
+use crate::java::{Java, JavaHost};
+
+/// Somebody with two pointers that nothing follows.
+struct Desk;
+
+impl JavaHost for Desk {
+    fn java(&mut self) -> Java {
+        let somewhere = std::ptr::without_provenance_mut(8);
+        Java {
+            env: somewhere,
+            activity: somewhere,
+        }
+    }
+}
+
+const LOOK: Run = Run {
+    finds_planes: true,
+    is_new_world: false,
+};
+const FOLLOW: Run = Run {
+    finds_planes: false,
+    is_new_world: false,
+};
+const ANEW: Run = Run {
+    finds_planes: true,
+    is_new_world: true,
+};
+
+fn tracker() -> Tracker {
+    Tracker::new(FUNCTIONS)
+}
+
+fn look(tracker: &mut Tracker) -> Step {
+    tracker.run(&mut Desk, LOOK)
+}
+
+fn running() -> Tracker {
+    let mut tracker = tracker();
+    assert_eq!(look(&mut tracker), Step::Ready);
+    tracker
+}
+
+/// Nothing is left, nothing was given back twice or used after.
+fn assert_clean() {
+    assert_eq!(alive(), Vec::<&str>::new());
+    assert_eq!(world(|world| world.wrong.clone()), Vec::<String>::new());
+}
+
+fn calls() -> String {
+    world(|world| std::mem::take(&mut world.calls))
+        .trim_end()
+        .to_owned()
+}
+
+#[test]
+fn a_session_begins_pauses_resumes_and_ends() {
+    let mut tracker = tracker();
+    let size_px = [2400, 1080];
+    tracker.set_display(Geometry {
+        quarter_turns: 1,
+        size_px,
+    });
+    assert_eq!(look(&mut tracker), Step::Ready);
+    assert_eq!(
+        calls(),
+        "availability create card=600x600,0.15,true mode=2 update=1 planes=1 texture=1 light=2 images configure display=1,2400,1080 resume"
+    );
+    assert_eq!(look(&mut tracker), Step::Ready, "twice");
+    tracker.pause();
+    tracker.pause();
+    assert!(tracker.update().expect("no frame").is_none());
+    assert_eq!(look(&mut tracker), Step::Ready);
+    tracker.set_display(Geometry {
+        quarter_turns: 3,
+        size_px,
+    });
+    tracker.set_display(Geometry {
+        quarter_turns: 3,
+        size_px,
+    });
+    assert_eq!(calls(), "pause resume display=3,2400,1080");
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn arcore_is_installed_on_the_way() {
+    world(|world| {
+        world.availability = vec![1, 201];
+        world.install = (0, 1);
+    });
+    let mut tracker = tracker();
+    assert_eq!(look(&mut tracker), Step::Waiting(Wait::Answer));
+    assert_eq!(look(&mut tracker), Step::Waiting(Wait::Install));
+    assert_eq!(calls(), "availability availability install=1");
+    tracker.pause();
+    world(|world| world.install = (-105, 0));
+    assert_eq!(look(&mut tracker), Step::Refused(Failure(-105)), "declined");
+    assert_eq!(calls(), "availability install=0");
+    world(|world| world.install = (0, 0));
+    assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);
+    assert!(
+        calls().starts_with("availability install=1 create"),
+        "starting over asks again"
+    );
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn a_phone_that_cannot_is_told_so_and_asked_for_nothing() {
+    world(|world| world.availability = vec![100]);
+    let mut tracker = tracker();
+    let step = look(&mut tracker);
+    assert_eq!(calls(), "availability");
+    let Step::Refused(failure) = step else {
+        panic!("{step:?}");
+    };
+    assert_eq!(failure.remedy(), Remedy::None);
+    let message = failure.to_string();
+    assert!(message.starts_with("This phone cannot run ARCore."), "{message}");
+    drop(tracker);
+}
+
+#[test]
+fn whatever_step_of_a_beginning_fails_leaves_nothing_and_may_be_tried_again() {
+    for (step, status) in [
+        ("create", -104),
+        ("mode", -1),
+        ("configure", -15),
+        ("resume", -13),
+    ] {
+        world(|world| world.fails.insert(step, status));
+        let mut tracker = tracker();
+        assert_eq!(look(&mut tracker), Step::Refused(Failure(status)), "{step}");
+        world(|world| world.fails.clear());
+        assert_eq!(look(&mut tracker), Step::Ready, "{step}");
+        drop(tracker);
+        assert_clean();
+    }
+}
+
+#[test]
+fn a_phone_without_light_estimation_does_without() {
+    world(|world| {
+        world.fails.insert("configure", -8);
+        world.time_ns = 5;
+    });
+    let mut tracker = running();
+    assert!(
+        calls().contains("light=2 images configure update=1 planes=1 texture=1 light=0 images configure")
+    );
+    let frame = tracker.update().expect("no error").expect("a frame");
+    assert_eq!(frame.light_estimate, None);
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn after_a_fatal_failure_a_new_session_begins() {
+    let mut tracker = running();
+    world(|world| world.fails.insert("update", -2));
+    assert!(matches!(tracker.update(), Err(FrameError::Failed(Failure(-2)))));
+    assert_clean();
+    world(|world| world.fails.clear());
+    calls();
+    assert_eq!(look(&mut tracker), Step::Ready);
+    assert!(calls().starts_with("availability create"));
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn a_session_that_cannot_be_paused_is_given_up() {
+    let mut tracker = running();
+    world(|world| world.fails.insert("pause", -2));
+    tracker.pause();
+    assert_clean();
+}
+
+#[test]
+fn the_camera_is_set_to_the_largest_picture_that_is_not_too_large() {
+    let mode = |width, height, hz| CameraMode {
+        size_px: [width, height],
+        hz,
+    };
+    assert_eq!(best_mode(&[]), None);
+    let modes = [
+        mode(640, 480, 30),
+        mode(1920, 1080, 60),
+        mode(1920, 1080, 30),
+        mode(2560, 1440, 30),
+    ];
+    assert_eq!(best_mode(&modes), Some(2));
+    assert_eq!(best_mode(&[mode(4000, 3000, 30), mode(2560, 1440, 30)]), Some(1));
+}
+
+#[test]
+fn every_status_has_a_message_of_its_own() {
+    for (index, (number, name, message, _)) in STATUSES.iter().enumerate() {
+        assert!(message.ends_with('.') && message.len() > 15, "{name}");
+        assert!(Failure(*number).to_string().starts_with(message));
+        for (other, other_name, other_message, _) in &STATUSES[..index] {
+            assert!(
+                number != other && name != other_name && message != other_message,
+                "{name}"
+            );
+        }
+    }
+    let unknown = Failure(-77);
+    assert!(unknown.to_string().contains("-77"));
+    assert_eq!(unknown.remedy(), Remedy::Report);
+}
+
+#[test]
+fn a_library_that_lacks_a_function_is_named() {
+    let missing = SIGNATURES[SIGNATURES.len() / 2].name;
+    let look_up = |without: &str| {
+        // SAFETY: the functions are looked up and never called.
+        unsafe {
+            Functions::look_up(|name| {
+                let is_there = name.to_bytes() != without.as_bytes();
+                std::ptr::without_provenance(usize::from(is_there) * 16)
+            })
+        }
+    };
+    assert_eq!(look_up(missing).err().map(|error| error.name), Some(missing));
+    assert!(look_up("").is_ok());
+}
+
+#[test]
+fn planes_are_looked_for_only_while_asked_and_another_world_is_another_session() {
+    let mut tracker = running();
+    calls();
+    assert_eq!(tracker.run(&mut Desk, FOLLOW), Step::Ready);
+    assert_eq!(
+        calls(),
+        "update=1 planes=0 texture=1 light=2 images configure",
+        "while it runs"
+    );
+    assert_eq!(tracker.run(&mut Desk, FOLLOW), Step::Ready);
+    assert_eq!(calls(), "", "nothing new");
+    let epoch = |tracker: &mut Tracker| {
+        world(|world| world.time_ns += 1);
+        let frame = tracker.update().expect("no error").expect("a frame");
+        frame.stamp.world_epoch
+    };
+    assert_eq!(epoch(&mut tracker), 1);
+    assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);
+    assert!(calls().starts_with("update pause availability create"));
+    assert_eq!(epoch(&mut tracker), 2);
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn one_place_is_held_at_a_time() {
+    let mut tracker = running();
+    let held = |tracker: &mut Tracker, id, at: DVec3| {
+        let _ = tracker.hold(id, &DMat4::from_translation(at));
+        world(|world| world.time_ns += 1);
+        let frame = tracker.update().expect("no error").expect("a frame");
+        let anchors = frame.anchors.iter();
+        anchors
+            .map(|anchor| (anchor.id, anchor.world_from_anchor.transform_point3(DVec3::ZERO)))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(held(&mut tracker, 7, DVec3::X), [(7, DVec3::X)]);
+    calls();
+    assert_eq!(held(&mut tracker, 8, DVec3::Z), [(8, DVec3::Z)]);
+    assert_eq!(calls(), "detach anchor update");
+    world(|world| world.anchor_state = 1);
+    assert_eq!(held(&mut tracker, 9, DVec3::Z), [], "not tracked");
+    world(|world| {
+        world.anchor_state = 0;
+        world.fails.insert("anchor", -5);
+    });
+    assert_eq!(held(&mut tracker, 10, DVec3::Z), [], "refused");
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn what_ends_tracking_is_told_by_what_helps() {
+    let said = |number| format!("{:?}", told(Failure(number)));
+    for (number, event) in [
+        (-9, ShellEvent::Permission(Permission::Denied)),
+        (-13, ShellEvent::ArSession(ArSession::Interrupted)),
+        (-101, ShellEvent::ArSession(ArSession::Unsupported)),
+        (-104, ShellEvent::ArSession(ArSession::Unsupported)),
+        (-105, ShellEvent::ArSession(ArSession::Failed)),
+        (-2, ShellEvent::ArSession(ArSession::Failed)),
+    ] {
+        assert_eq!(said(number), format!("{event:?}"), "{number}");
+    }
+}
+
+#[test]
+fn a_feed_waits_for_the_answer_and_comes_back_after_an_interruption() {
+    world(|world| world.availability = vec![1, 1, 203]);
+    let mut desk = Desk;
+    let mut feed = Feed::new(Some(FUNCTIONS));
+    assert!(feed.run(&mut desk, LOOK).is_none());
+    assert!(feed.poll(&mut desk).is_none(), "still looking");
+    assert!(feed.poll(&mut desk).is_none(), "found");
+    assert!(matches!(feed.poll(&mut desk), Some(ShellEvent::Frame(_))));
+    assert!(feed.come_back().is_none());
+    world(|world| world.fails.insert("update", -13));
+    let interrupted = feed.poll(&mut desk);
+    assert!(matches!(
+        interrupted,
+        Some(ShellEvent::ArSession(ArSession::Interrupted))
+    ));
+    assert!(matches!(
+        feed.come_back(),
+        Some(ShellEvent::ArSession(ArSession::Able))
+    ));
+    let without = Feed::new(None).come_back();
+    assert!(matches!(
+        without,
+        Some(ShellEvent::ArSession(ArSession::Unsupported))
+    ));
+}

@@ -1,0 +1,15 @@
+//! What the shells of both phones share: files, the threads that do the work, and the guard at the border to the platform.
+//!
+//! The core does no input and output of its own; this is what both shells would else do twice. Whoever calls brings the folders.
+
+#![forbid(unsafe_code)]
+
+mod avi;
+pub mod guard;
+mod motion_jpeg;
+pub mod record;
+pub mod save;
+pub mod starts;
+pub mod toys;
+pub mod video;
+pub mod worker;

@@ -1,0 +1,164 @@
+//! Recordings: a thread of a shell's writes them into files that people get at.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use app_core::app::{Recorded, Saved};
+use app_core::frame::Clock;
+use app_core::live::Live;
+use app_core::recording::{Limits, PictureCodec, Take, TakeOptions};
+
+use crate::save;
+
+/// Writes a recording into `folder` until it ends; `app` is the app with its version, and `toy` the file of its toy.
+#[must_use]
+pub fn write(take: Take, (app, toy): (&str, &[u8]), codec: PictureCodec, folder: &Path) -> Recorded {
+    // A clock that is set before 1970 makes every recording the same file.
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let name = format!("recording_{}.mcap", since.as_millis());
+    let file = fs::create_dir_all(folder).and_then(|()| File::create(folder.join(&name)));
+    let told = [
+        ("system", std::env::consts::OS),
+        ("architecture", std::env::consts::ARCH),
+        ("app", app),
+    ];
+    let device = told.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let taken = match file {
+        Ok(file) => take.run(
+            file,
+            TakeOptions {
+                toy,
+                codec,
+                device: device.into(),
+                limits: Limits::APP,
+            },
+        ),
+        Err(error) => take.without_file(&error),
+    };
+    Recorded { file: name, taken }
+}
+
+/// What people hand on, as files of the folder: the log, the times, and the latest recording, as far as there are any.
+#[must_use]
+pub fn share(live: &Live, folder: &Path) -> (Saved, Vec<PathBuf>) {
+    let mut files = vec![folder.join("log.txt")];
+    let mut saved = save::bytes(folder, "log.txt", live.app().log().text().as_bytes());
+    if let (Saved::Done, Some(times)) = (saved, live.times()) {
+        files.push(folder.join("profile.json"));
+        let written = serde_json::to_vec(&times).map(|times| save::bytes(folder, "profile.json", &times));
+        saved = written.unwrap_or(Saved::Failed);
+    }
+    files.extend(latest(folder));
+    files.retain(|file| file.is_file());
+    (saved, files)
+}
+
+/// The latest recording of a folder: their names grow with time.
+fn latest(folder: &Path) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_recording = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "mcap");
+    entries.map(|entry| entry.path()).filter(is_recording).max()
+}
+
+/// What is free where a folder is, in bytes.
+#[must_use]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let told = rustix::fs::statvfs(folder).ok()?;
+    told.f_bavail.checked_mul(told.f_frsize)
+}
+
+/// The phone's clock for times of frames.
+#[must_use]
+pub fn clock() -> Clock {
+    let start = Instant::now();
+    Clock::new(move || 1e3 * start.elapsed().as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use app_core::camera_frame::CameraImage;
+    use app_core::recording::{Ending, Item, LiveFrame, Recording};
+    use app_core::scene::{Camera, Image, Intrinsics, Pose, Receiver, Scene, Surface, Uncertainty};
+    use app_core::session::{Capture, Session};
+    use app_core::toy::Toy;
+    use glam::{DMat4, DVec2, DVec3};
+
+    use super::*;
+    use crate::toys::BUNDLED as TOY;
+
+    fn live(world_from_object: DMat4) -> (Scene, LiveFrame) {
+        let intrinsics = Intrinsics {
+            fx_px: 20.0,
+            fy_px: 20.0,
+            cx_px: 8.0,
+            cy_px: 8.0,
+        };
+        let image = Image {
+            width_px: 16,
+            height_px: 16,
+            rgba8: [90, 120, 60, 255].repeat(256),
+        };
+        let scene = Scene {
+            name: String::new(),
+            width_px: 16,
+            height_px: 16,
+            toy: Arc::new(Toy::from_glb("toy.glb", TOY).expect("the bundled toy")),
+            world_from_object,
+            physical_pose: Pose::Authored,
+            receivers: vec![Receiver {
+                name: "table".to_owned(),
+                world_from_plane: DMat4::IDENTITY,
+                half_extent_m: DVec2::ONE,
+                surface: Surface::Textured,
+            }],
+            lights: Vec::new(),
+            plates: Vec::new(),
+            probe: None,
+            uncertainty: Uncertainty::default(),
+        };
+        let live = LiveFrame {
+            image: CameraImage::from(image),
+            camera: Camera {
+                intrinsics,
+                world_from_camera: DMat4::from_translation(DVec3::Y),
+            },
+            world_from_object,
+            exposure: 1.0,
+            light_estimate: None,
+            shown_pose: Pose::Authored,
+        };
+        (scene, live)
+    }
+
+    #[test]
+    fn a_recording_is_a_file_that_is_read_as_a_session_or_is_told_as_missing() {
+        let folder = std::env::temp_dir().join(format!("app-shell-recording-{}", std::process::id()));
+        let (scene, live) = live(DMat4::from_scale(DVec3::splat(0.1)));
+        let (inlet, take) = Take::new(7, scene.clone(), live.camera.intrinsics);
+        inlet
+            .offer(0, Item::Live(Box::new(live.clone())))
+            .expect("room in the queue");
+        drop(inlet);
+        let Recorded { file, taken } = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &folder);
+        assert_eq!((taken.n_frames, &taken.ending), (1, &Ending::Asked));
+        let path = folder.join(file);
+        let recording = Recording::open(fs::read(&path).expect("a file")).expect("a recording");
+        assert!(recording.losses().is_empty());
+        let read = Capture::open(recording)
+            .expect("a session")
+            .frame(0)
+            .expect("a frame");
+        let codes = read.image.rgba8.iter().zip(&live.image.rgba().rgba8);
+        assert!(codes.fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= 2);
+        assert!(free_bytes(&folder).is_some_and(|free| free > 0));
+        fs::write(folder.join("recording_1.mcap"), b"").expect("an older one");
+        assert_eq!(latest(&folder), Some(path.clone()));
+        let (_, take) = Take::new(8, scene, live.camera.intrinsics);
+        let refused = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &path);
+        assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+}

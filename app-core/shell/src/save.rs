@@ -1,0 +1,67 @@
+//! Files that people keep.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use app_core::app::Saved;
+use app_core::scene::Image;
+
+/// Writes a picture as PNG into a folder, which is made where it is missing.
+#[must_use]
+pub fn picture(folder: &Path, name: &str, picture: &Image) -> Saved {
+    let mut png = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut png);
+    let encoded = image::ImageEncoder::write_image(
+        encoder,
+        &picture.rgba8,
+        picture.width_px,
+        picture.height_px,
+        image::ExtendedColorType::Rgba8,
+    );
+    match encoded {
+        Ok(()) => bytes(folder, name, &png),
+        Err(_) => Saved::Failed,
+    }
+}
+
+/// Writes a file into a folder, which is made where it is missing.
+#[must_use]
+pub fn bytes(folder: &Path, name: &str, bytes: &[u8]) -> Saved {
+    outcome(fs::create_dir_all(folder).and_then(|()| fs::write(folder.join(name), bytes)))
+}
+
+/// What to tell of a file that was written, or not.
+pub(crate) fn outcome(written: io::Result<()>) -> Saved {
+    match written.map_err(|error| error.kind()) {
+        Ok(()) => Saved::Done,
+        Err(io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) => Saved::NoRoom,
+        Err(io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem) => Saved::NotAllowed,
+        Err(_) => Saved::Failed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_photo_is_a_file_of_the_same_codes_or_is_told_as_missing() {
+        let folder = std::env::temp_dir().join(format!("app-shell-photos-{}", std::process::id()));
+        let photo = Image {
+            width_px: 2,
+            height_px: 1,
+            rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
+        };
+        assert_eq!(picture(&folder, "photo.png", &photo), Saved::Done);
+        let read = image::open(folder.join("photo.png"))
+            .expect("a PNG file")
+            .to_rgba8();
+        assert_eq!(read.into_raw(), photo.rgba8);
+        // A file is no folder.
+        let no_folder = folder.join("photo.png");
+        assert_eq!(picture(&no_folder, "photo.png", &photo), Saved::Failed);
+        assert_eq!(bytes(&no_folder, "log.txt", b""), Saved::Failed);
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+}

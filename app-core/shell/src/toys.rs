@@ -1,0 +1,127 @@
+//! Toys' files in the folder that people get at.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use app_core::app::ShellEvent;
+use app_core::toy::Toy;
+
+/// File of the toy that the app comes with: the bundled session's, this project's own.
+pub const BUNDLED: &[u8] = include_bytes!("../../../tests/sessions/llama/toy.glb");
+/// What it is called in the list.
+const BUNDLED_NAME: &str = "Llama";
+/// A file is not larger: so much is held twice while it is read.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// The file of the toy that is shown, for recordings of it.
+#[derive(Clone, Debug)]
+pub struct ToyFile(Arc<Mutex<Arc<[u8]>>>);
+
+impl Default for ToyFile {
+    fn default() -> Self {
+        Self(Arc::new(Mutex::new(Arc::from(BUNDLED))))
+    }
+}
+
+impl ToyFile {
+    /// Its bytes.
+    #[must_use]
+    pub fn bytes(&self) -> Arc<[u8]> {
+        Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Reads another toy: its file is this one's from then on, unless it is refused.
+    #[must_use]
+    pub fn read(&self, folder: &Path, name: &str) -> ShellEvent {
+        let read = bytes_of(folder, name).and_then(|bytes| {
+            let toy = Toy::from_glb(name, &bytes).map_err(|reason| reason.to_string())?;
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = bytes;
+            Ok(Arc::new(toy))
+        });
+        ShellEvent::Toy(read)
+    }
+}
+
+/// What a person can choose from: the bundled toy, and the files of the folder in the order of their names.
+#[must_use]
+pub fn list(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut toys: Vec<String> = names.filter(|name| is_toy(name)).collect();
+    toys.sort();
+    toys.insert(0, BUNDLED_NAME.to_owned());
+    toys
+}
+
+fn is_toy(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("glb"))
+}
+
+fn bytes_of(folder: &Path, name: &str) -> Result<Arc<[u8]>, String> {
+    if name == BUNDLED_NAME {
+        return Ok(Arc::from(BUNDLED));
+    }
+    let mut bytes = Vec::new();
+    let opened = File::open(folder.join(name));
+    opened
+        .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|reason| format!("{name}: {reason}"))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(format!("{name}: more than {} MiB", MAX_BYTES >> 20));
+    }
+    Ok(bytes.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same toy in another file: its binary chunk is longer by a word. Source: glTF 2.0, section 4.4.
+    fn with_blank(glb: &[u8]) -> Vec<u8> {
+        let mut glb = [glb, &[0; 4]].concat();
+        let word = |glb: &[u8], at: usize| {
+            glb.get(at..at + 4)
+                .and_then(|four| four.try_into().ok())
+                .map(u32::from_le_bytes)
+        };
+        let json_bytes = word(&glb, 12).expect("a header") as usize;
+        for at in [8, 20 + json_bytes] {
+            let length = word(&glb, at).expect("a length") + 4;
+            glb[at..at + 4].copy_from_slice(&length.to_le_bytes());
+        }
+        glb
+    }
+
+    #[test]
+    fn toys_of_the_folder_are_listed_read_and_kept_for_recordings() {
+        let folder = std::env::temp_dir().join(format!("app-shell-toys-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        assert_eq!(list(&folder.join("none")), ["Llama"]);
+        for (name, bytes) in [("b.glb", BUNDLED), ("a.GLB", b"no toy"), ("photo.png", b"")] {
+            fs::write(folder.join(name), bytes).expect("a file");
+        }
+        assert_eq!(list(&folder), ["Llama", "a.GLB", "b.glb"]);
+        let file = ToyFile::default();
+        let refused = file.read(&folder, "a.GLB");
+        assert!(
+            matches!(&refused, ShellEvent::Toy(Err(reason)) if reason.contains("a.GLB")),
+            "{refused:?}"
+        );
+        let missing = file.read(&folder, "c.glb");
+        assert!(
+            matches!(&missing, ShellEvent::Toy(Err(reason)) if reason.contains("c.glb")),
+            "{missing:?}"
+        );
+        assert_eq!(file.bytes()[..], *BUNDLED, "it stays");
+        let other = with_blank(BUNDLED);
+        fs::write(folder.join("b.glb"), &other).expect("a file");
+        assert!(matches!(file.read(&folder, "b.glb"), ShellEvent::Toy(Ok(_))));
+        assert_eq!(file.bytes()[..], other[..]);
+        assert!(matches!(file.read(&folder, "Llama"), ShellEvent::Toy(Ok(_))));
+        assert_eq!(file.bytes()[..], *BUNDLED);
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+}

@@ -1,0 +1,353 @@
+//! A video of what is shown: pictures go to a thread, which has them encoded into a file.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use app_core::app::Saved;
+use app_core::scene::Image;
+
+use crate::guard::guarded;
+use crate::motion_jpeg;
+use crate::save::outcome;
+
+/// Pictures a second, at most.
+pub const HZ: u32 = 30;
+/// Pictures that wait for the thread; what comes while as many do is left out.
+const N_WAITING: usize = 4;
+/// A picture stands no longer than this, in seconds, whatever its time says.
+const LONGEST_S: f64 = 2.0;
+
+/// Encodes pictures of one size into one file.
+pub trait VideoEncoder {
+    /// Adds the picture that is shown from `since_s` on, in seconds after the first, later than the one before; false where the
+    /// file has no more room.
+    ///
+    /// # Errors
+    /// As the encoder's and the file's.
+    fn add(&mut self, picture: &Image, since_s: f64) -> io::Result<bool>;
+
+    /// Makes the file whole; the last picture is shown until `until_s`.
+    ///
+    /// # Errors
+    /// As the encoder's and the file's.
+    fn finish(self: Box<Self>, until_s: f64) -> io::Result<()>;
+}
+
+/// Begins a file of pictures of so many pixels.
+pub type BeginVideo = fn(&Path, [u32; 2]) -> io::Result<Box<dyn VideoEncoder>>;
+
+/// A way to encode.
+#[derive(Clone, Copy, Debug)]
+pub struct VideoFormat {
+    /// Of the file's name.
+    pub extension: &'static str,
+    /// Where it cannot begin, the next format is asked.
+    pub begin: BeginVideo,
+}
+
+/// Columns and rows that both are even, as encoders of platforms want them: an odd last one is left out. None where none is left.
+#[must_use]
+pub fn even(size_px: [u32; 2]) -> Option<[usize; 2]> {
+    let size = size_px.map(|side| (side & !1) as usize);
+    (!size.contains(&0)).then_some(size)
+}
+
+/// The format that is everywhere, and larger than any of a platform's own.
+pub const MOTION_JPEG: VideoFormat = VideoFormat {
+    extension: "avi",
+    begin: motion_jpeg::begin,
+};
+
+/// A video that is being made. It ends when this is dropped.
+#[derive(Debug)]
+pub struct Video {
+    pictures: SyncSender<(Image, f64)>,
+    /// No further picture is needed before.
+    due_s: f64,
+}
+
+impl Video {
+    /// Begins a video in `folder`, by the first of `formats` that can; `done` is told what became of it, by the thread, with
+    /// the file if there is one.
+    ///
+    /// # Errors
+    /// When there is no thread for it.
+    pub fn begin(
+        folder: &Path,
+        formats: &'static [VideoFormat],
+        done: impl FnOnce(Saved, Option<PathBuf>) + Send + 'static,
+    ) -> io::Result<Self> {
+        let (pictures, taken) = sync_channel(N_WAITING);
+        // A clock that is set before 1970 makes every video the same file.
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let stem = folder.join(format!("video_{}", since.as_millis()));
+        thread::Builder::new().name("video".to_owned()).spawn(move || {
+            match guarded("the video's thread", || write(&stem, formats, &taken)) {
+                Some(Ok(Some(file))) => done(Saved::Done, Some(file)),
+                Some(Err(error)) => done(outcome(Err(error)), None),
+                Some(Ok(None)) | None => done(Saved::Failed, None),
+            }
+        })?;
+        let due_s = f64::NEG_INFINITY;
+        Ok(Self { pictures, due_s })
+    }
+
+    /// Whether a picture at `time_s` would be another one of the video: a picture that is not does not have to be read.
+    #[must_use]
+    pub fn is_due(&self, time_s: f64) -> bool {
+        time_s >= self.due_s
+    }
+
+    /// Adds the picture that is shown from `time_s` on; false where it is left out, since too many wait or the video has ended.
+    pub fn add(&mut self, picture: Image, time_s: f64) -> bool {
+        let is_taken = self.pictures.try_send((picture, time_s)).is_ok();
+        if is_taken {
+            // A little early, so that a clock that trembles loses no picture.
+            self.due_s = time_s + 0.8 / f64::from(HZ);
+        }
+        is_taken
+    }
+}
+
+/// Seconds since the first picture, by times that may stand still, jump, or be no number.
+struct Timeline {
+    last_s: f64,
+    since_s: f64,
+}
+
+impl Timeline {
+    /// The next picture's; none where no time has passed.
+    fn advance(&mut self, time_s: f64) -> Option<f64> {
+        if !time_s.is_finite() {
+            return None;
+        }
+        let step_s = (time_s - self.last_s).clamp(0.0, LONGEST_S);
+        self.last_s = time_s;
+        self.since_s += step_s;
+        (step_s > 0.0).then_some(self.since_s)
+    }
+}
+
+/// Has encoded what comes until no more does. A video without a picture is no file; one that fails is taken away.
+fn write(
+    stem: &Path,
+    formats: &[VideoFormat],
+    pictures: &Receiver<(Image, f64)>,
+) -> io::Result<Option<PathBuf>> {
+    let Ok((first, begin_s)) = pictures.recv() else {
+        return Ok(None);
+    };
+    if let Some(folder) = stem.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let (file, encoder) = begin(stem, formats, [first.width_px, first.height_px])?;
+    let encoded = encode(encoder, (&first, begin_s), pictures);
+    if encoded.is_err() {
+        // It failed already: what else there is to say is the first reason.
+        let _ = fs::remove_file(&file);
+    }
+    encoded.map(|()| Some(file))
+}
+
+/// By the first format that can; the error is the last one's.
+fn begin(
+    stem: &Path,
+    formats: &[VideoFormat],
+    size_px: [u32; 2],
+) -> io::Result<(PathBuf, Box<dyn VideoEncoder>)> {
+    let mut refused = io::ErrorKind::Unsupported.into();
+    for format in formats {
+        let file = stem.with_extension(format.extension);
+        match (format.begin)(&file, size_px) {
+            Ok(encoder) => return Ok((file, encoder)),
+            Err(error) => {
+                // What it may have begun.
+                let _ = fs::remove_file(&file);
+                refused = error;
+            }
+        }
+    }
+    Err(refused)
+}
+
+fn encode(
+    mut encoder: Box<dyn VideoEncoder>,
+    (first, begin_s): (&Image, f64),
+    pictures: &Receiver<(Image, f64)>,
+) -> io::Result<()> {
+    let size_px = [first.width_px, first.height_px];
+    let mut timeline = Timeline {
+        last_s: begin_s,
+        since_s: 0.0,
+    };
+    let mut has_room = encoder.add(first, 0.0)?;
+    while has_room && let Ok((picture, time_s)) = pictures.recv() {
+        if [picture.width_px, picture.height_px] != size_px {
+            break;
+        }
+        if let Some(since_s) = timeline.advance(time_s) {
+            has_room = encoder.add(&picture, since_s)?;
+        }
+    }
+    encoder.finish(timeline.since_s + 1.0 / f64::from(HZ))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    fn picture(code: u8, size_px: [u32; 2]) -> Image {
+        Image {
+            width_px: size_px[0],
+            height_px: size_px[1],
+            rgba8: [code, code, code, 255].repeat((size_px[0] * size_px[1]) as usize),
+        }
+    }
+
+    fn word(bytes: &[u8], at: usize) -> usize {
+        let four = bytes[at..at + 4].try_into().expect("four bytes");
+        u32::from_le_bytes(four) as usize
+    }
+
+    /// The grey of each picture, by the file's index, whose sizes must agree with each other.
+    fn greys(avi: &[u8]) -> Vec<u8> {
+        assert_eq!((&avi[..4], &avi[8..16]), (&b"RIFF"[..], &b"AVI LIST"[..]));
+        assert_eq!(word(avi, 4) + 8, avi.len());
+        let movie = 20 + word(avi, 16);
+        assert_eq!(
+            (&avi[movie..movie + 4], &avi[movie + 8..movie + 12]),
+            (&b"LIST"[..], &b"movi"[..])
+        );
+        let index = movie + 8 + word(avi, movie + 4);
+        assert_eq!(&avi[index..index + 4], b"idx1");
+        assert_eq!(index + 8 + word(avi, index + 4), avi.len());
+        let n_pictures = word(avi, index + 4) / 16;
+        assert_eq!(word(avi, 48), n_pictures, "of the main head");
+        let pictures = (0..n_pictures).map(|n| {
+            let entry = index + 8 + 16 * n;
+            let (at, n_bytes) = (movie + 8 + word(avi, entry + 8), word(avi, entry + 12));
+            assert_eq!((&avi[at..at + 4], word(avi, at + 4)), (&b"00dc"[..], n_bytes));
+            let decoded = image::load_from_memory(&avi[at + 8..at + 8 + n_bytes]).expect("a picture");
+            decoded.to_luma8().as_raw()[0]
+        });
+        pictures.collect()
+    }
+
+    /// What becomes of pictures with their times.
+    fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
+        let folder = std::env::temp_dir().join(format!("app-shell-{name}-{}", std::process::id()));
+        let (done, saved) = channel();
+        let mut video = Video::begin(&folder, formats, move |saved, file| {
+            drop(done.send((saved, file)))
+        })
+        .expect("a thread");
+        for (code, time_s) in pictures {
+            while !video.add(picture(*code, [16, 8]), *time_s) {
+                thread::yield_now();
+            }
+        }
+        drop(video);
+        let (saved, file) = saved.recv().expect("an end");
+        let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
+        let paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        assert_eq!(paths, Vec::from_iter(file), "what is there is what is told");
+        let files = paths.iter().map(|path| fs::read(path).expect("a file")).collect();
+        let _ = fs::remove_dir_all(&folder);
+        (saved, files)
+    }
+
+    #[test]
+    fn pictures_stand_as_long_as_they_were_shown() {
+        // The second stands for three periods, the third comes in the same one as the fourth.
+        let shown = [(10, 5.0), (60, 5.033), (110, 5.13), (160, 5.135), (210, 5.166)];
+        let (saved, files) = video("video", &[MOTION_JPEG], &shown);
+        assert_eq!(saved, Saved::Done);
+        assert_eq!(files.len(), 1);
+        let expected = [10, 60, 60, 60, 160, 210];
+        let greys = greys(&files[0]);
+        let are_close = greys.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 2);
+        assert!(
+            are_close && greys.len() == expected.len(),
+            "{greys:?}, not {expected:?}"
+        );
+    }
+
+    #[test]
+    fn times_that_make_no_sense_do_not_fill_the_disc() {
+        let (saved, files) = video(
+            "times",
+            &[MOTION_JPEG],
+            &[(10, 1.0), (20, 1e9), (30, f64::NAN), (40, -5.0)],
+        );
+        assert_eq!(saved, Saved::Done);
+        assert_eq!(greys(&files[0]).len(), 61);
+    }
+
+    #[test]
+    fn without_a_picture_there_is_no_file_and_without_a_folder_it_is_told() {
+        let (saved, files) = video("none", &[MOTION_JPEG], &[]);
+        assert_eq!((saved, files.len()), (Saved::Failed, 0));
+        let file = std::env::temp_dir().join(format!("app-shell-no-folder-{}", std::process::id()));
+        fs::write(&file, b"").expect("a file");
+        let (done, saved) = channel();
+        let tell = move |saved, _| done.send(saved).expect("a receiver");
+        let mut video = Video::begin(&file, &[MOTION_JPEG], tell).expect("a thread");
+        assert!(video.is_due(0.0));
+        assert!(video.add(picture(1, [16, 8]), 0.0));
+        assert!(!video.is_due(0.016) && video.is_due(0.033));
+        drop(video);
+        assert_ne!(saved.recv().expect("an end"), Saved::Done);
+        fs::remove_file(&file).expect("a file");
+    }
+
+    /// Takes two pictures and fails with the third.
+    struct Breaks(u32);
+
+    impl VideoEncoder for Breaks {
+        fn add(&mut self, _picture: &Image, _since_s: f64) -> io::Result<bool> {
+            self.0 += 1;
+            if self.0 > 2 {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            Ok(true)
+        }
+
+        fn finish(self: Box<Self>, _until_s: f64) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_format_that_cannot_begin_leaves_it_to_the_next() {
+        const REFUSES: VideoFormat = VideoFormat {
+            extension: "mp4",
+            begin: |path, _| {
+                fs::write(path, b"begun")?;
+                Err(io::ErrorKind::Unsupported.into())
+            },
+        };
+        let (saved, files) = video("refuses", &[REFUSES, MOTION_JPEG], &[(10, 0.0)]);
+        assert_eq!((saved, greys(&files[0]).len()), (Saved::Done, 1));
+        let (saved, files) = video("none-can", &[REFUSES], &[(10, 0.0)]);
+        assert_eq!((saved, files.len()), (Saved::Failed, 0));
+    }
+
+    #[test]
+    fn a_video_that_breaks_off_is_told_and_leaves_no_file() {
+        const BREAKS: VideoFormat = VideoFormat {
+            extension: "mp4",
+            begin: |path, _| {
+                fs::write(path, b"begun")?;
+                Ok(Box::new(Breaks(0)))
+            },
+        };
+        let (saved, files) = video("breaks", &[BREAKS], &[(10, 0.0), (10, 0.1), (10, 0.2)]);
+        assert_eq!((saved, files.len()), (Saved::NoRoom, 0));
+    }
+}

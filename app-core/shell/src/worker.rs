@@ -1,0 +1,431 @@
+//! What the app asks for that takes no more than files and threads, the same on both phones.
+//!
+//! | command | what is done | what comes of it |
+//! | --- | --- | --- |
+//! | `Align` | on a thread | `Aligned` |
+//! | `SavePhoto` | the picture is read, and written on a thread | `Saved`, and the file for the gallery |
+//! | `Video` | each picture that is drawn goes to a thread, until the video ends | `Saved`, and the file for the gallery |
+//! | `Record` | on a thread, until the recording ends | `Recorded` |
+//! | `Share` | the log and the times are written | `Saved`, and the files to hand on |
+//! | `PickToy` | the folder is looked at | `ToyFiles` |
+//! | `ReadToy` | on a thread | `Toy` |
+//! | `Remember` | written at once | nothing |
+//!
+//! A thread that panics, or that cannot be started, is told as work that failed.
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use app_core::app::{Recorded, Saved, ShellCommand, ShellEvent};
+use app_core::live::Live;
+use app_core::recording::{PictureCodec, Take, Taken};
+
+use crate::guard::guarded;
+use crate::toys::{self, ToyFile};
+use crate::video::{Video, VideoFormat};
+use crate::{record, save, starts};
+
+/// Time after which free space is looked at anew.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// What differs from phone to phone.
+#[derive(Clone, Copy)]
+pub struct Platform {
+    /// The app with its version, as recordings name it.
+    pub app: &'static str,
+    /// Of videos, the better first.
+    pub videos: &'static [VideoFormat],
+    /// Encodes the pictures of recordings.
+    pub codec: fn() -> PictureCodec,
+    /// Keeps the app from being suspended until what is returned is dropped: a video has to be made whole.
+    pub keep_running: fn() -> Box<dyn Send>,
+}
+
+/// Where files go; a folder can be missing, as that of a card that was taken out.
+#[derive(Clone, Debug, Default)]
+pub struct Folders {
+    /// What people get at.
+    pub shared: Option<PathBuf>,
+    /// What is the app's own.
+    pub own: Option<PathBuf>,
+}
+
+/// What comes of work.
+#[derive(Debug)]
+pub enum Outcome {
+    /// The app is to be told.
+    Tell(ShellEvent),
+    /// A photo or a video that the phone's gallery can have a copy of.
+    Written(PathBuf),
+    /// Files that the person wants to hand on.
+    Share(Vec<PathBuf>),
+}
+
+/// Does the work.
+pub struct Worker {
+    platform: Platform,
+    folders: Folders,
+    toy_file: ToyFile,
+    video: Option<Video>,
+    outcomes: (Sender<Outcome>, Receiver<Outcome>),
+    /// When free space was looked at.
+    looked: Option<Instant>,
+}
+
+impl Worker {
+    /// A worker that was not asked for anything yet.
+    #[must_use]
+    pub fn new(platform: Platform, folders: Folders) -> Self {
+        Self {
+            platform,
+            folders,
+            toy_file: ToyFile::default(),
+            video: None,
+            outcomes: channel(),
+            looked: None,
+        }
+    }
+
+    /// Does what a command asks for, and gives back one that it leaves to the shell.
+    pub fn take(&mut self, live: &Live, command: ShellCommand) -> Option<ShellCommand> {
+        match command {
+            ShellCommand::Align(job) => self.spawn("align", ShellEvent::Aligned(None), move |_| {
+                ShellEvent::Aligned(Some(Box::new(job.run())))
+            }),
+            ShellCommand::SavePhoto => self.save_photo(live),
+            ShellCommand::Video(true) => self.begin_video(),
+            ShellCommand::Video(false) => self.video = None,
+            ShellCommand::Record(Some(take)) => self.record(*take),
+            ShellCommand::Share => self.share(live),
+            ShellCommand::PickToy => {
+                let folder = self.folders.shared.clone().unwrap_or_default();
+                self.tell(ShellEvent::ToyFiles(toys::list(&folder)));
+            }
+            ShellCommand::ReadToy(name) => {
+                let folder = self.folders.shared.clone().unwrap_or_default();
+                let (file, died) = (self.toy_file.clone(), "it could not be read".to_owned());
+                let read = move |_: &Sender<Outcome>| file.read(&folder, &name);
+                self.spawn("toy", ShellEvent::Toy(Err(died)), read);
+            }
+            ShellCommand::Remember(text) => self.remember(&text),
+            other @ (ShellCommand::AskPermission
+            | ShellCommand::OpenSettings
+            | ShellCommand::RunTracking { .. }
+            | ShellCommand::PauseTracking
+            | ShellCommand::LockExposure(_)
+            | ShellCommand::Underexpose(_)
+            | ShellCommand::HoldAnchor { .. }
+            | ShellCommand::KeepAwake(_)
+            | ShellCommand::FrameRate(_)
+            | ShellCommand::ReopenDevice
+            | ShellCommand::Announce(_)
+            | ShellCommand::Record(None)) => return Some(other),
+        }
+        None
+    }
+
+    /// Takes the picture that was just drawn, for a video.
+    pub fn drawn(&mut self, live: &Live, time_s: f64) {
+        let video = self.video.as_mut().filter(|video| video.is_due(time_s));
+        if let Some(video) = video
+            && let Ok(picture) = live.read_picture()
+        {
+            video.add(picture, time_s);
+        }
+    }
+
+    /// What has come of work since it was asked for last, and what is free where files go.
+    #[must_use]
+    pub fn outcome(&mut self) -> Option<Outcome> {
+        if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
+            self.looked = Some(Instant::now());
+            let folder = self.folders.shared.as_deref();
+            let free_bytes = folder.and_then(record::free_bytes);
+            free_bytes
+                .into_iter()
+                .for_each(|free| self.tell(ShellEvent::FreeSpace(free)));
+        }
+        self.outcomes.1.try_recv().ok()
+    }
+
+    fn tell(&self, event: ShellEvent) {
+        send(&self.outcomes.0, Outcome::Tell(event));
+    }
+
+    fn save_photo(&self, live: &Live) {
+        let Some(folder) = self.folders.shared.clone() else {
+            return self.tell(ShellEvent::Saved(Saved::NotAllowed));
+        };
+        let Ok(picture) = live.read_picture() else {
+            return self.tell(ShellEvent::Saved(Saved::Failed));
+        };
+        // A clock that is set before 1970 makes every photo the same file.
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let name = format!("photo_{}.png", since.as_millis());
+        self.spawn("photo", ShellEvent::Saved(Saved::Failed), move |outcomes| {
+            let saved = save::picture(&folder, &name, &picture);
+            if saved == Saved::Done {
+                send(outcomes, Outcome::Written(folder.join(name)));
+            }
+            ShellEvent::Saved(saved)
+        });
+    }
+
+    fn begin_video(&mut self) {
+        let Some(folder) = &self.folders.shared else {
+            return self.tell(ShellEvent::Saved(Saved::NotAllowed));
+        };
+        let (outcomes, kept_running) = (self.outcomes.0.clone(), (self.platform.keep_running)());
+        let done = move |saved, file: Option<PathBuf>| {
+            file.into_iter()
+                .for_each(|file| send(&outcomes, Outcome::Written(file)));
+            send(&outcomes, Outcome::Tell(ShellEvent::Saved(saved)));
+            drop(kept_running);
+        };
+        match Video::begin(folder, self.platform.videos, done) {
+            Ok(video) => self.video = Some(video),
+            Err(_) => self.tell(ShellEvent::Saved(Saved::Failed)),
+        }
+    }
+
+    fn record(&self, take: Take) {
+        let Some(folder) = self.folders.shared.clone() else {
+            let taken = take.without_file(&io::ErrorKind::PermissionDenied.into());
+            let file = String::new();
+            return self.tell(ShellEvent::Recorded(Recorded { file, taken }));
+        };
+        let died = ShellEvent::Recorded(Recorded {
+            file: folder.display().to_string(),
+            taken: Taken::died(take.number()),
+        });
+        let (platform, toy) = (self.platform, self.toy_file.bytes());
+        self.spawn("record", died, move |_| {
+            let codec = (platform.codec)();
+            ShellEvent::Recorded(record::write(take, (platform.app, &toy), codec, &folder))
+        });
+    }
+
+    fn share(&self, live: &Live) {
+        let Some(folder) = &self.folders.shared else {
+            return self.tell(ShellEvent::Saved(Saved::NotAllowed));
+        };
+        let (saved, files) = record::share(live, folder);
+        if !files.is_empty() {
+            send(&self.outcomes.0, Outcome::Share(files));
+        }
+        self.tell(ShellEvent::Saved(saved));
+    }
+
+    fn remember(&self, text: &str) {
+        let stored = self
+            .folders
+            .own
+            .as_deref()
+            .map(|folder| starts::store(folder, text));
+        if let Some(Err(error)) = stored {
+            eprintln!("{}: the start is not kept: {error}", self.platform.app);
+        }
+    }
+
+    /// Runs `work` on a thread and tells what it comes to, or `otherwise` where it comes to nothing.
+    fn spawn(
+        &self,
+        name: &str,
+        otherwise: ShellEvent,
+        work: impl FnOnce(&Sender<Outcome>) -> ShellEvent + Send + 'static,
+    ) {
+        let outcomes = self.outcomes.0.clone();
+        let (hand_over, handed_over) = channel();
+        let begun = thread::Builder::new().name(name.to_owned()).spawn(move || {
+            // Told here where the thread runs, and by its maker where there is none.
+            let Ok(otherwise) = handed_over.recv() else {
+                return;
+            };
+            let event = guarded("a thread", || work(&outcomes));
+            send(&outcomes, Outcome::Tell(event.unwrap_or(otherwise)));
+        });
+        match begun {
+            // The thread waits for it.
+            Ok(_) => drop(hand_over.send(otherwise)),
+            Err(_) => self.tell(otherwise),
+        }
+    }
+}
+
+/// Whoever waited may be gone by now: then nobody is told.
+fn send(outcomes: &Sender<Outcome>, outcome: Outcome) {
+    let _ = outcomes.send(outcome);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use app_core::Core;
+    use app_core::preset::Preset;
+    use app_core::toy::Toy;
+
+    use super::*;
+    use crate::video::MOTION_JPEG;
+
+    /// How often a platform was asked to keep the app running, and how often no longer.
+    static KEPT: AtomicUsize = AtomicUsize::new(0);
+    static LET_GO: AtomicUsize = AtomicUsize::new(0);
+
+    struct Kept;
+
+    impl Drop for Kept {
+        fn drop(&mut self) {
+            LET_GO.fetch_add(1, Ordering::SeqCst);
+        }
+    }
+
+    const PLATFORM: Platform = Platform {
+        app: "app 1.0",
+        videos: &[MOTION_JPEG],
+        codec: || PictureCodec::PHONE,
+        keep_running: || {
+            KEPT.fetch_add(1, Ordering::SeqCst);
+            Box::new(Kept)
+        },
+    };
+
+    /// An app that draws nothing.
+    fn live() -> Live {
+        let toy = Toy::from_glb("toy.glb", toys::BUNDLED).expect("the bundled toy");
+        Live::new(Core::counting(), Arc::new(toy), Preset::Balanced)
+    }
+
+    fn worker_in(folder: Option<&Path>) -> Worker {
+        let folder = folder.map(Path::to_owned);
+        let (shared, own) = (folder.clone(), folder);
+        Worker::new(PLATFORM, Folders { shared, own })
+    }
+
+    /// The next outcome that tells of something else than free space.
+    fn wait_for(worker: &mut Worker) -> Outcome {
+        let begun = Instant::now();
+        loop {
+            match worker.outcome() {
+                None | Some(Outcome::Tell(ShellEvent::FreeSpace(_))) => thread::yield_now(),
+                Some(outcome) => return outcome,
+            }
+            assert!(begun.elapsed() < Duration::from_secs(60), "nothing was told");
+        }
+    }
+
+    fn told(worker: &mut Worker) -> ShellEvent {
+        match wait_for(worker) {
+            Outcome::Tell(event) => event,
+            other => panic!("not told, but {other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_thread_that_panics_is_told_as_work_that_failed() {
+        let mut worker = worker_in(None);
+        worker.spawn("panics", ShellEvent::Aligned(None), |_| panic!("planted"));
+        let event = told(&mut worker);
+        assert!(matches!(event, ShellEvent::Aligned(None)), "{event:?}");
+        worker.spawn("works", ShellEvent::Aligned(None), |_| ShellEvent::MemoryLow);
+        let event = told(&mut worker);
+        assert!(matches!(event, ShellEvent::MemoryLow), "{event:?}");
+    }
+
+    #[test]
+    fn without_a_folder_nothing_may_be_kept() {
+        let (mut worker, live) = (worker_in(None), live());
+        let asked = [
+            ShellCommand::SavePhoto,
+            ShellCommand::Video(true),
+            ShellCommand::Share,
+        ];
+        for command in asked {
+            let name = format!("{command:?}");
+            assert!(worker.take(&live, command).is_none(), "{name} is left");
+            let event = told(&mut worker);
+            assert!(
+                matches!(event, ShellEvent::Saved(Saved::NotAllowed)),
+                "{name}: {event:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn log_and_latest_recording_are_handed_on() {
+        let folder = std::env::temp_dir().join(format!("app-shell-worker-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        for file in ["recording_1.mcap", "recording_2.mcap"] {
+            fs::write(folder.join(file), b"").expect("a file");
+        }
+        let mut worker = worker_in(Some(&folder));
+        assert!(worker.take(&live(), ShellCommand::Share).is_none());
+        let Outcome::Share(files) = wait_for(&mut worker) else {
+            panic!("no files to hand on");
+        };
+        assert_eq!(
+            files,
+            ["log.txt", "recording_2.mcap"].map(|name| folder.join(name))
+        );
+        let event = told(&mut worker);
+        assert!(matches!(event, ShellEvent::Saved(Saved::Done)), "{event:?}");
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+
+    #[test]
+    fn the_app_is_kept_running_until_a_video_is_whole() {
+        let folder = std::env::temp_dir().join(format!("app-shell-kept-{}", std::process::id()));
+        let (mut worker, live) = (worker_in(Some(&folder)), live());
+        assert!(worker.take(&live, ShellCommand::Video(true)).is_none());
+        assert_eq!(
+            (KEPT.load(Ordering::SeqCst), LET_GO.load(Ordering::SeqCst)),
+            (1, 0)
+        );
+        assert!(worker.take(&live, ShellCommand::Video(false)).is_none());
+        // It has no picture.
+        let event = told(&mut worker);
+        assert!(matches!(event, ShellEvent::Saved(Saved::Failed)), "{event:?}");
+        let begun = Instant::now();
+        while LET_GO.load(Ordering::SeqCst) == 0 {
+            assert!(begun.elapsed() < Duration::from_secs(60), "it is kept for good");
+            thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn toys_are_listed_and_read_and_what_is_not_for_files_is_left() {
+        let (mut worker, live) = (worker_in(None), live());
+        assert!(worker.take(&live, ShellCommand::PickToy).is_none());
+        let event = told(&mut worker);
+        assert!(
+            matches!(&event, ShellEvent::ToyFiles(names) if names == &["Llama"]),
+            "{event:?}"
+        );
+        let none = ShellCommand::ReadToy("none.glb".to_owned());
+        assert!(worker.take(&live, none).is_none());
+        let event = told(&mut worker);
+        assert!(
+            matches!(&event, ShellEvent::Toy(Err(reason)) if reason.contains("none.glb")),
+            "{event:?}"
+        );
+        let left = worker.take(&live, ShellCommand::OpenSettings);
+        assert!(matches!(left, Some(ShellCommand::OpenSettings)), "{left:?}");
+    }
+
+    #[test]
+    fn free_space_is_told_where_there_is_a_folder() {
+        let mut worker = worker_in(Some(&std::env::temp_dir()));
+        let outcome = worker.outcome();
+        assert!(
+            matches!(outcome, Some(Outcome::Tell(ShellEvent::FreeSpace(_)))),
+            "{outcome:?}"
+        );
+        assert!(worker_in(None).outcome().is_none());
+    }
+}

@@ -1,0 +1,17 @@
+//! Camera frames of ARKit: read into plain numbers in one file, and all after it the same on a desktop.
+
+pub mod convert;
+pub mod frame;
+
+#[cfg(target_os = "ios")]
+pub mod camera;
+#[cfg(target_os = "ios")]
+mod card;
+#[cfg(target_os = "ios")]
+pub mod read;
+#[cfg(target_os = "ios")]
+pub mod session;
+#[cfg(target_arch = "aarch64")]
+pub mod shim;
+#[cfg(target_os = "ios")]
+mod textures;

@@ -1,0 +1,270 @@
+//! A session of ARKit: world tracking, its frames, and what it tells of itself.
+
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use app_core::app::{ArSession, ShellEvent};
+use app_core::gpu::DeviceHandle;
+use glam::DMat4;
+use objc2::rc::{Allocated, Retained, autoreleasepool};
+use objc2::runtime::{NSObject, ProtocolObject};
+use objc2::{
+    AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
+};
+use objc2_ar_kit::{
+    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARSession, ARSessionDelegate, ARSessionObserver,
+    ARSessionRunOptions, ARWorldTrackingConfiguration,
+};
+use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
+
+use super::frame::{Count, camera_frame};
+use super::textures::TextureCache;
+use super::{card, read, shim};
+use crate::convert;
+use app_shell::guard::guarded;
+
+/// An anchor that is held.
+struct Held {
+    id: u64,
+    anchor: Retained<ARAnchor>,
+}
+
+/// What the session and its delegate share.
+struct Shared {
+    tell: Rc<dyn Fn(ShellEvent)>,
+    count: Cell<Count>,
+    /// Frames of before belong to the world before. On the clock of the frames.
+    world_since_s: Cell<f64>,
+    held: RefCell<Option<Held>>,
+    /// None until there is a device.
+    textures: RefCell<Option<TextureCache>>,
+    is_interrupted: Cell<bool>,
+    /// A frame was refused, and why was written.
+    is_refusing: Cell<bool>,
+}
+
+impl Shared {
+    /// Reads a frame and leaves it for the shell; ARKit has it back when this returns.
+    fn take(&self, frame: &ARFrame) {
+        // SAFETY: a property of a frame that was delivered, which never changes.
+        if unsafe { frame.timestamp() } < self.world_since_s.get() {
+            return;
+        }
+        let count = self.count.get();
+        self.count.set(Count {
+            n_frames: count.n_frames + 1,
+            ..count
+        });
+        // SAFETY: a property of an anchor, which never changes.
+        let identifier = |held: &Held| (held.id, unsafe { held.anchor.identifier() }.as_bytes());
+        let held = self.held.borrow().as_ref().map(identifier);
+        let textures = self.textures.borrow();
+        let taken = read::with_raw(frame, held, textures.as_ref(), |raw, lent| {
+            camera_frame(raw, lent, count)
+        });
+        match taken {
+            Some(Ok(frame)) => {
+                self.is_refusing.set(false);
+                (self.tell)(ShellEvent::Frame(Box::new(frame)));
+            }
+            Some(Err(error)) if !self.is_refusing.replace(true) => eprintln!("arkit: {error}"),
+            None if !self.is_refusing.replace(true) => eprintln!("arkit: the camera's picture is locked"),
+            _ => {}
+        }
+    }
+
+    fn interrupt(&self, is_interrupted: bool) {
+        self.is_interrupted.set(is_interrupted);
+        let told = if is_interrupted {
+            ArSession::Interrupted
+        } else {
+            ArSession::Able
+        };
+        (self.tell)(ShellEvent::ArSession(told));
+    }
+}
+
+define_class!(
+    // SAFETY: NSObject may be subclassed freely; there is no Drop implementation.
+    #[unsafe(super(NSObject))]
+    #[thread_kind = MainThreadOnly]
+    #[name = "ShadowSessionDelegate"]
+    #[ivars = Rc<Shared>]
+    struct Delegate;
+
+    // SAFETY: NSObjectProtocol has no further requirements.
+    unsafe impl NSObjectProtocol for Delegate {}
+
+    // SAFETY: the methods have the signatures of the protocol and take no ownership. Without a queue of its own, a session
+    // calls them on the main thread.
+    unsafe impl ARSessionObserver for Delegate {
+        #[unsafe(method(session:didFailWithError:))]
+        fn session_did_fail(&self, _session: &ARSession, error: &NSError) {
+            guarded("a failed session", || {
+                eprintln!("arkit: ARKit: {error}");
+                let told = convert::failed_session(error.code());
+                (self.ivars().tell)(ShellEvent::ArSession(told));
+            });
+        }
+
+        #[unsafe(method(sessionWasInterrupted:))]
+        fn session_was_interrupted(&self, _session: &ARSession) {
+            guarded("an interrupted session", || self.ivars().interrupt(true));
+        }
+
+        #[unsafe(method(sessionInterruptionEnded:))]
+        fn session_interruption_ended(&self, _session: &ARSession) {
+            guarded("an interrupted session", || self.ivars().interrupt(false));
+        }
+
+        #[unsafe(method(sessionShouldAttemptRelocalization:))]
+        fn session_should_attempt_relocalization(&self, _session: &ARSession) -> bool {
+            true
+        }
+    }
+
+    // SAFETY: as above.
+    unsafe impl ARSessionDelegate for Delegate {
+        #[unsafe(method(session:didUpdateFrame:))]
+        fn session_did_update_frame(&self, _session: &ARSession, frame: &ARFrame) {
+            guarded("a camera frame", || autoreleasepool(|_| self.ivars().take(frame)));
+        }
+    }
+);
+
+impl Delegate {
+    fn new(main_thread: MainThreadMarker, shared: Rc<Shared>) -> Retained<Self> {
+        let this = Self::alloc(main_thread).set_ivars(shared);
+        // SAFETY: init is the designated initialiser of NSObject.
+        unsafe { msg_send![super(this), init] }
+    }
+}
+
+/// A session that tells what it sees, on the main thread.
+pub struct Session {
+    session: Retained<ARSession>,
+    /// The session does not keep it.
+    _delegate: Retained<Delegate>,
+    /// What the card is known by; none where it cannot be made.
+    card: Option<Retained<ARReferenceImage>>,
+    shared: Rc<Shared>,
+}
+
+impl Session {
+    /// A session that does not run yet.
+    pub fn new(main_thread: MainThreadMarker, tell: Rc<dyn Fn(ShellEvent)>) -> Self {
+        let shared = Rc::new(Shared {
+            tell,
+            count: Cell::default(),
+            world_since_s: Cell::new(0.0),
+            held: RefCell::default(),
+            textures: RefCell::default(),
+            is_interrupted: Cell::new(false),
+            is_refusing: Cell::new(false),
+        });
+        let delegate = Delegate::new(main_thread, Rc::clone(&shared));
+        // SAFETY: new has no requirements.
+        let session = unsafe { ARSession::new() };
+        // SAFETY: the delegate lives as long as the session, on the thread that the session calls it on.
+        unsafe { session.setDelegate(Some(ProtocolObject::from_ref(&*delegate))) };
+        Self {
+            session,
+            _delegate: delegate,
+            card: card::reference_image(),
+            shared,
+        }
+    }
+
+    /// Lends pictures to this device from now on, or copies them where there is none.
+    pub fn lend_to(&self, device: Option<DeviceHandle>) {
+        self.shared.textures.replace(device.and_then(TextureCache::new));
+    }
+
+    /// Whether this phone has world tracking.
+    pub fn is_supported() -> bool {
+        // The class that is asked matters, and the binding has the method on its parent alone.
+        // SAFETY: a method of every configuration's class that returns a truth value.
+        unsafe { msg_send![ARWorldTrackingConfiguration::class(), isSupported] }
+    }
+
+    /// Begins, or goes on with another configuration.
+    pub fn run(&self, finds_planes: bool, is_new_world: bool) {
+        // SAFETY: new has no requirements.
+        let configuration = unsafe { ARWorldTrackingConfiguration::new() };
+        let planes = if finds_planes {
+            ARPlaneDetection::Horizontal
+        } else {
+            ARPlaneDetection::empty()
+        };
+        let mut options = ARSessionRunOptions::empty();
+        if is_new_world {
+            options = ARSessionRunOptions::ResetTracking | ARSessionRunOptions::RemoveExistingAnchors;
+            let count = self.shared.count.get();
+            self.shared.count.set(Count {
+                world_epoch: count.world_epoch + 1,
+                ..count
+            });
+            self.shared
+                .world_since_s
+                .set(NSProcessInfo::processInfo().systemUptime());
+            self.shared.held.replace(None);
+        }
+        // SAFETY: a configuration of this session's own, with options that every session takes.
+        unsafe {
+            configuration.setPlaneDetection(planes);
+            // Pictures whose tones are mapped place by place are not comparable with one another.
+            configuration.setVideoHDRAllowed(false);
+            if let Some(card) = &self.card {
+                configuration.setDetectionImages(Some(&NSSet::from_slice(&[&**card])));
+                configuration.setMaximumNumberOfTrackedImages(1);
+            }
+            self.session.runWithConfiguration_options(&configuration, options);
+        }
+    }
+
+    /// Pauses. A session that is interrupted has paused by itself, and tells when it goes on only if it is left alone.
+    pub fn pause(&self) {
+        if !self.shared.is_interrupted.get() {
+            // SAFETY: pausing has no requirements.
+            unsafe { self.session.pause() };
+        }
+    }
+
+    /// The app is in front: whatever interrupted the session there may have ended unheard, and else says so again.
+    pub fn enter_foreground(&self) {
+        if self.shared.is_interrupted.get() {
+            self.shared.interrupt(false);
+        }
+    }
+
+    /// Holds a place as an anchor of that number, and lets go of the one before.
+    pub fn hold(&self, id: u64, world_from_anchor: &DMat4) {
+        let Some(anchor) = anchor_at(world_from_anchor) else {
+            return;
+        };
+        // SAFETY: an anchor that was just made is added, and one that was added is removed.
+        unsafe {
+            self.session.addAnchor(&anchor);
+            if let Some(before) = self.shared.held.replace(Some(Held { id, anchor })) {
+                self.session.removeAnchor(&before.anchor);
+            }
+        }
+    }
+}
+
+/// A new anchor.
+fn anchor_at(world_from_anchor: &DMat4) -> Option<Retained<ARAnchor>> {
+    let columns = shim::Columns4(world_from_anchor.as_mat4().to_cols_array_2d());
+    let empty: Allocated<ARAnchor> = ARAnchor::alloc();
+    // The initialiser takes over the reference.
+    let empty = std::mem::ManuallyDrop::new(empty);
+    // SAFETY: the initialiser of ARAnchor takes a SIMD matrix of four columns, and returns the anchor retained.
+    unsafe {
+        let anchor = shim::with4(
+            Allocated::as_ptr(&empty).cast(),
+            read::selector(sel!(initWithTransform:)),
+            &columns,
+        );
+        Retained::from_raw(anchor.cast())
+    }
+}
