@@ -53,9 +53,9 @@ pub fn touches(motion: Motion, fingers: &[Finger]) -> Vec<Touch> {
 /// The screen of a window of so many pixels.
 ///
 /// `content_px` is what no bar or notch covers: left, top, right and bottom from the window's top left corner. Android tells an
-/// empty one before it knows. How large the person wants letters to be is not asked for yet.
+/// empty one before it knows. Letters are `text_scale` times as large as usual, or as usual where that is no scale.
 #[must_use]
-pub fn screen(size_px: [u32; 2], density_dpi: Option<u32>, content_px: [i32; 4]) -> Screen {
+pub fn screen(size_px: [u32; 2], density_dpi: Option<u32>, content_px: [i32; 4], text_scale: f32) -> Screen {
     let [left, top, right, bottom] = content_px.map(f64::from);
     let [width, height] = size_px.map(f64::from);
     let insets = if right > left && bottom > top {
@@ -72,6 +72,10 @@ pub fn screen(size_px: [u32; 2], density_dpi: Option<u32>, content_px: [i32; 4])
         size_px,
         pixels_per_point: density_dpi.map_or(1.0, |dpi| f64::from(dpi) / POINT_DPI),
         insets,
-        text_scale: 1.0,
+        text_scale: if text_scale.is_finite() && text_scale > 0.0 {
+            text_scale.into()
+        } else {
+            1.0
+        },
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
+use android_media::media_store;
 use app_core::app::Permission;
 use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
@@ -12,7 +13,6 @@ use jni::refs::Global;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
 use crate::heat::Thermometer;
-use crate::media_store;
 use crate::phone::{Phone, permission};
 use app_shell::guard::guarded;
 
@@ -81,6 +81,32 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
         }
         result
     })
+}
+
+/// How much larger than usual the person wants letters to be: `getResources().getConfiguration().fontScale`. Android makes the activity
+/// anew where that changes.
+pub(crate) fn font_scale(app: &AndroidApp) -> f32 {
+    let scale = with_java(app, |env, activity| {
+        let resources = env
+            .call_method(
+                activity,
+                jni_str!("getResources"),
+                jni_sig!("()Landroid/content/res/Resources;"),
+                &[],
+            )?
+            .l()?;
+        let configuration = env
+            .call_method(
+                &resources,
+                jni_str!("getConfiguration"),
+                jni_sig!("()Landroid/content/res/Configuration;"),
+                &[],
+            )?
+            .l()?;
+        env.get_field(&configuration, jni_str!("fontScale"), jni_sig!("F"))?
+            .f()
+    });
+    scale.unwrap_or(1.0)
 }
 
 /// Shows a few words over whatever is on the screen, also when the activity is gone: `Toast.makeText(…).show()`.

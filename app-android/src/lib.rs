@@ -4,11 +4,11 @@
 //! and by `phone`, everything else; `input` knows Android's fingers and screen.
 //! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
 //! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
-//! `java`, the camera's permission and the system's settings through JNI; `media_store`, which copies files to where other apps find
-//! them. Videos are encoded by the `android_media` package.
+//! `java`, the camera's permission and the system's settings through JNI. Videos are encoded, and files copied to where other apps
+//! find them, by the `android_media` package.
 //!
 //! Nothing of this has run on a phone.
-//! What is not here yet: the person's size of letters. Recordings are JPEG pictures by this project's own code: Android's encoders make
+//! What is not here: words for those who do not see the screen. Recordings are JPEG pictures by this project's own code: Android's encoders make
 //! streams of video, which nothing on the desktop reads without a C library. Photos, videos, recordings, the log and
 //! times are written into the app's own folder, from which the gallery gets copies and whoever files are shared with; toys of the
 //! person's own are read from there.
@@ -28,8 +28,6 @@ mod heat;
 mod java;
 #[cfg(target_os = "android")]
 mod lifecycle;
-#[cfg(target_os = "android")]
-mod media_store;
 #[cfg(target_os = "android")]
 mod stage;
 

@@ -1,6 +1,6 @@
 //! What the shell asks of the phone beside ARCore and graphics.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use app_core::app::{Permission, Thermal};
 use arcore::java::JavaHost;
@@ -50,42 +50,4 @@ pub fn thermal(status: i32) -> Thermal {
         3 => Thermal::Serious,
         4.. => Thermal::Critical,
     }
-}
-
-/// How Android's media store knows a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stored {
-    /// MIME type.
-    pub mime: &'static str,
-    /// The store's table: the inner class of `android.provider.MediaStore`, as Java's byte code names it.
-    pub table: &'static str,
-    /// Folder of the phone's storage: each table has its own.
-    pub folder: &'static str,
-}
-
-/// By the name's extension. What is no photo and no video is a download.
-#[must_use]
-pub fn stored(file: &Path) -> Stored {
-    const PHOTO: [&str; 2] = [
-        "android/provider/MediaStore$Images$Media",
-        "Pictures/Shadow Retargeting",
-    ];
-    const VIDEO: [&str; 2] = [
-        "android/provider/MediaStore$Video$Media",
-        "Movies/Shadow Retargeting",
-    ];
-    const OTHER: [&str; 2] = [
-        "android/provider/MediaStore$Downloads",
-        "Download/Shadow Retargeting",
-    ];
-    let extension = file.extension().and_then(|extension| extension.to_str());
-    let (mime, [table, folder]) = match extension.unwrap_or_default() {
-        "png" => ("image/png", PHOTO),
-        "mp4" => ("video/mp4", VIDEO),
-        "avi" => ("video/x-msvideo", VIDEO),
-        "txt" => ("text/plain", OTHER),
-        "json" => ("application/json", OTHER),
-        _ => ("application/octet-stream", OTHER),
-    };
-    Stored { mime, table, folder }
 }

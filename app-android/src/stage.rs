@@ -16,7 +16,7 @@ use arcore::library;
 use ndk::native_window::NativeWindow;
 
 use crate::input::screen;
-use crate::java::Activity;
+use crate::java::{Activity, font_scale};
 use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
 use app_shell::guard::guarded;
@@ -53,6 +53,7 @@ pub(crate) struct Stage {
     app: AndroidApp,
     instance: wgpu::Instance,
     start: Instant,
+    text_scale: f32,
     shell: Option<Shell<Activity>>,
     window: Option<NativeWindow>,
     is_foreground: bool,
@@ -65,6 +66,7 @@ impl Stage {
     pub(crate) fn new(app: AndroidApp) -> Self {
         let descriptor = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(AndroidDisplay));
         Self {
+            text_scale: font_scale(&app),
             app,
             instance: wgpu::Instance::new(descriptor),
             start: Instant::now(),
@@ -189,7 +191,12 @@ impl Stage {
         shell.tick();
         let content = self.app.content_rect();
         let content_px = [content.left, content.top, content.right, content.bottom];
-        let screen = screen(size_px(window), self.app.config().density(), content_px);
+        let screen = screen(
+            size_px(window),
+            self.app.config().density(),
+            content_px,
+            self.text_scale,
+        );
         shell.present(&screen, self.start.elapsed().as_secs_f64());
         Ok(())
     }

@@ -14,7 +14,7 @@ use arcore::java::{Java, JavaHost};
 use glam::DVec2;
 
 use crate::input::{Finger, Motion, screen, touches};
-use crate::phone::{Phone, permission, stored, thermal};
+use crate::phone::{Phone, permission, thermal};
 use crate::shell::{Shell, bundled_toy};
 
 /// A phone that grants the camera when it is asked for.
@@ -146,27 +146,6 @@ fn files_go_to_the_gallery_or_to_whoever_they_are_shared_with() {
 }
 
 #[test]
-fn photos_and_videos_go_to_the_gallery_and_all_else_to_downloads() {
-    let cases = [
-        ("a.png", "image/png", "Images$Media", "Pictures/"),
-        ("a.mp4", "video/mp4", "Video$Media", "Movies/"),
-        ("a.avi", "video/x-msvideo", "Video$Media", "Movies/"),
-        ("log.txt", "text/plain", "Downloads", "Download/"),
-        ("profile.json", "application/json", "Downloads", "Download/"),
-        ("a.mcap", "application/octet-stream", "Downloads", "Download/"),
-        ("a", "application/octet-stream", "Downloads", "Download/"),
-    ];
-    for (file, mime, table, folder) in cases {
-        let stored = stored(Path::new(file));
-        assert_eq!(stored.mime, mime);
-        assert!(
-            stored.table.ends_with(table) && stored.folder.starts_with(folder),
-            "{file}: {stored:?}"
-        );
-    }
-}
-
-#[test]
 fn a_permission_is_what_android_says_of_it() {
     let cases = [
         ((true, false, false), Permission::Granted),
@@ -210,7 +189,8 @@ fn fingers_are_told_apart() {
 
 #[test]
 fn a_screen_is_measured_in_points_without_what_bars_cover() {
-    let with_bars = screen([2400, 1080], Some(480), [100, 60, 2300, 1080]);
+    let with_bars = screen([2400, 1080], Some(480), [100, 60, 2300, 1080], 1.5);
+    assert_eq!(with_bars.text_scale.to_bits(), 1.5_f64.to_bits());
     assert_eq!(with_bars.pixels_per_point.to_bits(), 3.0_f64.to_bits());
     let insets = Insets {
         left_px: 100.0,
@@ -219,7 +199,8 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
         bottom_px: 0.0,
     };
     assert_eq!(with_bars.insets, insets);
-    let unknown = screen([2400, 1080], None, [0; 4]);
+    let unknown = screen([2400, 1080], None, [0; 4], f32::NAN);
+    assert_eq!(unknown.text_scale.to_bits(), 1.0_f64.to_bits());
     assert_eq!(unknown.insets, Insets::default());
     assert_eq!(unknown.pixels_per_point.to_bits(), 1.0_f64.to_bits());
 }

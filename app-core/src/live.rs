@@ -104,6 +104,9 @@ impl Live {
     /// Takes what happened, and returns what is to be done.
     #[must_use]
     pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
+        if let ShellEvent::Frame(frame) = &event {
+            self.profiler.deliver(frame);
+        }
         self.app.event(event)
     }
 

@@ -10,7 +10,8 @@
 //!   are laid end to end from the frame's beginning on.
 //!
 //! `args` of a frame has its `number`, its `kind` (`pose`, `picture`, `view` or `scene`), the `interval_ms` to the frame before where that
-//! is known, the `heat` as the phone names it, and what is `turned_down`; that of a pass its `path`, `runs`, `triangles` and `bytes`.
+//! is known, `camera_to_present_ms` from the camera's picture until the frame that shows it was handed to the device, the number of camera
+//! pictures since the frame before that were `dropped`, the `heat` as the phone names it, and what is `turned_down`; that of a pass its `path`, `runs`, `triangles` and `bytes`.
 //!
 //! Source: "Trace Event Format", the Chromium project.
 
@@ -92,6 +93,10 @@ pub struct Args {
     pub kind: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval_ms: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera_to_present_ms: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dropped: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heat: Option<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -146,6 +146,7 @@ pub fn tables(profile: &Profile) -> String {
         "{} {} {width} x {height} on {}\n",
         about.session, about.preset, about.device
     );
+    text.push_str(&camera_words(profile));
     for kind in ["pose", "picture", "view", "scene"] {
         let frames = frames_of(profile, kind);
         if !frames.is_empty() {
@@ -157,6 +158,22 @@ pub fn tables(profile: &Profile) -> String {
         }
     }
     text
+}
+
+/// How old the camera's pictures were when they were shown, and how many were not; nothing where no camera tells.
+fn camera_words(profile: &Profile) -> String {
+    let frames = || profile.scopes(PROCESSOR).filter(|event| event.name == FRAME);
+    let mut ages_ms: Vec<f64> = frames()
+        .filter_map(|frame| frame.args.camera_to_present_ms)
+        .collect();
+    ages_ms.sort_by(f64::total_cmp);
+    let (Some(median), Some(longest)) = (ages_ms.get(ages_ms.len() / 2), ages_ms.last()) else {
+        return String::new();
+    };
+    let n_dropped: u64 = frames().filter_map(|frame| frame.args.dropped).sum();
+    format!(
+        "camera to present: median {median:.1} ms, longest {longest:.1} ms; {n_dropped} pictures dropped\n"
+    )
 }
 
 /// Beginning and end of each frame of a kind, in microseconds.

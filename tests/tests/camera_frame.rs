@@ -368,3 +368,18 @@ fn a_picture_of_planes_is_decoded_once() {
     assert!(std::sync::Arc::ptr_eq(image.rgba(), image.clone().rgba()));
     assert_eq!(image.rgba().rgba8, [9, 9, 9, 255].repeat(4));
 }
+
+#[test]
+fn a_picture_is_as_old_as_a_clock_of_the_same_kind_tells() {
+    let stamp = Stamp {
+        id: 0,
+        time_ns: 5_000_000_000,
+        world_epoch: 0,
+    };
+    assert_eq!(stamp.age_ms(5_041_500_000), Some(41.5));
+    assert_eq!(stamp.age_ms(5_000_000_000), Some(0.0));
+    // Another clock, by which the picture is of the future, or of long ago.
+    for now_ns in [4_999_999_999, 6_000_000_001, i64::MIN, i64::MAX] {
+        assert_eq!(stamp.age_ms(now_ns), None, "{now_ns}");
+    }
+}

@@ -84,17 +84,21 @@ fn a_profile_is_a_trace_whose_scopes_lie_within_their_frames() {
 
 /// Two frames as a phone may write them, with a counter among them that viewers show and the tables do not.
 const FROM_A_PHONE: &str = r#"{"traceEvents":[
-    {"name":"frame","ph":"X","ts":1000,"dur":3000,"pid":1,"tid":1,"args":{"number":0,"kind":"picture","heat":"fair"}},
+    {"name":"frame","ph":"X","ts":1000,"dur":3000,"pid":1,"tid":1,"args":{"number":0,"kind":"picture","heat":"fair","camera_to_present_ms":41.5,"dropped":0}},
     {"name":"align","ph":"X","ts":1000,"dur":2000,"pid":1,"tid":1},
     {"name":"search","ph":"X","ts":1000,"dur":6000,"pid":1,"tid":2},
     {"name":"battery","ph":"C","ts":1500,"args":{}},
-    {"name":"frame","ph":"X","ts":20000,"dur":3000,"pid":1,"tid":1,"args":{"number":1,"kind":"picture"}},
+    {"name":"frame","ph":"X","ts":20000,"dur":3000,"pid":1,"tid":1,"args":{"number":1,"kind":"picture","camera_to_present_ms":38,"dropped":2}},
     {"name":"search","ph":"X","ts":20000,"dur":2000,"pid":1,"tid":2}],
     "otherData":{"version":1,"session":"desk","preset":"paper","device":"A11","picture_px":[1920,1440]}}"#;
 
 #[test]
 fn a_phones_file_is_read_as_one_of_a_desktop_and_another_version_is_not() {
     let tables = tables(&parse(FROM_A_PHONE).unwrap());
+    assert!(
+        tables.contains("camera to present: median 41.5 ms, longest 41.5 ms; 2 pictures dropped"),
+        "{tables}"
+    );
     let row = |name: &str| -> Vec<String> {
         let line = tables.lines().find(|line| line.starts_with(name)).unwrap();
         line[name.len()..].split_whitespace().map(str::to_owned).collect()

@@ -6,6 +6,7 @@ use app_core::camera_frame::{
 };
 use app_core::scene::{Intrinsics, LightEstimate};
 use glam::DVec3;
+use rustix::time::{ClockId, clock_gettime};
 
 use super::ffi::{ArCamera, ArImage, ArPose};
 use super::owned::Owned;
@@ -48,6 +49,22 @@ pub enum FrameError {
     Camera([f32; 2], [i32; 2]),
 }
 
+/// Nanoseconds in a second.
+const NS: i64 = 1_000_000_000;
+/// The clocks that ARCore may tell times by, which it does not say: they differ by the time that the phone slept.
+#[cfg(any(target_os = "android", target_os = "linux"))]
+const CLOCKS: &[ClockId] = &[ClockId::Boottime, ClockId::Monotonic];
+#[cfg(not(any(target_os = "android", target_os = "linux")))]
+const CLOCKS: &[ClockId] = &[ClockId::Monotonic];
+
+/// How old a picture is, by the clock that it can be of.
+fn age_ms(stamp: Stamp) -> Option<f64> {
+    let times = CLOCKS.iter().map(|clock| clock_gettime(*clock));
+    times
+        .filter_map(|now| now.tv_sec.checked_mul(NS)?.checked_add(now.tv_nsec))
+        .find_map(|now_ns| stamp.age_ms(now_ns))
+}
+
 impl Session {
     /// When the frame of the last update was taken; 0 before there is one.
     pub(super) fn time_ns(&self) -> i64 {
@@ -85,6 +102,7 @@ impl Session {
         let is_tracking = world_from_camera.is_some();
         Ok(Some(CameraFrame {
             stamp,
+            age_ms: age_ms(stamp),
             intrinsics: self.intrinsics(&camera, image.size_px())?,
             image,
             exposure: self.exposure(),

@@ -180,7 +180,7 @@ impl Tracker {
             return Ok(None);
         }
         let frame = session.read(Stamp {
-            id: self.n_frames,
+            id: self.n_frames + self.n_missed,
             time_ns,
             world_epoch: self.n_sessions,
         })?;

@@ -2,6 +2,8 @@
 
 /// Time after which what was filtered over frames no longer holds.
 const LONGEST_GAP_S: f64 = 0.25;
+/// A picture that is older when it is delivered was timed by another clock.
+const OLDEST_NS: i64 = 1_000_000_000;
 
 /// A camera frame's place in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +14,18 @@ pub struct Stamp {
     pub time_ns: i64,
     /// Counts how often the tracker began a new world: resets and relocalisations.
     pub world_epoch: u32,
+}
+
+impl Stamp {
+    /// Milliseconds from the picture until `now_ns` on a clock of the processor. None where that is not the camera's clock, by which
+    /// the picture would be of the future, or older than a camera's can be.
+    #[must_use]
+    pub fn age_ms(&self, now_ns: i64) -> Option<f64> {
+        let age_ns = now_ns.checked_sub(self.time_ns)?;
+        #[allow(clippy::cast_precision_loss, reason = "at most a second")]
+        let age_ms = (0..=OLDEST_NS).contains(&age_ns).then(|| age_ns as f64 / 1e6);
+        age_ms
+    }
 }
 
 /// What becomes of a frame that arrives.

@@ -72,6 +72,8 @@ pub struct Anchor {
 pub struct CameraFrame {
     /// Which frame it is.
     pub stamp: Stamp,
+    /// Milliseconds from the picture until it was delivered; none where no clock tells, see [`Stamp::age_ms`].
+    pub age_ms: Option<f64>,
     /// The picture.
     pub image: CameraImage,
     /// Of this very picture: stabilised lenses move.

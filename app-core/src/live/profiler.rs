@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::camera_frame::CameraFrame;
 use crate::core::{Core, CoreError};
 use crate::frame::{Clock, FrameInput, FrameReport, PassTime};
 use crate::governor::{Governor, Heat};
@@ -18,8 +19,30 @@ pub(super) struct Profiler {
     times_passes: bool,
     n_frames: u64,
     before_ms: Option<f64>,
-    /// Of the latest frame: on the processor and, where that is known, on the device.
-    latest_ms: Option<(f64, Option<f64>)>,
+    delivered: Option<Delivered>,
+    /// The camera's number of the picture that was shown last.
+    shown_id: Option<u64>,
+    n_dropped: u64,
+    latest: Option<Latest>,
+}
+
+/// A picture of the camera.
+#[derive(Clone, Copy, Debug)]
+struct Delivered {
+    id: u64,
+    /// On the shell's clock.
+    at_ms: f64,
+    /// How old it was then.
+    age_ms: Option<f64>,
+}
+
+/// The latest frame.
+#[derive(Clone, Copy, Debug)]
+struct Latest {
+    cpu_ms: f64,
+    /// Where the device was asked.
+    gpu_ms: Option<f64>,
+    camera_to_present_ms: Option<f64>,
 }
 
 impl Profiler {
@@ -32,6 +55,25 @@ impl Profiler {
     pub(super) fn reopen(&mut self, core: &mut Core) {
         core.time_stages(self.clock.clone());
         self.times_passes = false;
+    }
+
+    /// A picture of the camera has come.
+    pub(super) fn deliver(&mut self, frame: &CameraFrame) {
+        self.delivered = self.clock.as_ref().map(|clock| Delivered {
+            id: frame.stamp.id,
+            at_ms: clock.now_ms(),
+            age_ms: frame.age_ms,
+        });
+    }
+
+    /// Pictures of the camera since the one that was shown last, which nobody will see. One counts for itself where the camera has
+    /// begun to count anew.
+    fn drop_before(&mut self, shown_id: u64) -> u64 {
+        let before = self.shown_id.replace(shown_id);
+        let step = before.and_then(|before| shown_id.checked_sub(before));
+        let n_dropped = step.unwrap_or(1).saturating_sub(1);
+        self.n_dropped += n_dropped;
+        n_dropped
     }
 
     /// Makes a frame, and keeps what it took. Passes are timed where they are shown: the processor waits for the device then.
@@ -50,19 +92,28 @@ impl Profiler {
         }
         let begin_ms = clock.now_ms();
         let report = core.frame(input)?;
-        let cpu_ms = clock.now_ms() - begin_ms;
+        let end_ms = clock.now_ms();
+        let cpu_ms = end_ms - begin_ms;
+        let age_at = |delivered: Delivered| Some(delivered.age_ms? + end_ms - delivered.at_ms);
+        let camera_to_present_ms = self.delivered.and_then(age_at);
         let pass_times = core.read_pass_times()?;
         let (about, args) = about(core);
         let args = Args {
             number: Some(self.n_frames),
             kind: report.change.map(|change| change.name().to_owned()),
             interval_ms: self.before_ms.map(|before_ms| begin_ms - before_ms),
+            camera_to_present_ms,
+            dropped: self.delivered.map(|delivered| self.drop_before(delivered.id)),
             ..args
         };
         self.n_frames += 1;
         self.before_ms = Some(begin_ms);
         let gpu_ms = (!pass_times.is_empty()).then(|| sum_ms(&pass_times));
-        self.latest_ms = Some((cpu_ms, gpu_ms));
+        self.latest = Some(Latest {
+            cpu_ms,
+            gpu_ms,
+            camera_to_present_ms,
+        });
         let frame = Frame {
             begin_ms,
             cpu_ms,
@@ -86,15 +137,34 @@ impl Profiler {
 
     /// Of the latest frame, for a recording.
     pub(super) fn latest(&self) -> Option<Value> {
-        let (cpu_ms, gpu_ms) = self.latest_ms?;
-        Some(json!({ "cpu_ms": cpu_ms, "gpu_ms": gpu_ms }))
+        let latest = self.latest?;
+        Some(json!({
+            "cpu_ms": latest.cpu_ms,
+            "gpu_ms": latest.gpu_ms,
+            "camera_to_present_ms": latest.camera_to_present_ms,
+            "dropped": self.n_dropped,
+        }))
     }
 
     /// Of the latest frame, in words.
     pub(super) fn words(&self) -> Option<String> {
-        let (cpu_ms, gpu_ms) = self.latest_ms?;
-        let device = gpu_ms.map_or(String::new(), |gpu_ms| format!(", device {gpu_ms:.1} ms"));
-        Some(format!("processor {cpu_ms:.1} ms{device}"))
+        let latest = self.latest?;
+        let after = |name: &str, ms: Option<f64>| ms.map_or(String::new(), |ms| format!("{name} {ms:.1} ms"));
+        let (device, camera) = (
+            after(", device", latest.gpu_ms),
+            after("camera to screen", latest.camera_to_present_ms),
+        );
+        let dropped = match self.n_dropped {
+            0 => String::new(),
+            n_dropped => format!("{n_dropped} pictures dropped"),
+        };
+        let lines = [
+            format!("processor {:.1} ms{device}", latest.cpu_ms),
+            camera,
+            dropped,
+        ];
+        let told = lines.into_iter().filter(|line| !line.is_empty());
+        Some(told.collect::<Vec<_>>().join("\n"))
     }
 }
 

@@ -48,6 +48,8 @@ pub struct RawSurface {
 pub struct RawFrame<'a> {
     /// Seconds since the phone started.
     pub timestamp: f64,
+    /// The same, when the frame was delivered.
+    pub delivered: f64,
     /// `OSType` of the pixel buffer.
     pub pixel_format: u32,
     /// Width and height of the luma.
@@ -118,12 +120,16 @@ pub fn camera_frame(
             world_from_anchor: convert::world_from_camera(*transform)?,
         })
     });
+    let stamp = Stamp {
+        id: count.n_frames,
+        time_ns: time_ns(raw.timestamp)?,
+        world_epoch: count.world_epoch,
+    };
     Ok(CameraFrame {
-        stamp: Stamp {
-            id: count.n_frames,
-            time_ns: time_ns(raw.timestamp)?,
-            world_epoch: count.world_epoch,
-        },
+        stamp,
+        age_ms: time_ns(raw.delivered)
+            .ok()
+            .and_then(|now_ns| stamp.age_ms(now_ns)),
         intrinsics: intrinsics(raw.intrinsics)?,
         image: lent
             .map_or_else(|| image(raw.pixel_format, raw.size_px, &raw.planes), Ok)?
@@ -255,6 +261,7 @@ mod tests {
         let plane = |bytes, row_stride| RawPlane { bytes, row_stride };
         RawFrame {
             timestamp: 12.5,
+            delivered: 12.53,
             pixel_format: FULL_RANGE,
             size_px: [4, 2],
             planes: vec![
@@ -293,6 +300,7 @@ mod tests {
             (frame.stamp.id, frame.stamp.time_ns, frame.stamp.world_epoch),
             (7, 12_500_000_000, 2)
         );
+        assert!(frame.age_ms.is_some_and(|age_ms| (age_ms - 30.0).abs() < 1e-6));
         let CameraImage::Planes(image) = &frame.image else {
             panic!("{:?}", frame.image);
         };

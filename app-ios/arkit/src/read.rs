@@ -13,7 +13,7 @@ use objc2_core_video::{
     CVPixelBufferGetPlaneCount, CVPixelBufferGetWidth, CVPixelBufferLockBaseAddress, CVPixelBufferLockFlags,
     CVPixelBufferUnlockBaseAddress,
 };
-use objc2_foundation::{NSArray, NSNumber, ns_string};
+use objc2_foundation::{NSArray, NSNumber, NSProcessInfo, ns_string};
 
 use super::frame::{RawFrame, RawPlane, RawSurface, image};
 use super::shim;
@@ -107,6 +107,8 @@ pub(super) fn with_raw<T>(
     };
     let raw = RawFrame {
         timestamp,
+        // On the same clock.
+        delivered: NSProcessInfo::processInfo().systemUptime(),
         pixel_format: CVPixelBufferGetPixelFormatType(&buffer),
         size_px: [CVPixelBufferGetWidth(&buffer), CVPixelBufferGetHeight(&buffer)],
         planes: locked.as_ref().map(Locked::planes).unwrap_or_default(),

@@ -142,6 +142,8 @@ impl Feed {
                 time_ns: self.time_ns,
                 world_epoch: self.world_epoch,
             },
+            // It is handed over as it is made.
+            age_ms: Some(0.0),
             image,
             intrinsics: camera.intrinsics,
             exposure: Some(Exposure {

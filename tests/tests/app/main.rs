@@ -9,6 +9,7 @@ mod recorded;
 mod screens;
 mod starts;
 mod table;
+mod times;
 mod toys;
 mod way;
 mod world;

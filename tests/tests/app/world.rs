@@ -75,6 +75,7 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
             time_ns,
             world_epoch,
         },
+        age_ms: None,
         image: image.into(),
         intrinsics: Intrinsics {
             fx_px: 60.0,

@@ -11,7 +11,7 @@ use jni::objects::{JObject, JValue};
 use jni::strings::JNIString;
 use jni::{Env, jni_sig, jni_str};
 
-use crate::phone::stored;
+use crate::stored::stored;
 
 const SEND: &str = "android.intent.action.SEND_MULTIPLE";
 const STREAM: &str = "android.intent.extra.STREAM";
@@ -19,11 +19,7 @@ const STREAM: &str = "android.intent.extra.STREAM";
 const MAY_READ: i32 = 1;
 
 /// Copies a file into the store; its address there. An exception where there is no such store, or no room.
-pub(crate) fn copy<'local>(
-    env: &mut Env<'local>,
-    activity: &JObject<'_>,
-    file: &Path,
-) -> Result<JObject<'local>> {
+pub fn copy<'local>(env: &mut Env<'local>, activity: &JObject<'_>, file: &Path) -> Result<JObject<'local>> {
     let stored = stored(file);
     let resolver = env
         .call_method(
@@ -86,7 +82,7 @@ pub(crate) fn copy<'local>(
 }
 
 /// `startActivity(Intent.createChooser(new Intent(SEND_MULTIPLE)…, null))`.
-pub(crate) fn share(env: &mut Env<'_>, activity: &JObject<'_>, files: &[PathBuf]) -> Result<()> {
+pub fn share(env: &mut Env<'_>, activity: &JObject<'_>, files: &[PathBuf]) -> Result<()> {
     let addresses = env.new_object(jni_str!("java/util/ArrayList"), jni_sig!("()V"), &[])?;
     for file in files {
         let address = copy(env, activity, file)?;
