@@ -24,7 +24,7 @@ const REACH_PX: i32 = 3;
 const OTHER_SURFACE: f32 = 1e-4;
 
 fn frame_at(texel: vec2i) -> vec3f {
-  return textureLoad(frame, region_texel(texel) + vec2i(globals.region_origin_px), 0).rgb;
+  return textureLoad(frame, region_texel(texel), 0).rgb;
 }
 
 fn received_at(texel: vec2i) -> vec4f {

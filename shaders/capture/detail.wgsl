@@ -34,7 +34,7 @@ fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: p
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
   if receiver_of(point) != receiver || marks_at(texel).r == 0.0 || b.a < 1.0 { return vec3f(1.0); }
-  let f = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb / fit.gain.rgb;
+  let f = textureLoad(frame, texel, 0).rgb / fit.gain.rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   // Ratios to a nearly black plate are noise.

@@ -30,7 +30,7 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if photographed.a == 1.0 || !is_hit(point) { return photographed; }
   let smooth_color = cell_at(point).rgb;
   if !IS_FINAL || marks_at(vec2i(texel)).b == 0.0 { return vec4f(smooth_color, ESTIMATED); }
-  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let f = textureLoad(frame, texel, 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   let left = smallest(model);

@@ -64,7 +64,7 @@ fn cauchy_weight(residual: f32, scale: f32) -> f32 {
 }
 
 fn frame_at(texel: vec2u) -> vec3f {
-  return textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  return textureLoad(frame, texel, 0).rgb;
 }
 
 // Measurements at a pixel of a receiver: the inputs of its equations.

@@ -20,7 +20,7 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   let here = receiver_point(vec2f(texel) + 0.5);
   let seen = marks_at(vec2i(texel)).b;
   if seen == 0.0 || receiver_of(here) != receiver_of(point) { return vec4f(0.0); }
-  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let f = textureLoad(frame, texel, 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let model = receiver_model(here, a, textureLoad(visibility, texel, 0));
   let left = smallest(model);

@@ -28,7 +28,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   let texel = vec2u(at);
   let seen = marks_at(vec2i(texel)).r;
   if seen == 0.0 || receiver_of(receiver_point(vec2f(texel) + 0.5)) != receiver_of(point) { return sums; }
-  let f = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let f = textureLoad(frame, texel, 0).rgb;
   let b = textureLoad(plate, texel, 0);
   let brightness = dot(b.rgb, b.rgb);
   // An estimated plate was made from this very frame.

@@ -39,7 +39,7 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let surface = textureLoad(gbuffer_normal, in_box, 0);
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
   let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
-  let shown = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let shown = textureLoad(frame, texel, 0).rgb;
   if largest(shown) > BRIGHTEST_USABLE { return; }
   let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));

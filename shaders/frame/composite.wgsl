@@ -103,8 +103,7 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
 fn receiver(position: vec4f, evident: vec4f, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
-  let image_texel = texel + vec2u(globals.region_origin_px);
-  let f = textureLoad(frame, image_texel, 0).rgb;
+  let f = textureLoad(frame, texel, 0).rgb;
   let uv = at / globals.region_size_px;
   let v_before = textureLoad(physical_visibility, texel, 0);
   let v_after = textureLoad(visibility, texel, 0);
@@ -200,7 +199,7 @@ fn stillness(texel: vec2i) -> f32 {
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
-  let frame_color = textureLoad(frame, texel + vec2u(globals.region_origin_px), 0).rgb;
+  let frame_color = textureLoad(frame, texel, 0).rgb;
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {

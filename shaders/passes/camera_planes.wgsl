@@ -1,12 +1,15 @@
-// The camera's planes of luma and chroma as sRGB codes. A chroma sample lies amid its four luma samples.
+// The camera's planes of luma and chroma, or a part of them, as sRGB codes. A chroma sample lies amid its four luma samples.
 //
-// Reads: luma, chroma (Cb, Cr) of half its size, rounded up. Writes: codes of the camera image, opaque.
+// Reads: luma, chroma (Cb, Cr) of half its size, rounded up. Writes: codes of that part of the camera image, opaque.
 // CPU reference: reference/camera_planes.rs. Source: ITU-R BT.601-7, 2.5; BT.709-6, 3.
 
 struct Encoding {
   srgb_from_ycbcr: mat3x3f,
   // Luma of black, and chroma of grey.
   origin: vec4f,
+  // Top left corner of the part.
+  corner_px: vec2i,
+  unused: vec2i,
 }
 
 @group(1) @binding(0) var<uniform> encoding: Encoding;
@@ -26,7 +29,7 @@ fn chroma_at(texel: vec2i) -> vec2f {
 
 @fragment
 fn fs_decode(@builtin(position) at: vec4f) -> @location(0) vec4f {
-  let texel = vec2i(at.xy);
+  let texel = encoding.corner_px + vec2i(at.xy);
   let ycbcr = vec3f(textureLoad(luma, texel, 0).r, chroma_at(texel));
   return vec4f(saturate(encoding.srgb_from_ycbcr * (ycbcr - encoding.origin.xyz)), 1.0);
 }

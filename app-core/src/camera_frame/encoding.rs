@@ -4,6 +4,8 @@
 
 use glam::{Mat3, Vec3};
 
+use crate::gpu::shared::Mat3Columns;
+
 /// Coefficients of red and blue in luma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LumaCoefficients {
@@ -37,6 +39,13 @@ pub(crate) struct SrgbFromYcbcr {
     pub(crate) matrix: Mat3,
     /// Luma of black, and chroma of grey.
     pub(crate) origin: Vec3,
+}
+
+impl SrgbFromYcbcr {
+    /// Columns of the matrix, as a shader has them.
+    pub(crate) fn columns(&self) -> Mat3Columns {
+        [0, 1, 2].map(|index| self.matrix.col(index).extend(0.0).to_array())
+    }
 }
 
 impl YcbcrEncoding {

@@ -131,7 +131,7 @@ impl Core {
         let size_px = image.size_px();
         let kept = self.preview.take().filter(|preview| preview.size_px() == size_px);
         let preview = self.gpu.guarded(|| {
-            let mut preview = kept.unwrap_or_else(|| Preview::new(&self.gpu, size_px));
+            let mut preview = kept.unwrap_or_else(|| Preview::new(size_px));
             preview.take(&self.gpu, image);
             preview
         })?;
@@ -156,7 +156,7 @@ impl Core {
         display: Display,
         paint: impl FnOnce(&Gpu, &wgpu::Texture),
     ) -> Result<(), CoreError> {
-        let picture = latest(self.preview.as_ref(), self.stage.as_ref());
+        let picture = latest(&self.gpu, self.preview.as_ref(), self.stage.as_ref());
         let Some(window) = &mut self.window else {
             return Ok(());
         };
@@ -170,7 +170,8 @@ impl Core {
     /// # Errors
     /// When there is no scene, or the device refuses.
     pub fn draw_on(&mut self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
-        let picture = latest(self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
+        let picture =
+            latest(&self.gpu, self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
         let (gpu, timer) = (&*self.gpu, self.timer.as_mut());
         gpu.guarded(|| {
             let screen = screen::Pass::new(gpu, target.format());
@@ -255,7 +256,7 @@ impl Core {
     /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
     #[must_use]
     pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
-        let picture = self.stage.as_ref()?.finished();
+        let picture = self.stage.as_ref()?.finished(&self.gpu);
         Some(window::count(&picture, screen_px, display))
     }
 
@@ -342,8 +343,9 @@ impl Core {
 }
 
 /// The picture that was made or taken last.
-fn latest<'a>(preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
-    preview.map(Preview::finished).or(stage.map(Stage::finished))
+fn latest<'a>(gpu: &Gpu, preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
+    let of_stage = || stage.map(|stage| stage.finished(gpu));
+    preview.map(|preview| preview.finished(gpu)).or_else(of_stage)
 }
 
 fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {

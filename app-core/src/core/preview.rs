@@ -4,7 +4,6 @@ use glam::UVec2;
 
 use crate::camera_frame::CameraImage;
 use crate::gpu::context::Gpu;
-use crate::gpu::recorder::Recorder;
 use crate::passes::finished::Finished;
 use crate::stage::camera_texture::CameraTexture;
 
@@ -15,9 +14,9 @@ pub(super) struct Preview {
 }
 
 impl Preview {
-    pub(super) fn new(gpu: &Gpu, size_px: [u32; 2]) -> Self {
+    pub(super) fn new(size_px: [u32; 2]) -> Self {
         Self {
-            texture: CameraTexture::new(gpu, UVec2::from(size_px)),
+            texture: CameraTexture::new(UVec2::from(size_px)),
             size_px,
         }
     }
@@ -28,14 +27,12 @@ impl Preview {
 
     /// Uploads the picture, unless it is the one that is there.
     pub(super) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
-        let mut recorder = Recorder::new(gpu, None);
-        self.texture.take(&mut recorder, image);
-        recorder.submit();
+        self.texture.take(gpu, image);
     }
 
-    pub(super) fn finished(&self) -> Finished<'_> {
+    pub(super) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
         Finished {
-            frame: self.texture.picture(),
+            frame: self.texture.frame(gpu),
             region: None,
             size_px: self.size_px.into(),
         }

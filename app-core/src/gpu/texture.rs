@@ -129,6 +129,29 @@ impl Texture {
         self.write_part(gpu, (0, layer), texels);
     }
 
+    /// Fills the whole texture with a part of a larger picture of that many columns, from a corner on.
+    pub(crate) fn write_part_of(&self, gpu: &Gpu, texels: &[u8], (corner_px, columns): (UVec2, u32)) {
+        let size_px = self.size_px();
+        let texel_bytes = self.format().block_copy_size(None).unwrap_or(1);
+        let row_bytes = (columns * texel_bytes) as usize;
+        let first = corner_px.y as usize * row_bytes + (corner_px.x * texel_bytes) as usize;
+        let cut_bytes = (size_px.x * texel_bytes) as usize;
+        gpu.meter.upload(cut_bytes * size_px.y as usize);
+        let (Some(opened), Some(raw), Some(texels)) = (&gpu.opened, &self.raw, texels.get(first..)) else {
+            return;
+        };
+        opened.queue.write_texture(
+            raw.as_image_copy(),
+            texels,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(columns * texel_bytes),
+                rows_per_image: None,
+            },
+            raw.size(),
+        );
+    }
+
     fn write_part(&self, gpu: &Gpu, (level, layer): (u32, u32), texels: &[u8]) {
         gpu.meter.upload(texels.len());
         let (Some(opened), Some(raw)) = (&gpu.opened, &self.raw) else {

@@ -1,4 +1,4 @@
-//! `camera_planes`: the camera's planes of luma and chroma as sRGB codes.
+//! `camera_planes`: the camera's planes of luma and chroma, or a part of them, as sRGB codes.
 
 use glam::UVec2;
 use wgpu::TextureFormat;
@@ -24,6 +24,8 @@ shared_struct! {
     pub(crate) struct Encoding {
         pub srgb_from_ycbcr: Mat3Columns,
         pub origin: [f32; 4],
+        pub corner_px: [i32; 2],
+        pub unused: [i32; 2],
     }
 }
 
@@ -64,19 +66,21 @@ impl Pass {
         }
     }
 
-    /// Decodes views of luma and chroma, which may be the platform's: no cache keeps them.
+    /// Decodes views of luma and chroma, which may be the platform's: no cache keeps them. As much as the target holds, from
+    /// the corner at `corner_px` on.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
         encoding: YcbcrEncoding,
         [luma, chroma]: [&TextureView; 2],
-        frame_codes: &TextureView,
+        (frame_codes, corner_px): (&TextureView, UVec2),
     ) {
         let map = encoding.srgb_from_ycbcr();
-        let column = |index| map.matrix.col(index).extend(0.0).to_array();
         let encoding = Encoding {
-            srgb_from_ycbcr: [column(0), column(1), column(2)],
+            srgb_from_ycbcr: map.columns(),
             origin: map.origin.extend(0.0).to_array(),
+            corner_px: corner_px.as_ivec2().to_array(),
+            unused: [0; 2],
         };
         let resources = [Resource::PerUse, luma.into(), chroma.into()];
         let own = recorder.bind_once_with(&self.draw, GROUP_PASS, &encoding, &resources);

@@ -2,17 +2,32 @@
 
 use glam::UVec2;
 
+use crate::camera_frame::YcbcrEncoding;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::texture::TextureView;
 
 /// A picture that was made or taken.
 #[derive(Clone, Copy)]
 pub(crate) struct Finished<'a> {
-    pub(crate) frame: Picture<'a>,
+    pub(crate) frame: Frame<'a>,
     /// None where the camera image passes through.
     pub(crate) region: Option<Laid<'a>>,
     /// Of the camera image.
     pub(crate) size_px: UVec2,
+}
+
+/// The camera image, in the form that it came in.
+#[derive(Clone, Copy)]
+pub(crate) enum Frame<'a> {
+    Picture(Picture<'a>),
+    Planes(FramePlanes<'a>),
+}
+
+/// Views of luma and of chroma, which may be the platform's, and what their codes mean.
+#[derive(Clone, Copy)]
+pub(crate) struct FramePlanes<'a> {
+    pub(crate) views: [&'a TextureView; 2],
+    pub(crate) encoding: YcbcrEncoding,
 }
 
 /// Two views of an sRGB texture.

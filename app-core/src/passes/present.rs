@@ -11,7 +11,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::Finished;
+use crate::passes::finished::{Laid, Picture};
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -49,15 +49,21 @@ impl Pass {
         }
     }
 
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, finished: &Finished<'_>, target: &TextureView) {
-        let placement = finished.region.map_or(Placement::zeroed(), |laid| Placement {
+    /// With the camera image, all of it decoded.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        (frame, region): (Picture<'_>, Option<Laid<'_>>),
+        target: &TextureView,
+    ) {
+        let placement = region.map_or(Placement::zeroed(), |laid| Placement {
             origin_px: laid.rect.origin_px.to_array(),
             size_px: laid.rect.size_px.to_array(),
             effect: laid.effect,
             unused: 0.0,
         });
-        let region = finished.region.map_or(finished.frame, |laid| laid.picture);
-        let resources = [Resource::PerUse, finished.frame.codes.into(), region.codes.into()];
+        let region = region.map_or(frame, |laid| laid.picture);
+        let resources = [Resource::PerUse, frame.codes.into(), region.codes.into()];
         let own = recorder.bind_with(&self.draw, GROUP_PASS, &placement, &resources);
         recorder.fullscreen(&self.draw, &[own], &[target]);
     }

@@ -1,5 +1,6 @@
 //! `screen`: the camera image with the work region laid over it, on a screen, turned and cropped.
 
+use bytemuck::Zeroable;
 use glam::{DAffine2, DVec2, UVec2};
 use wgpu::TextureFormat;
 
@@ -8,9 +9,9 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::shared::shared_struct;
+use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::Finished;
+use crate::passes::finished::{Finished, Frame, FramePlanes};
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -18,8 +19,15 @@ pub(crate) const SHADER: Shader =
 const SLOTS: &[Slot] = &[
     Slot::per_use::<ScreenMap>(),
     Slot::Filtered,
+    Slot::Sampler,
+    Slot::Filtered,
+];
+const SLOTS_OF_PLANES: &[Slot] = &[
+    Slot::per_use::<ScreenMap>(),
     Slot::Filtered,
     Slot::Sampler,
+    Slot::Filtered,
+    Slot::Filtered,
 ];
 
 shared_struct! {
@@ -34,6 +42,9 @@ shared_struct! {
         pub region_px: [f32; 2],
         pub effect: f32,
         pub unused: f32,
+        pub chroma_px: [f32; 2],
+        pub srgb_from_ycbcr: Mat3Columns,
+        pub grey: [f32; 4],
     }
 }
 
@@ -53,21 +64,37 @@ impl ScreenMap {
             region_origin_px: pair(origin_px.as_dvec2()),
             region_px: pair(region_px.as_dvec2()),
             effect,
-            unused: 0.0,
+            ..Self::zeroed()
+        }
+    }
+
+    /// The same for planes.
+    fn with_planes(self, planes: &FramePlanes<'_>) -> Self {
+        let map = planes.encoding.srgb_from_ycbcr();
+        Self {
+            chroma_px: planes.views[1].size_px().as_vec2().to_array(),
+            srgb_from_ycbcr: map.columns(),
+            grey: map.origin.extend(0.0).to_array(),
+            ..self
         }
     }
 }
 
 pub(crate) struct Pass {
-    draw: Draw,
+    of_picture: Draw,
+    of_planes: Draw,
 }
 
 impl Pass {
     /// For a screen of `format`, which takes sRGB codes as they are.
     pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
-        let groups = [&[][..], SLOTS, &[], &[]];
+        let draw = |entry, slots| {
+            let groups = [&[][..], slots, &[], &[]];
+            gpu.draw(&DrawSpec::fullscreen(&SHADER, entry, groups, &[format]))
+        };
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_show", groups, &[format])),
+            of_picture: draw("fs_show", SLOTS),
+            of_planes: draw("fs_show_planes", SLOTS_OF_PLANES),
         }
     }
 
@@ -79,14 +106,35 @@ impl Pass {
         screen: &TextureView,
     ) {
         let map = ScreenMap::new(image_from_screen, finished);
-        let region = finished.region.map_or(finished.frame, |laid| laid.picture);
-        let resources = [
-            Resource::PerUse,
-            finished.frame.light.into(),
-            region.light.into(),
-            (&recorder.gpu.samplers.linear).into(),
-        ];
-        let own = recorder.bind_with(&self.draw, GROUP_PASS, &map, &resources);
-        recorder.fullscreen(&self.draw, &[own], &[screen]);
+        let region = finished.region.map(|laid| laid.picture.light);
+        let sampler = &recorder.gpu.samplers.linear;
+        match &finished.frame {
+            Frame::Picture(frame) => {
+                let region = region.unwrap_or(frame.light);
+                let resources = [
+                    Resource::PerUse,
+                    region.into(),
+                    sampler.into(),
+                    frame.light.into(),
+                ];
+                let own = recorder.bind_with(&self.of_picture, GROUP_PASS, &map, &resources);
+                recorder.fullscreen(&self.of_picture, &[own], &[screen]);
+            }
+            Frame::Planes(planes) => {
+                let [luma, chroma] = planes.views;
+                let region = region.unwrap_or(luma);
+                let map = map.with_planes(planes);
+                let resources = [
+                    Resource::PerUse,
+                    region.into(),
+                    sampler.into(),
+                    luma.into(),
+                    chroma.into(),
+                ];
+                // They may be the platform's: no cache keeps them.
+                let own = recorder.bind_once_with(&self.of_planes, GROUP_PASS, &map, &resources);
+                recorder.fullscreen(&self.of_planes, &[own], &[screen]);
+            }
+        }
     }
 }

@@ -8,12 +8,14 @@ use crate::frame::warning::Warning;
 use crate::governor::{BALANCED_FRONT, Step};
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::texture::Texture;
 use crate::model::Model;
 use crate::model::plan::Plan;
 use crate::model::state::SceneState;
 use crate::model::state::grids::grids_over;
 use crate::passes::globals::globals;
 use crate::passes::pictures::Pictures;
+use crate::passes::present::REGION_FORMAT;
 use crate::plan::Change;
 use crate::preset::ModelSettings;
 
@@ -93,8 +95,9 @@ impl Stage {
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let state = SceneState::new(&gpu, grids_over(&self.reached_rects), plan.n_lights, toy);
         let model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
+        let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
-            frame: self.camera.view(),
+            frame: &frame.view,
             exposure_ratio: 1.0,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,

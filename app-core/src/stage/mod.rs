@@ -143,7 +143,7 @@ impl Stage {
             physical_bounds: Bounds::around(posed.points()),
             toy: ToyMesh::new(gpu, &scene.toy, &posed, simplified(&scene.toy, preset)),
             posed,
-            camera: CameraTexture::new(gpu, size_px),
+            camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
             present: present::Pass::new(gpu),
             state: None,
@@ -177,18 +177,21 @@ impl Stage {
     }
 
     /// The latest picture, of which the region's part still has to be laid over the camera image.
-    pub(crate) fn finished(&self) -> Finished<'_> {
-        let laid = self.method().zip(self.effect).map(|(method, effect)| Laid {
+    pub(crate) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
+        Finished {
+            frame: self.camera.frame(gpu),
+            region: self.laid(),
+            size_px: self.size_px(),
+        }
+    }
+
+    fn laid(&self) -> Option<Laid<'_>> {
+        self.method().zip(self.effect).map(|(method, effect)| Laid {
             picture: method.picture(),
             rect: method.region(),
             #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
             effect: effect as f32,
-        });
-        Finished {
-            frame: self.camera.picture(),
-            region: laid,
-            size_px: self.size_px(),
-        }
+        })
     }
 
     /// Draws that picture into a texture of its size: codes.
@@ -197,7 +200,9 @@ impl Stage {
             .output
             .get_or_init(|| Texture::target(gpu, "output", self.size_px(), OUTPUT_FORMAT));
         let mut recorder = Recorder::new(gpu, None);
-        self.present.encode(&mut recorder, &self.finished(), &output.view);
+        let frame = self.camera.decoded(&mut recorder);
+        self.present
+            .encode(&mut recorder, (frame, self.laid()), &output.view);
         recorder.submit();
         output
     }
@@ -279,7 +284,7 @@ impl Stage {
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
         recorder.stages.begin("camera picture");
-        self.camera.take(recorder, &input.image);
+        self.camera.take(recorder.gpu, &input.image);
         recorder.stages.begin("placement");
         self.follow_placement(recorder.gpu, input)?;
         let about_scene = self
@@ -344,13 +349,21 @@ impl Stage {
             };
             gpu.write(&self.plates.views, &[views]);
         }
+        recorder.n_pixels = n_pixels(method.region().size_px);
+        let frame = match method {
+            Method::Model(_) => {
+                self.camera.cut(recorder, method.region());
+                self.camera.cut_view(gpu)
+            }
+            // Its `retarget` fills the place of the toy from anywhere.
+            Method::Baseline(_) => self.camera.keep_decoded(recorder),
+        };
         let pictures = Pictures {
-            frame: self.camera.view(),
+            frame,
             exposure_ratio,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
         };
-        recorder.n_pixels = n_pixels(method.region().size_px);
         method.encode(recorder, &self.toy, &pictures, change);
         if change < Change::View {
             report.skipped.push(LeftOut {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use app_core::camera_frame::{CameraImage, Display};
+use app_core::camera_frame::{CameraImage, Display, PlanarImage, Planes};
 use app_core::core::{Core, CoreError};
 use app_core::frame::{Clock, FrameInput};
 use app_core::internals::Inspect;
@@ -187,7 +187,7 @@ fn spread(values: &[f64]) -> Option<f64> {
 /// A frame with something new in it.
 #[must_use]
 pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
-    let picture = || CameraImage::from(Image::clone(input.image.rgba()));
+    let picture = || copied(&input.image);
     let turn = DMat4::from_rotation_x(TURN_RAD);
     match kind {
         FrameKind::Pose => input.clone(),
@@ -204,6 +204,23 @@ pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
             ..input.clone()
         },
     }
+}
+
+/// The same picture, which nobody takes for the one that is there.
+fn copied(image: &CameraImage) -> CameraImage {
+    let pixels = |image: &CameraImage| CameraImage::from(Image::clone(image.rgba()));
+    let CameraImage::Planes(planes) = image else {
+        return pixels(image);
+    };
+    let [width, _] = planes.size_px().map(|side| side as usize);
+    let of_chroma = (planes.chroma(), 2 * width.div_ceil(2));
+    let read = Planes::nv12(
+        planes.size_px(),
+        (planes.luma(), width),
+        of_chroma,
+        planes.encoding(),
+    );
+    PlanarImage::new(&read).map_or_else(|_| pixels(image), CameraImage::from)
 }
 
 fn total_ms(times: &Named) -> Option<f64> {

@@ -244,6 +244,43 @@ fn a_screen_shows_the_region_over_the_camera_image() {
     }
 }
 
+/// A screen shows planes as it shows their pixels, with the region over them in whole, in part and not at all.
+#[test]
+fn a_screen_shows_planes_as_their_pixels() {
+    let (scene, input) = (scene(), first_input());
+    let mut app = App::open();
+    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING));
+    let pixels = CameraImage::Rgba(planes.rgba().clone());
+    for (preset, effect) in [
+        (Preset::Balanced, 1.0),
+        (Preset::Balanced, 0.4),
+        (Preset::Balanced, 0.0),
+        (Preset::Paper, 1.0),
+    ] {
+        app.core.set_scene(scene.clone(), preset).unwrap();
+        for screen_px in [[scene.width_px, scene.height_px], [333, 197]] {
+            let [of_planes, of_pixels] = [&planes, &pixels].map(|image| {
+                let image = image.clone();
+                let input = FrameInput {
+                    image,
+                    effect,
+                    ..input.clone()
+                };
+                app.core.frame(&input).unwrap();
+                app.shown(screen_px, Display::default())
+            });
+            // A sampler of 8 bits is two codes off in chroma, and planes are filtered as codes rather than as light.
+            let pairs = of_planes.iter().zip(&of_pixels);
+            let far = pairs.filter(|(a, b)| a.abs_diff(**b) > 3).count();
+            let (most, n) = (worst(&of_planes, &of_pixels), of_planes.len());
+            assert!(
+                far * 100 < n,
+                "{preset} {effect} {screen_px:?}: {far} of {n} codes, at most {most}"
+            );
+        }
+    }
+}
+
 /// In every rotation and fit each point of the screen shows the picture's point that the map says, black beyond it.
 #[test]
 fn a_screen_shows_the_picture_turned_and_cropped() {

@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use app_core::Core;
+use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
 use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_FRONT, Knob, Step};
 use app_core::preset::Preset;
@@ -88,16 +89,33 @@ fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
     Toy::from_glb("toy.glb", &file.bytes()).unwrap()
 }
 
+/// A grey picture of the screen's size, as a phone delivers it whose platform does not lend textures.
+fn planes() -> PlanarImage {
+    let [width, height] = SCREEN_PX.map(|side| side as usize);
+    let (luma, chroma) = (vec![128; width * height], vec![128; width * height.div_ceil(2)]);
+    let encoding = YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range: CodeRange::Full,
+    };
+    PlanarImage::new(&Planes::nv12(
+        SCREEN_PX,
+        (&luma, width),
+        (&chroma, width),
+        encoding,
+    ))
+    .unwrap()
+}
+
 /// A toy on a table; of the ball the region is some 900 x 700 px of the screen.
 fn scene_of(toy: Toy, n_lights: usize) -> (Scene, FrameInput) {
     let eye = DVec3::new(0.0, 0.37, 0.41);
     let target = DVec3::new(-0.02, 0.03, 0.0);
     let camera = camera(SCREEN_PX, eye, target);
-    let image = Arc::new(Image {
+    let image = Image {
         width_px: SCREEN_PX[0],
         height_px: SCREEN_PX[1],
         rgba8: vec![128; 4 * (SCREEN_PX[0] * SCREEN_PX[1]) as usize],
-    });
+    };
     let place = |turn: f64| DVec3::new(turn.cos(), 1.6, turn.sin());
     let lights = (0..n_lights).map(|index| Light::Sphere {
         position_in_world: place(0.4 + 2.0 * f64::from(u32::try_from(index).unwrap())),
@@ -121,13 +139,13 @@ fn scene_of(toy: Toy, n_lights: usize) -> (Scene, FrameInput) {
         lights: lights.collect(),
         plates: vec![Plate {
             camera,
-            image: Arc::clone(&image),
+            image: Arc::new(image),
         }],
         probe: None,
         uncertainty: Uncertainty::default(),
     };
     let input = FrameInput {
-        image: image.into(),
+        image: planes().into(),
         camera,
         exposure: 1.0,
         world_from_object,
@@ -174,24 +192,25 @@ fn assert_held(n_lights: usize, preset: Preset, budgets: [Budget; 3], peak_mib: 
 fn frames_of_balanced_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
-        (Pose, 869_000, 2.2),
-        (Picture, 869_000, 3.1),
-        (View, 1_408_000, 4.1),
+        (Pose, 869_000, 1.9),
+        (Picture, 869_000, 2.65),
+        (View, 1_408_000, 3.65),
     ];
-    assert_held(1, Preset::Balanced, one, 41.0);
+    assert_held(1, Preset::Balanced, one, 36.5);
     let two = [
-        (Pose, 1_345_000, 2.4),
-        (Picture, 1_345_000, 3.3),
-        (View, 2_360_000, 4.5),
+        (Pose, 1_345_000, 2.1),
+        (Picture, 1_345_000, 2.9),
+        (View, 2_360_000, 4.05),
     ];
-    assert_held(2, Preset::Balanced, two, 46.0);
+    assert_held(2, Preset::Balanced, two, 41.0);
 }
 
 #[test]
 fn frames_of_the_baseline_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
-    let paper = [(Pose, 20_100, 5.1), (Picture, 20_100, 5.9), (View, 40_100, 7.1)];
-    assert_held(1, Preset::Paper, paper, 60.0);
+    let paper = [(Pose, 20_100, 4.8), (Picture, 20_100, 5.9), (View, 40_100, 7.1)];
+    // Its `retarget` looks anywhere in the picture, so that planes are kept beside what all of them decode to.
+    assert_held(1, Preset::Paper, paper, 63.0);
 }
 
 /// A row of the ledger that costs more is found.
@@ -201,7 +220,7 @@ fn a_planted_budget_is_broken() {
     use FrameKind::{Picture, Pose, View};
     let planted = [
         (Pose, 869_000, 2.2),
-        (Picture, 869_000, 2.9),
+        (Picture, 869_000, 2.5),
         (View, 1_408_000, 4.2),
     ];
     assert_held(1, Preset::Balanced, planted, 41.0);

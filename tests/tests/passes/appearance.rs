@@ -57,7 +57,7 @@ fn errors(source: &str) -> Errors {
     let toy = toy(size);
     let seen = Raster::from_fn(size, |at| Seen {
         pixel: ToyPixel {
-            color: scene.image.at(scene.rect.origin_px + at).truncate(),
+            color: scene.image.at(at).truncate(),
             received: toy.received.at(at),
             base: toy.base.at(at).truncate().extend(0.5 + 0.5 * toy.normal.at(at).y),
         },

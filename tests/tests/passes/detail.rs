@@ -25,13 +25,9 @@ fn scene() -> Scrambled {
         ..pictures
     };
     let modelled = told(region, &seen, &everywhere, &scene.solution);
-    let origin = scene.rect.origin_px;
-    let image = Raster::from_fn(scene.image.size(), |at| {
-        let texel = at.wrapping_sub(origin);
-        let is_within = texel.cmplt(scene.rect.size_px).all();
-        let here = is_within.then(|| modelled.at(texel)).flatten();
-        here.map_or(scene.image.at(at), |here| {
-            let residual = DVec3::from([130, 131, 132].map(|seed| 0.2 * number(at, seed) - 0.1));
+    let image = Raster::from_fn(scene.image.size(), |texel| {
+        modelled.at(texel).map_or(scene.image.at(texel), |here| {
+            let residual = DVec3::from([130, 131, 132].map(|seed| 0.2 * number(texel, seed) - 0.1));
             let plate = scene.plate.at(texel).truncate();
             let color = scene.solution.gain * plate * (here.model + residual);
             color.as_vec3().as_dvec3().extend(1.0)

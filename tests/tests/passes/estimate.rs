@@ -147,7 +147,6 @@ fn a_fault_in_the_completion_is_found() {
         (".a == 1.0 ||", ".a > 0.0 ||"),
         ("!IS_FINAL ||", ""),
         ("_cells - 0.5", "_cells"),
-        ("+ vec2u(globals.region_origin_px)", ""),
     ];
     check_faults("estimate", &faults, ALLOWED, errors);
 }

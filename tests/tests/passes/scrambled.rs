@@ -26,7 +26,7 @@ pub(crate) struct Scrambled {
     pub(crate) rect: PixelRect,
     pub(crate) region: Region,
     pub(crate) solution: Solution,
-    /// The whole picture.
+    /// What it shows of the camera's picture.
     pub(crate) image: Raster<DVec4>,
     /// Colours, and alpha: 1, a quarter, or 0.
     pub(crate) plate: Raster<DVec4>,
@@ -57,7 +57,7 @@ impl Scrambled {
         let one_in = |n: u32, seed: u32| move |at: UVec2| number(at, seed) * f64::from(n) < 1.0;
         Self {
             region: stand.region(&rect),
-            image: numbers(stand.setup.image_px, 1),
+            image: numbers(size, 1),
             plate: Raster::from_fn(size, |at| {
                 let alpha = [1.0, 0.25, 1.0, 0.0][(at.x / 3 + at.y / 7) as usize % 4];
                 // Much of it is as dark as what tells nothing.
@@ -91,9 +91,7 @@ impl Scrambled {
     /// What the references see; `seen` is a channel of the evidence.
     pub(crate) fn pictures(&self, seen: usize) -> Pictures {
         Pictures {
-            frame: Raster::from_fn(self.rect.size_px, |at| {
-                self.image.at(self.rect.origin_px + at).truncate()
-            }),
+            frame: self.image.map(DVec4::truncate),
             plate: self.plate.map(DVec4::truncate),
             seen: self.validity.map(|texel| texel[seen]),
             visibility: self.visibility.clone(),
