@@ -124,6 +124,7 @@ pub mod internals {
     pub use crate::geometry::anchored::AnchoredReceiver;
     pub use crate::geometry::bounds::{Bounds, Sphere};
     pub use crate::geometry::color::linear_from_srgb;
+    pub use crate::geometry::facing::Viewers;
     pub use crate::geometry::light_points::{ambient_directions, light_in_plane, light_points};
     pub use crate::geometry::outline::Outline;
     pub use crate::geometry::reach::Reach;

@@ -6,6 +6,7 @@ pub(crate) mod clip_reach;
 pub(crate) mod color;
 pub(crate) mod displacement;
 pub(crate) mod extent;
+pub(crate) mod facing;
 pub(crate) mod inside;
 pub(crate) mod light_points;
 pub(crate) mod nearest_receivers;

@@ -2,15 +2,17 @@
 
 use std::ops::Range;
 
-use glam::DVec4;
+use glam::{Vec3, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
+use crate::geometry::facing::Viewers;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
+use crate::scene::MAX_LIGHTS;
 use crate::toy::{Caster, PosedMesh, Toy};
 
 /// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
@@ -27,10 +29,53 @@ pub(crate) struct PoseBuffers {
     pub(crate) normals: Buffer,
     /// Holds all positions.
     pub(crate) around: Sphere,
+    /// The positions on the processor.
+    points: Vec<Vec3>,
+    /// Triangles that face the camera, and those that face each light.
+    facing: Vec<Buffer>,
+}
+
+/// Whom triangles are to face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Camera,
+    /// By its index.
+    Light(usize),
+}
+
+impl Side {
+    fn index(self) -> usize {
+        match self {
+            Self::Camera => 0,
+            Self::Light(index) => 1 + index,
+        }
+    }
+}
+
+/// Corners to draw: those of a whole shape, or of its triangles that face somebody.
+pub(crate) struct Corners<'a> {
+    buffer: &'a Buffer,
+    indices: Range<u32>,
+    /// Whether triangles that face away are left out, which the draw then leaves out, too.
+    pub(crate) is_culled: bool,
+}
+
+impl Corners<'_> {
+    /// Binds them, and the positions of their pose in slot 0.
+    pub(crate) fn bind(&self, render: &mut Render<'_>, pose: &PoseBuffers) {
+        render.set_vertices(0, &pose.positions);
+        render.set_indices(self.buffer);
+    }
+
+    /// Draws each triangle once for each instance.
+    pub(crate) fn draw(&self, render: &mut Render<'_>, instances: Range<u32>) {
+        render.draw_indexed(self.indices.clone(), instances);
+    }
 }
 
 impl PoseBuffers {
-    fn new(gpu: &Gpu, mesh: &PosedMesh) -> Self {
+    /// With room for lists of so many corners each.
+    fn new(gpu: &Gpu, mesh: &PosedMesh, lists: impl Iterator<Item = usize>) -> Self {
         Self {
             positions: gpu.buffer(
                 "positions",
@@ -43,12 +88,15 @@ impl PoseBuffers {
                 BufferUsages::VERTEX,
             ),
             around: Sphere::around(&mesh.positions),
+            points: mesh.positions.clone(),
+            facing: lists.map(|n_corners| list(gpu, n_corners)).collect(),
         }
     }
 
     /// Replaces the pose by another of the same toy.
     pub(crate) fn write(&mut self, gpu: &Gpu, mesh: &PosedMesh) {
         self.around = Sphere::around(&mesh.positions);
+        self.points.clone_from(&mesh.positions);
         gpu.write(&self.positions, &mesh.positions);
         gpu.write(&self.normals, &mesh.normals);
     }
@@ -91,6 +139,8 @@ impl CasterRange {
 pub(crate) struct ToyMesh {
     indices: Buffer,
     shadow_indices: Buffer,
+    /// The same on the processor.
+    shadow_corners: Vec<u32>,
     /// Within them, ever coarser; at least the first, which is the toy's own shape.
     casters: Vec<CasterRange>,
     /// Whether it is made of closed pieces alone.
@@ -106,10 +156,23 @@ pub(crate) struct ToyMesh {
 }
 
 impl ToyMesh {
-    /// `simplified` are shapes that may cast shadows in place of the toy's.
-    pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh, simplified: &[Caster]) -> Self {
+    /// `simplified` are shapes that may cast shadows in place of the toy's; with `lists` what faces away is left out.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        toy: &Toy,
+        physical: &PosedMesh,
+        (simplified, lists): (&[Caster], bool),
+    ) -> Self {
         let materials = Materials::new(gpu, toy);
         let (casters, shadow_indices) = casters(toy, simplified);
+        let shape = toy.shadow_indices();
+        // Only of closed pieces is anything left out; the toy's own shape has the most triangles.
+        let n_lists = if lists && shape.is_closed() {
+            1 + MAX_LIGHTS
+        } else {
+            0
+        };
+        let lists = std::iter::repeat_n(shape.indices.len(), n_lists);
         Self {
             indices: gpu.buffer(
                 "indices",
@@ -121,8 +184,9 @@ impl ToyMesh {
                 bytemuck::cast_slice(&shadow_indices),
                 BufferUsages::INDEX,
             ),
+            shadow_corners: shadow_indices,
             casters,
-            is_closed: toy.shadow_indices().is_closed(),
+            is_closed: shape.is_closed(),
             uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
             colors: gpu.buffer(
                 "colors",
@@ -131,8 +195,8 @@ impl ToyMesh {
             ),
             runs: runs(toy, &materials),
             materials,
-            physical: PoseBuffers::new(gpu, physical),
-            shown: PoseBuffers::new(gpu, physical),
+            physical: PoseBuffers::new(gpu, physical, lists.clone()),
+            shown: PoseBuffers::new(gpu, physical, lists),
         }
     }
 
@@ -145,26 +209,53 @@ impl ToyMesh {
         self.materials.bind(recorder, pipeline)
     }
 
-    /// Whether triangles that face away from points, homogeneous and in anchor space, hide nothing from them that others do
-    /// not.
-    pub(crate) fn is_culled(&self, pose: &PoseBuffers, mut points: impl Iterator<Item = DVec4>) -> bool {
-        self.is_closed && !points.any(|point| pose.around.holds(point))
+    /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of a toy of closed pieces, and from outside,
+    /// what faces away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs.
+    pub(crate) fn corners<'a>(
+        &'a self,
+        gpu: &Gpu,
+        (pose, side): (&'a PoseBuffers, Option<Side>),
+        (points, detail): (&[Vec4], Detail),
+    ) -> Corners<'a> {
+        let indices = self.caster(detail);
+        let is_inside = points.iter().any(|point| pose.around.holds(point.as_dvec4()));
+        let is_culled = self.is_closed && !is_inside;
+        let viewers = Viewers::around(points).filter(|_| is_culled);
+        let listed = viewers.zip(side.and_then(|side| pose.facing.get(side.index())));
+        let Some((viewers, list)) = listed else {
+            return Corners {
+                is_culled,
+                ..self.shape(detail)
+            };
+        };
+        let whole = &self.shadow_corners[indices.start as usize..indices.end as usize];
+        let facing = viewers.facing(&pose.points, whole);
+        gpu.write(list, &facing);
+        Corners {
+            buffer: list,
+            indices: 0..n(&facing),
+            is_culled,
+        }
+    }
+
+    /// Corners of a whole shape.
+    pub(crate) fn shape(&self, detail: Detail) -> Corners<'_> {
+        Corners {
+            buffer: &self.shadow_indices,
+            indices: self.caster(detail),
+            is_culled: false,
+        }
     }
 
     /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
     pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
-        self.bind_positions(render, positions);
-        self.draw_caster(render, instances, Detail::Own);
-    }
-
-    /// Binds what [`ToyMesh::draw_caster`] draws; positions are in slot 0.
-    pub(crate) fn bind_positions(&self, render: &mut Render<'_>, positions: &Buffer) {
         render.set_vertices(0, positions);
         render.set_indices(&self.shadow_indices);
+        render.draw_indexed(self.caster(Detail::Own), instances);
     }
 
-    /// Draws each triangle of a shape once for each instance.
-    pub(crate) fn draw_caster(&self, render: &mut Render<'_>, instances: Range<u32>, detail: Detail) {
+    /// Corners of the shape of a detail, within all.
+    fn caster(&self, detail: Detail) -> Range<u32> {
         let mut casters = self.casters.iter();
         let caster = match detail {
             Detail::Own => casters.next(),
@@ -173,9 +264,7 @@ impl ToyMesh {
                 .find(|caster| caster.n_triangles() <= n)
                 .or(self.casters.last()),
         };
-        if let Some(caster) = caster {
-            render.draw_indexed(caster.indices.clone(), instances);
-        }
+        caster.map_or(0..0, |caster| caster.indices.clone())
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
@@ -203,7 +292,6 @@ impl ToyMesh {
 /// The toy's own shape and those near it, one after the other, and their corners.
 fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
     let mut all = toy.shadow_indices().indices.clone();
-    let n = |indices: &[u32]| u32::try_from(indices.len()).unwrap_or(u32::MAX);
     let mut ranges = vec![CasterRange {
         error: 0.0,
         indices: 0..n(&all),
@@ -217,6 +305,16 @@ fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
         });
     }
     (ranges, all)
+}
+
+/// Room for corners.
+fn list(gpu: &Gpu, n_corners: usize) -> Buffer {
+    let none = vec![0_u32; n_corners];
+    gpu.buffer("facing indices", bytemuck::cast_slice(&none), BufferUsages::INDEX)
+}
+
+fn n(indices: &[u32]) -> u32 {
+    u32::try_from(indices.len()).unwrap_or(u32::MAX)
 }
 
 /// The draws of a toy, those with the same material as one where they follow one another.

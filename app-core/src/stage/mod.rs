@@ -138,10 +138,17 @@ impl Stage {
             .toy
             .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
         let size_px = UVec2::new(scene.width_px, scene.height_px);
+        // The baseline draws whole shapes, as published.
+        let is_model = matches!(preset.settings(), Settings::Model(_));
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
-            toy: ToyMesh::new(gpu, &scene.toy, &posed, simplified(&scene.toy, preset)),
+            toy: ToyMesh::new(
+                gpu,
+                &scene.toy,
+                &posed,
+                (simplified(&scene.toy, preset), is_model),
+            ),
             posed,
             camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),

@@ -2,6 +2,7 @@
 
 mod anchored;
 mod conditioning;
+mod facing;
 mod light_points;
 mod outliers;
 mod outline;

@@ -12,7 +12,7 @@ use crate::model::region::Region;
 use crate::passes::counting::{CountingTargets, counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::toy_mesh::{Detail, Side, ToyMesh};
 
 /// Counting of a pixel's covered positions.
 pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
@@ -67,13 +67,15 @@ impl Pass {
     /// Draws the shown toy once for each position in a pixel.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
-        let camera = inputs.camera_in_anchor.as_dvec3().extend(1.0);
-        let is_culled = toy.is_culled(pose, std::iter::once(camera));
-        let draw = &self.draws[usize::from(is_culled)];
+        let camera = inputs.camera_in_anchor.extend(1.0);
+        let seen = (pose, Some(Side::Camera));
+        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own));
+        let draw = &self.draws[usize::from(corners.is_culled)];
         let group = recorder.bind(draw, GROUP_SCENE, &[(&inputs.region.globals).into()]);
         let mut render = targets.covered.render(recorder, SHADER.name);
         render.part_of(inputs.region.plan.part_drawn());
         render.begin(draw, &[group]);
-        toy.draw_positions(&mut render, &pose.positions, 0..N_POSITIONS);
+        corners.bind(&mut render, pose);
+        corners.draw(&mut render, 0..N_POSITIONS);
     }
 }

@@ -13,7 +13,7 @@ use crate::model::lighting::occlusion::LightPointsBuffer;
 use crate::model::plan::{Casters, Plan};
 use crate::passes::counting::CountingTargets;
 use crate::passes::list::passes;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
 
 passes!(occlusion, visibility, self_shadow);
 
@@ -131,7 +131,8 @@ impl Lighting {
                 if let (Some(light), Some(counted)) =
                     (self.lights.get(index), self.occlusion.lights.get(index))
                 {
-                    self.count(recorder, passes, (posed, light, self.casters.light), counted);
+                    let light = (light, self.casters.light, Some(Side::Light(index)));
+                    self.count(recorder, passes, (posed, light), counted);
                 }
             }
             Step::Lights => {
@@ -146,8 +147,8 @@ impl Lighting {
             }
             Step::Ambient => {
                 let counted = &self.occlusion.ambient;
-                let light = (posed, &self.ambient, self.casters.ambient);
-                self.count(recorder, passes, light, counted);
+                let light = (&self.ambient, self.casters.ambient, None);
+                self.count(recorder, passes, (posed, light), counted);
                 let counted = [(&counted.count.view, self.ambient.n_points)];
                 let inputs = visibility::Inputs { counted: &counted };
                 passes
@@ -162,7 +163,7 @@ impl Lighting {
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
-        (posed, light, caster): (Posed<'_>, &LightPointsBuffer, Detail),
+        (posed, (light, caster, side)): (Posed<'_>, (&LightPointsBuffer, Detail, Option<Side>)),
         counted: &CountingTargets,
     ) {
         let Posed { globals, toy, pose } = posed;
@@ -173,6 +174,7 @@ impl Lighting {
             pose,
             light,
             caster,
+            side,
         };
         passes.occlusion.encode(recorder, &inputs, counted);
     }

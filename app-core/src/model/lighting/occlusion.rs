@@ -14,7 +14,7 @@ use crate::model::plan::Plan;
 use crate::passes::counting::{CountingTargets, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
 use crate::scene::MAX_RECEIVERS;
 
 /// Increment per hidden light point.
@@ -128,6 +128,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) light: &'a LightPointsBuffer,
     /// What casts the shadow.
     pub(crate) caster: Detail,
+    /// Which light it is; none of what comes from all sides.
+    pub(crate) side: Option<Side>,
 }
 
 impl Pass {
@@ -156,15 +158,17 @@ impl Pass {
 
     /// Draws the caster from the light's points on each receiver, and counts the hidden points in the target.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
-        let is_culled = inputs.is_culled();
-        let cover = &self.cover[usize::from(is_culled)];
+        let of_pose = (inputs.pose, inputs.side);
+        let points = (inputs.light.in_anchor(), inputs.caster);
+        let corners = inputs.toy.corners(recorder.gpu, of_pose, points);
+        let cover = &self.cover[usize::from(corners.is_culled)];
         let groups = [
             recorder.bind(cover, GROUP_SCENE, &[inputs.globals.into()]),
             recorder.bind(cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
         ];
         let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
         let mut render = targets.render(recorder, SHADER.name);
-        inputs.toy.bind_positions(&mut render, &inputs.pose.positions);
+        corners.bind(&mut render, inputs.pose);
         for receiver in 0..n_receivers {
             if n_receivers > 1 {
                 render.begin(&self.route, &groups);
@@ -172,15 +176,7 @@ impl Pass {
             }
             render.begin(cover, &groups);
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            inputs.toy.draw_caster(&mut render, instances, inputs.caster);
+            corners.draw(&mut render, instances);
         }
-    }
-}
-
-impl Inputs<'_> {
-    /// Whether triangles that face away from the light are left out.
-    fn is_culled(&self) -> bool {
-        let points = self.light.in_anchor().iter().map(|point| point.as_dvec4());
-        self.toy.is_culled(self.pose, points)
     }
 }

@@ -139,7 +139,8 @@ impl Pass {
         let mut render = recorder.render(SHADER.name, &[], Some(&targets.depth.view), StoreOp::Store);
         render.begin(&self.draw, &[group]);
         let n_tiles = tiles.n_tiles.iter().sum();
-        inputs.toy.bind_positions(&mut render, &inputs.pose.positions);
-        inputs.toy.draw_caster(&mut render, 0..n_tiles, inputs.caster);
+        let corners = inputs.toy.shape(inputs.caster);
+        corners.bind(&mut render, inputs.pose);
+        corners.draw(&mut render, 0..n_tiles);
     }
 }
