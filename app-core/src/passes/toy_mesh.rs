@@ -127,6 +127,8 @@ struct CasterRange {
     /// How far it is from the toy's, in units of its file.
     error: f64,
     indices: Range<u32>,
+    /// Of the corners, those of closed pieces, which come first.
+    n_closed: usize,
 }
 
 impl CasterRange {
@@ -167,7 +169,7 @@ impl ToyMesh {
         let (casters, shadow_indices) = casters(toy, simplified);
         let shape = toy.shadow_indices();
         // Only of closed pieces is anything left out; the toy's own shape has the most triangles.
-        let n_lists = if lists && shape.is_closed() {
+        let n_lists = if lists && shape.n_closed > 0 {
             1 + MAX_LIGHTS
         } else {
             0
@@ -209,18 +211,17 @@ impl ToyMesh {
         self.materials.bind(recorder, pipeline)
     }
 
-    /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of a toy of closed pieces, and from outside,
-    /// what faces away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs.
+    /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of closed pieces, and from outside, what faces
+    /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs.
     pub(crate) fn corners<'a>(
         &'a self,
         gpu: &Gpu,
         (pose, side): (&'a PoseBuffers, Option<Side>),
         (points, detail): (&[Vec4], Detail),
     ) -> Corners<'a> {
-        let indices = self.caster(detail);
         let is_inside = points.iter().any(|point| pose.around.holds(point.as_dvec4()));
         let is_culled = self.is_closed && !is_inside;
-        let viewers = Viewers::around(points).filter(|_| is_culled);
+        let viewers = Viewers::around(points).filter(|_| !is_inside);
         let listed = viewers.zip(side.and_then(|side| pose.facing.get(side.index())));
         let Some((viewers, list)) = listed else {
             return Corners {
@@ -228,8 +229,9 @@ impl ToyMesh {
                 ..self.shape(detail)
             };
         };
-        let whole = &self.shadow_corners[indices.start as usize..indices.end as usize];
-        let facing = viewers.facing(&pose.points, whole);
+        let (closed, open) = self.split_caster(detail);
+        let mut facing = viewers.facing(&pose.points, closed);
+        facing.extend(open);
         gpu.write(list, &facing);
         Corners {
             buffer: list,
@@ -242,7 +244,7 @@ impl ToyMesh {
     pub(crate) fn shape(&self, detail: Detail) -> Corners<'_> {
         Corners {
             buffer: &self.shadow_indices,
-            indices: self.caster(detail),
+            indices: self.corners_of(detail),
             is_culled: false,
         }
     }
@@ -251,20 +253,34 @@ impl ToyMesh {
     pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
         render.set_vertices(0, positions);
         render.set_indices(&self.shadow_indices);
-        render.draw_indexed(self.caster(Detail::Own), instances);
+        render.draw_indexed(self.corners_of(Detail::Own), instances);
+    }
+
+    /// Corners of a shape: those of closed pieces, and those of open ones.
+    fn split_caster(&self, detail: Detail) -> (&[u32], &[u32]) {
+        let corners = self.caster(detail).and_then(|caster| {
+            let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
+            self.shadow_corners
+                .get(start..end)?
+                .split_at_checked(caster.n_closed)
+        });
+        corners.unwrap_or_default()
     }
 
     /// Corners of the shape of a detail, within all.
-    fn caster(&self, detail: Detail) -> Range<u32> {
+    fn corners_of(&self, detail: Detail) -> Range<u32> {
+        self.caster(detail).map_or(0..0, |caster| caster.indices.clone())
+    }
+
+    fn caster(&self, detail: Detail) -> Option<&CasterRange> {
         let mut casters = self.casters.iter();
-        let caster = match detail {
+        match detail {
             Detail::Own => casters.next(),
             Detail::Within(error) => casters.take_while(|caster| caster.error <= error).last(),
             Detail::AtMost(n) => casters
                 .find(|caster| caster.n_triangles() <= n)
                 .or(self.casters.last()),
-        };
-        caster.map_or(0..0, |caster| caster.indices.clone())
+        }
     }
 
     /// Draws every part with its material; `streams` are the poses, from slot 2 on.
@@ -295,6 +311,7 @@ fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
     let mut ranges = vec![CasterRange {
         error: 0.0,
         indices: 0..n(&all),
+        n_closed: toy.shadow_indices().n_closed,
     }];
     for caster in simplified {
         let first = n(&all);
@@ -302,6 +319,7 @@ fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
         ranges.push(CasterRange {
             error: caster.error,
             indices: first..n(&all),
+            n_closed: caster.n_closed,
         });
     }
     (ranges, all)

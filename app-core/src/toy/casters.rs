@@ -33,6 +33,8 @@ pub struct Caster {
     pub error: f64,
     /// Corners of triangles, as those of [`super::ShadowIndices`].
     pub indices: Vec<u32>,
+    /// How many of the corners are of closed pieces, which come first.
+    pub n_closed: usize,
 }
 
 impl Toy {
@@ -43,7 +45,8 @@ impl Toy {
 }
 
 fn casters(toy: &Toy) -> Vec<Caster> {
-    let triangles = toy.shadow_indices().indices.as_chunks::<3>().0;
+    let shape = toy.shadow_indices();
+    let triangles = shape.indices.as_chunks::<3>().0;
     let n_poses = MOST_POSED_TRIANGLES / triangles.len().max(1);
     let poses = poses(toy, n_poses.clamp(*N_POSES.start(), *N_POSES.end()));
     let Some(radius) = poses.first().map(|places| radius(triangles, places)) else {
@@ -59,7 +62,7 @@ fn casters(toy: &Toy) -> Vec<Caster> {
         // All collapses of one error are made together.
         let is_whole = made.get(index + 1).is_none_or(|next| next.error > collapse.error);
         if is_step && is_whole {
-            levels.push(caster(triangles, &mut moved, collapse));
+            levels.push(caster(triangles, shape.n_closed, &mut moved, collapse));
             n_before = collapse.n_left;
         }
     }
@@ -76,7 +79,7 @@ fn fewer(n_triangles: usize) -> usize {
     (STEP * n_triangles as f64) as usize
 }
 
-fn caster(triangles: &[[u32; 3]], moved: &mut [u32], collapse: &Collapse) -> Caster {
+fn caster(triangles: &[[u32; 3]], n_closed: usize, moved: &mut [u32], collapse: &Collapse) -> Caster {
     let mut place_of = |corner: u32| {
         let mut at = corner;
         while moved[at as usize] != at {
@@ -86,11 +89,17 @@ fn caster(triangles: &[[u32; 3]], moved: &mut [u32], collapse: &Collapse) -> Cas
         }
         at
     };
-    let corners = triangles.iter().map(|corners| corners.map(&mut place_of));
-    let left = corners.filter(|[a, b, c]| a != b && b != c && c != a);
+    let mut left_of = |triangles: &[[u32; 3]]| -> Vec<u32> {
+        let corners = triangles.iter().map(|corners| corners.map(&mut place_of));
+        let left = corners.filter(|[a, b, c]| a != b && b != c && c != a);
+        left.flatten().collect()
+    };
+    let (closed, open) = triangles.split_at(n_closed / 3);
+    let (closed, open) = (left_of(closed), left_of(open));
     Caster {
         error: collapse.error,
-        indices: left.flatten().collect(),
+        n_closed: closed.len(),
+        indices: [closed, open].concat(),
     }
 }
 

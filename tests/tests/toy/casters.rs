@@ -20,6 +20,11 @@ const N_PLACES: usize = 600;
 
 /// A torus.
 fn torus() -> Toy {
+    torus_and(0)
+}
+
+/// A torus over so many squares that lie side by side, of the torus' radius in all.
+fn torus_and(n_squares: u32) -> Toy {
     let place = |[around, along]: [u32; 2]| {
         let [turn, tilt] =
             [(around, N[0]), (along, N[1])].map(|(step, n)| TAU * f64::from(step) / f64::from(n));
@@ -33,9 +38,23 @@ fn torus() -> Toy {
         let [a, b, c, d] = [[i, j], [i, j + 1], [i + 1, j], [i + 1, j + 1]].map(at);
         [a, b, c, b, d, c]
     });
+    let mut positions: Vec<f32> = positions.collect();
+    let mut corners: Vec<u32> = corners.collect();
+    let first = N[0] * N[1];
+    for step in 0..n_squares + u32::from(n_squares > 0) {
+        let x = RADII[0] * f64::from(step) / f64::from(n_squares);
+        positions.extend(
+            [0.0, RADII[0]]
+                .map(|z| DVec3::new(x, -0.05, z).as_vec3().to_array())
+                .as_flattened(),
+        );
+    }
+    corners.extend(
+        (0..n_squares).flat_map(|square| [0, 1, 2, 2, 1, 3].map(|corner| first + 2 * square + corner)),
+    );
     let mut glb = Glb::new();
-    let position = glb.floats("VEC3", &positions.collect::<Vec<_>>());
-    let indices = glb.u32s(&corners.collect::<Vec<_>>());
+    let position = glb.floats("VEC3", &positions);
+    let indices = glb.u32s(&corners);
     let mesh = glb.push(
         "meshes",
         json!({ "primitives": [{ "attributes": { "POSITION": position }, "indices": indices }] }),
@@ -100,6 +119,7 @@ fn a_closed_shape_stays_closed_and_as_near_as_it_says() {
         assert!(caster.error >= error && caster.indices.len() < n_corners);
         (error, n_corners) = (caster.error, caster.indices.len());
         assert_eq!(unmatched(&caster.indices), 0, "{n_corners} corners");
+        assert_eq!(caster.n_closed, n_corners);
         assert!(caster.indices.iter().all(|corner| own.contains(corner)));
         let far = farthest(&caster.indices, own, &places).max(farthest(own, &caster.indices, &places));
         assert!(
@@ -113,6 +133,19 @@ fn a_closed_shape_stays_closed_and_as_near_as_it_says() {
         "{}",
         millimetre.indices.len()
     );
+}
+
+#[test]
+fn of_closed_and_open_pieces_it_is_told_which_is_which() {
+    let toy = torus_and(40);
+    let own = toy.shadow_indices();
+    assert_eq!(own.indices.len() - own.n_closed, 6 * 40);
+    assert!(toy.casters().len() > 3);
+    for caster in toy.casters() {
+        let (closed, open) = caster.indices.split_at(caster.n_closed);
+        assert_eq!(unmatched(closed), 0);
+        assert!(!open.is_empty() && unmatched(open) > 0);
+    }
 }
 
 /// Also at moments that no shape was made for.
