@@ -291,8 +291,9 @@ impl Live {
     /// Whether it is one of the moving toy.
     fn make_picture(&mut self) -> Result<bool, CoreError> {
         match self.app.show() {
-            Show::Nothing => {}
+            Show::Nothing => self.profiler.interrupt(),
             Show::Camera(frame) => {
+                self.profiler.interrupt();
                 self.display = frame.display;
                 self.core.show_camera(&frame.image)?;
             }

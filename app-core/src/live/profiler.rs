@@ -66,12 +66,18 @@ impl Profiler {
         });
     }
 
-    /// Pictures of the camera since the one that was shown last, which nobody will see. One counts for itself where the camera has
-    /// begun to count anew.
+    /// Something else is shown: the next frame has none before it.
+    pub(super) fn interrupt(&mut self) {
+        self.before_ms = None;
+        self.shown_id = None;
+    }
+
+    /// Pictures of the camera since the one that was shown last, which nobody will see; none where there is no last one, or the
+    /// camera has begun to count anew.
     fn drop_before(&mut self, shown_id: u64) -> u64 {
         let before = self.shown_id.replace(shown_id);
         let step = before.and_then(|before| shown_id.checked_sub(before));
-        let n_dropped = step.unwrap_or(1).saturating_sub(1);
+        let n_dropped = step.map_or(0, |step| step.saturating_sub(1));
         self.n_dropped += n_dropped;
         n_dropped
     }
@@ -152,7 +158,7 @@ impl Profiler {
         let after = |name: &str, ms: Option<f64>| ms.map_or(String::new(), |ms| format!("{name} {ms:.1} ms"));
         let (device, camera) = (
             after(", device", latest.gpu_ms),
-            after("camera to screen", latest.camera_to_present_ms),
+            after("camera to present", latest.camera_to_present_ms),
         );
         let dropped = match self.n_dropped {
             0 => String::new(),

@@ -64,14 +64,19 @@ fn playing() -> (Live, Arc<AtomicU64>) {
     ] {
         tell(&mut live, event);
     }
-    deliver(&mut live, 1, None);
-    tell(&mut live, ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
-    tell(&mut live, ShellEvent::Wish(Wish::SkipPlate));
-    tell(&mut live, ShellEvent::Wish(Wish::Placed));
-    deliver(&mut live, 2, None);
-    deliver(&mut live, 3, None);
-    assert_eq!(live.app().step(), Step::Play);
+    place(&mut live, 1);
     (live, now_ms)
+}
+
+/// Has the toy found by three frames, of which the first has that number.
+fn place(live: &mut Live, id: u64) {
+    deliver(live, id, None);
+    tell(live, ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
+    tell(live, ShellEvent::Wish(Wish::SkipPlate));
+    tell(live, ShellEvent::Wish(Wish::Placed));
+    deliver(live, id + 1, None);
+    deliver(live, id + 2, None);
+    assert_eq!(live.app().step(), Step::Play);
 }
 
 #[test]
@@ -91,4 +96,13 @@ fn a_frame_tells_how_old_its_picture_is_and_how_many_nobody_saw() {
     deliver(&mut live, 5, Some(40.0));
     deliver(&mut live, 7, Some(30.0));
     assert_eq!(draw(&mut live, 121), (Some(31.0), Some(2)), "neither 5 nor 6");
+    tell(&mut live, ShellEvent::Wish(Wish::StartOver));
+    deliver(&mut live, 8, Some(40.0));
+    live.screenshot(&SCREEN, 0.0).unwrap();
+    place(&mut live, 40);
+    assert_eq!(
+        draw(&mut live, 130).1,
+        Some(0),
+        "while the toy did not move nothing was kept from it"
+    );
 }
