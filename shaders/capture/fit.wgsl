@@ -47,20 +47,20 @@ const ESTIMATED_INTENSITIES: f32 = 1e-3;
 var<workgroup> partial: array<f32, N_PARTIAL>;
 var<workgroup> strided: array<f32, N_ALL_STRIDED>;
 // Of the invocation's pixels.
-var<private> sums: array<f32, N_SUMS>;
+var<private> sums: array<vec3f, N_SUMS>;
 
+// Of each channel.
 struct Equation {
-  columns: array<f32, N_COLUMNS>,
-  value: f32,
-  weight: f32,
+  columns: array<vec3f, N_COLUMNS>,
+  value: vec3f,
+  weight: vec3f,
   // 1 where frame and plate may both be clipped.
-  clipped: f32,
+  clipped: vec3f,
 }
 
-fn cauchy_weight(residual: f32, scale: f32) -> f32 {
-  if scale == 0.0 { return 0.0; }
+fn cauchy_weight(residual: vec3f, scale: vec3f) -> vec3f {
   let r = residual / scale;
-  return 1.0 / (1.0 + r * r);
+  return select(1.0 / (1.0 + r * r), vec3f(0.0), scale == vec3f(0.0));
 }
 
 fn frame_at(texel: vec2u) -> vec3f {
@@ -99,101 +99,133 @@ fn observe(texel: vec2u) -> Observation {
   return seen;
 }
 
-fn receiver_equation(seen: Observation, channel: u32) -> Equation {
+fn receiver_equation(seen: Observation) -> Equation {
   var eq: Equation;
-  if seen.weight[channel] == 0.0 || receiver_of(seen.point) != step.receiver { return eq; }
-  let b = seen.plate[channel];
-  let total = plate_falloff(seen.point)[channel];
-  eq.value = seen.frame[channel] / fit.gain[channel];
+  if all(seen.weight == vec3f(0.0)) || receiver_of(seen.point) != step.receiver { return eq; }
+  let b = seen.plate;
+  let total = plate_falloff(seen.point);
+  eq.value = seen.frame / fit.gain.rgb;
   eq.columns[0] = b * seen.ambient;
   eq.columns[1] = b * bounced(seen.ambient);
-  var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce[channel] * eq.columns[1];
-  for (var i = 0u; i < globals.n_lights; i++) {
+  var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce.rgb * eq.columns[1];
+  // Not up to the number of lights, so that no column is looked for by its number.
+  for (var i = 0u; i < MAX_LIGHTS; i++) {
+    if i >= globals.n_lights { continue; }
     // As bright as in shadow, as far as such a pixel tells; where a shadow does show, it is an outlier.
-    let lit = (1.0 - seen.clipped[channel]) * seen.visibility[i];
-    let visible = fit.intensity[i][channel] * lit - seen.ambient;
+    let lit = (1.0 - seen.clipped) * seen.visibility[i];
+    let visible = fit.intensity[i].rgb * lit - seen.ambient;
     eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
-    predicted += fit.receivers[step.receiver].direct_fraction[i][channel] * eq.columns[2u + i];
+    predicted += fit.receivers[step.receiver].direct_fraction[i].rgb * eq.columns[2u + i];
   }
-  eq.weight = seen.weight[channel];
-  eq.clipped = seen.clipped[channel];
+  eq.weight = seen.weight;
+  eq.clipped = seen.clipped;
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }
   return eq;
 }
 
-fn intensity_equation(seen: Observation, channel: u32) -> Equation {
+fn intensity_equation(seen: Observation) -> Equation {
   var eq: Equation;
-  if seen.weight[channel] == 0.0 { return eq; }
-  let b = seen.plate[channel];
-  eq.value = seen.frame[channel];
-  eq.columns[0] = b * ambient_model(seen.point, seen.ambient)[channel];
+  if all(seen.weight == vec3f(0.0)) { return eq; }
+  let b = seen.plate;
+  let total = plate_falloff(seen.point);
+  eq.value = seen.frame;
+  eq.columns[0] = b * ambient_part(seen.point, seen.ambient, total);
   var predicted = eq.columns[0];
-  for (var i = 0u; i < globals.n_lights; i++) {
-    let column = b * light_fraction(i, seen.point)[channel] * seen.visibility[i];
-    predicted += fit.intensity[i][channel] * column;
+  for (var i = 0u; i < MAX_LIGHTS; i++) {
+    if i >= globals.n_lights { continue; }
+    let column = b * light_part(i, seen.point, total) * seen.visibility[i];
+    predicted += fit.intensity[i].rgb * column;
     if !seen.is_estimated { eq.columns[2u + i] = column; }
   }
   // An estimated plate constrains the gain alone.
   if seen.is_estimated { eq.columns[0] = predicted; }
-  let gain = fit.gain[channel];
-  eq.weight = seen.weight[channel] * select(1.0, ESTIMATED_INTENSITIES, seen.is_estimated);
+  let gain = fit.gain.rgb;
+  eq.weight = seen.weight * select(1.0, ESTIMATED_INTENSITIES, seen.is_estimated);
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - gain * predicted, CAUCHY_SCALE * gain * b); }
   return eq;
 }
 
-fn toy_equation(texel: vec2u, channel: u32) -> Equation {
+fn toy_equation(texel: vec2u) -> Equation {
   var eq: Equation;
   if marks_at(vec2i(texel)).g == 0.0 { return eq; }
   let in_box = box_texel(vec2i(texel));
   let base = textureLoad(gbuffer_base, in_box, 0).rgb;
   let f = frame_at(texel);
   let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
-  eq.value = f[channel] / fit.gain[channel];
+  eq.value = f / fit.gain.rgb;
   let received = textureLoad(gbuffer_received, in_box, 0);
   let part = hemispheres(normal);
-  eq.columns[0] = base[channel] * part.x;
-  eq.columns[1] = base[channel] * part.y;
-  for (var i = 0u; i < globals.n_lights; i++) {
-    eq.columns[2u + i] = base[channel] * fit.intensity[i][channel] * received[i];
+  eq.columns[0] = base * part.x;
+  eq.columns[1] = base * part.y;
+  for (var i = 0u; i < MAX_LIGHTS; i++) {
+    if i < globals.n_lights { eq.columns[2u + i] = base * fit.intensity[i].rgb * received[i]; }
   }
-  let predicted = base[channel] * toy_radiance_over_base(normal, received)[channel];
+  let predicted = base * toy_radiance_over_base(normal, received);
   // A clipped toy is at least as bright, where nothing else tells how it is lit.
-  eq.weight = evidence_of(f, f)[channel];
-  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base[channel]); }
+  eq.weight = evidence_of(f, f);
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base); }
   return eq;
 }
 
-// Adds a pixel's equation to the invocation's sums.
+// Adds a pixel's equation to the invocation's sums. Without loops, since an index that is not a constant makes processors keep
+// all sums in memory.
 fn add(eq: Equation) {
-  if eq.weight == 0.0 { return; }
-  var k = 0u;
-  for (var i = 0u; i < N_COLUMNS; i++) {
-    for (var j = i; j < N_COLUMNS; j++) {
-      sums[k] += eq.weight * eq.columns[i] * eq.columns[j];
-      k++;
-    }
-    sums[21u + i] += eq.weight * eq.columns[i] * eq.value;
-  }
-  sums[CLIPPED_SUM] += eq.clipped * eq.weight * eq.columns[0] * eq.columns[0];
+  if all(eq.weight == vec3f(0.0)) { return; }
+  let w0 = eq.weight * eq.columns[0];
+  let w1 = eq.weight * eq.columns[1];
+  let w2 = eq.weight * eq.columns[2];
+  let w3 = eq.weight * eq.columns[3];
+  let w4 = eq.weight * eq.columns[4];
+  let w5 = eq.weight * eq.columns[5];
+  sums[0] += w0 * eq.columns[0];
+  sums[1] += w0 * eq.columns[1];
+  sums[2] += w0 * eq.columns[2];
+  sums[3] += w0 * eq.columns[3];
+  sums[4] += w0 * eq.columns[4];
+  sums[5] += w0 * eq.columns[5];
+  sums[6] += w1 * eq.columns[1];
+  sums[7] += w1 * eq.columns[2];
+  sums[8] += w1 * eq.columns[3];
+  sums[9] += w1 * eq.columns[4];
+  sums[10] += w1 * eq.columns[5];
+  sums[11] += w2 * eq.columns[2];
+  sums[12] += w2 * eq.columns[3];
+  sums[13] += w2 * eq.columns[4];
+  sums[14] += w2 * eq.columns[5];
+  sums[15] += w3 * eq.columns[3];
+  sums[16] += w3 * eq.columns[4];
+  sums[17] += w3 * eq.columns[5];
+  sums[18] += w4 * eq.columns[4];
+  sums[19] += w4 * eq.columns[5];
+  sums[20] += w5 * eq.columns[5];
+  sums[21] += w0 * eq.value;
+  sums[22] += w1 * eq.value;
+  sums[23] += w2 * eq.value;
+  sums[24] += w3 * eq.value;
+  sums[25] += w4 * eq.value;
+  sums[26] += w5 * eq.value;
+  sums[CLIPPED_SUM] += eq.clipped * w0 * eq.columns[0];
 }
 
-// Sums of a workgroup into its row: strided ones, then all of those. Barriers cost more than additions.
-fn reduce(group: vec3u, lane: u32) {
-  let row = (group.x * 3u + group.z) * N_SUMS;
+// Sums of a workgroup into its rows, one a channel: strided ones, then all of those. Barriers cost more than additions.
+fn reduce(group: u32, lane: u32) {
   let first = lane / N_STRIDED * WORKGROUP + lane % N_STRIDED;
-  for (var part = 0u; part < N_SUMS; part += N_PART) {
-    for (var k = 0u; k < N_PART; k++) { partial[k * WORKGROUP + lane] = sums[part + k]; }
-    workgroupBarrier();
-    if lane < N_PART * N_STRIDED {
-      var sum = 0.0;
-      for (var j = 0u; j < WORKGROUP; j += N_STRIDED) { sum += partial[first + j]; }
-      strided[lane] = sum;
-    }
-    workgroupBarrier();
-    if lane < N_PART {
-      var sum = 0.0;
-      for (var j = 0u; j < N_STRIDED; j++) { sum += strided[lane * N_STRIDED + j]; }
-      rows[row + part + lane] = sum;
+  for (var channel = 0u; channel < 3u; channel++) {
+    let row = (group * 3u + channel) * N_SUMS;
+    for (var part = 0u; part < N_SUMS; part += N_PART) {
+      for (var k = 0u; k < N_PART; k++) { partial[k * WORKGROUP + lane] = sums[part + k][channel]; }
+      workgroupBarrier();
+      if lane < N_PART * N_STRIDED {
+        var sum = 0.0;
+        for (var j = 0u; j < WORKGROUP; j += N_STRIDED) { sum += partial[first + j]; }
+        strided[lane] = sum;
+      }
+      workgroupBarrier();
+      if lane < N_PART {
+        var sum = 0.0;
+        for (var j = 0u; j < N_STRIDED; j++) { sum += strided[lane * N_STRIDED + j]; }
+        rows[row + part + lane] = sum;
+      }
     }
   }
 }
@@ -216,23 +248,28 @@ fn sampled_texel(index: u32) -> vec2u {
 @compute @workgroup_size(WORKGROUP)
 fn cs_receiver(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
-    add(receiver_equation(observe(sampled_texel(index)), group.z));
+    add(receiver_equation(observe(sampled_texel(index))));
   }
-  reduce(group, lane);
+  reduce(group.x, lane);
 }
 
 @compute @workgroup_size(WORKGROUP)
 fn cs_toy(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
-    add(toy_equation(sampled_texel(index), group.z));
+  // Of the sampled pixels those in the toy box.
+  let low = vec2u(globals.toy_box_origin_px);
+  let first = (low + step.stride_px - 1u) / step.stride_px;
+  let end = (low + vec2u(globals.toy_box_size_px) + step.stride_px - 1u) / step.stride_px;
+  let size = min(end, sampled_size()) - min(first, sampled_size());
+  for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
+    add(toy_equation((first + vec2u(index % size.x, index / size.x)) * step.stride_px));
   }
-  reduce(group, lane);
+  reduce(group.x, lane);
 }
 
 @compute @workgroup_size(WORKGROUP)
 fn cs_intensities(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
-    add(intensity_equation(observe(sampled_texel(index)), group.z));
+    add(intensity_equation(observe(sampled_texel(index))));
   }
-  reduce(group, lane);
+  reduce(group.x, lane);
 }

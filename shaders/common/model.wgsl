@@ -47,34 +47,30 @@ fn light_fraction(i: u32, point: ReceiverPoint) -> vec3f {
   return light_part(i, point, plate_falloff(point));
 }
 
-// The model's coefficients at a point, the same for every pose: of A, of A (1 - A), and of V for each light.
-// An array, since drivers of older Adreno keep structs in fragment shaders at 16 bits.
-alias ReceiverLight = array<vec3f, 6>; // 2 + MAX_LIGHTS
-
-fn receiver_light(point: ReceiverPoint) -> ReceiverLight {
+// The model of a receiver in two states of its light at once, such as before and after: in the columns. No array is indexed
+// by a light's number, since processors keep such arrays in memory.
+fn receiver_models(point: ReceiverPoint, ambient: vec2f, visibility_0: vec4f, visibility_1: vec4f) -> mat2x3f {
   let receiver = receiver_of(point);
   var total = vec3f(1.0);
-  var light: ReceiverLight;
-  light[0] = vec3f(1.0);
-  light[1] = fit.receivers[receiver].bounce.rgb;
+  var ambient_fraction = vec3f(1.0);
+  var lit = mat2x3f();
   for (var i = 0u; i < globals.n_lights; i++) {
     let fraction = fit.receivers[receiver].direct_fraction[i].rgb;
     let here = fraction * falloff(i, point);
     total += here - fraction;
-    light[0] -= fraction;
-    light[2u + i] = here * fit.intensity[i].rgb;
+    ambient_fraction -= fraction;
+    let shining = here * fit.intensity[i].rgb;
+    lit[0] += visibility_0[i] * shining;
+    lit[1] += visibility_1[i] * shining;
   }
-  light[0] /= total;
-  for (var i = 0u; i < globals.n_lights; i++) { light[2u + i] /= total; }
-  return light;
+  let bounce = fit.receivers[receiver].bounce.rgb;
+  return mat2x3f(
+    (ambient.x * ambient_fraction + lit[0]) / total + bounced(ambient.x) * bounce,
+    (ambient.y * ambient_fraction + lit[1]) / total + bounced(ambient.y) * bounce,
+  );
 }
 
 // `visibility` holds up to four lights, light 0 in x.
-fn model_in(light: ReceiverLight, ambient: f32, visibility: vec4f) -> vec3f {
-  return light[0] * ambient + light[1] * bounced(ambient)
-    + mat4x3f(light[2], light[3], light[4], light[5]) * visibility;
-}
-
 fn receiver_model(point: ReceiverPoint, ambient: f32, visibility: vec4f) -> vec3f {
-  return model_in(receiver_light(point), ambient, visibility);
+  return receiver_models(point, vec2f(ambient), visibility, visibility)[0];
 }

@@ -126,10 +126,10 @@ fn receiver(position: vec4f, evident: vec4f, change: ptr<function, vec4f>) -> ve
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
     return mix(lit, f, evident.r);
   }
-  let light = receiver_light(point);
+  let models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
-  let before = shown_model(b.rgb, clipped, model_in(light, a_before, v_before));
-  let after = shown_model(b.rgb, clipped, model_in(light, a_after, v_after));
+  let before = shown_model(b.rgb, clipped, models[0]);
+  let after = shown_model(b.rgb, clipped, models[1]);
   let most = largest(abs(after - before));
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));

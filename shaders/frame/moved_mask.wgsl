@@ -21,6 +21,7 @@ fn fs_moved(
   @location(0) shown_clip: vec4f,
   @location(1) physical_clip: vec4f,
 ) -> @location(0) vec4f {
-  if is_behind_receiver(at.xy + globals.toy_box_origin_px, at.w) { discard; }
+  // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px, at.w) { return vec4f(0.0); }
   return vec4f(moved(region_px(shown_clip), region_px(physical_clip)));
 }

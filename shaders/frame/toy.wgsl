@@ -174,7 +174,8 @@ fn fs_toy(
   let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { discard; }
+  // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
   let is_other = difference(vec2u(at.xy), is_moved, lit, physical_normal, physical_in_anchor);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(is_other));

@@ -22,9 +22,8 @@ struct PlateViews {
   // This camera in each receiver's space.
   camera_in_plane: array<vec4f, MAX_RECEIVERS>,
   n_plates: u32,
-  // 1: the first plate was taken from this very camera.
-  is_same_view: u32,
-  _pad: vec2u,
+  _pad_0: u32,
+  _pad_1: vec2u,
 }
 
 @group(1) @binding(0) var<uniform> views: PlateViews;
@@ -32,14 +31,22 @@ struct PlateViews {
 
 // Distance from a plate's border over which another takes over.
 const FEATHER_PX: f32 = 32.0;
-// Powers of the view angle's cosine, and of all that makes a plate better than another: high, since a mix of two is
-// blurred.
-const ANGLE_POWER: f32 = 4.0;
-const CHOICE_POWER: f32 = 6.0;
 // Cosine of the angle from which a plate is no worse for being seen from farther round: it may be the only one.
 const LEAST_COSINE: f32 = 0.1;
 // Weight against that of the best below which a plate is not looked at.
 const LEAST_WEIGHT: f32 = 0.02;
+
+// The fourth power: how much less a plate is worth for the cosine of its view's angle.
+fn angle_quality(cosine: f32) -> f32 {
+  let square = cosine * cosine;
+  return square * square;
+}
+
+// The sixth power of all that makes a plate better than another: high, since a mix of two is blurred.
+fn choice_weight(quality: f32) -> f32 {
+  let square = quality * quality;
+  return square * square * square;
+}
 
 // What a plate has of a point: xy is where it shows it, in pixels; z how well it saw it, positive wherever it did; w is
 // 1 well
@@ -96,7 +103,7 @@ fn candidate(k: u32, point: ReceiverPoint, region_px: vec2f) -> Candidate {
   let is_same_side = camera.y * own.y > 0.0;
   if inside == 0.0 || !is_same_side || is_hidden(k, point) { return UNSEEN; }
   let cosine = dot(direction_to(camera, point.xy), direction_to(own, point.xy));
-  return vec4f(px, detail(k, point, region_px, at.z) * pow(max(cosine, LEAST_COSINE), ANGLE_POWER), inside);
+  return vec4f(px, detail(k, point, region_px, at.z) * angle_quality(max(cosine, LEAST_COSINE)), inside);
 }
 
 // Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
@@ -131,30 +138,37 @@ fn point_beyond(region_px: vec2f) -> ReceiverPoint {
   return point_on(0u, p.xy / p.z);
 }
 
+// Of a plate from this very camera.
+@fragment
+fn fs_copy(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
+  return vec4f(textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb, 1.0);
+}
+
+// What each plate has stands in components of vectors: arrays that are indexed by a plate's number lie in memory.
 @fragment
 fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
-  if views.is_same_view == 1u {
-    let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
-    return vec4f(textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb, 1.0);
-  }
   let point = point_beyond(at.xy);
   if !is_hit(point) { return vec4f(0.0); }
-  var candidates: array<Candidate, MAX_PLATES>;
-  var best_quality = 0.0;
+  var x = vec4f(0.0);
+  var y = vec4f(0.0);
+  var quality = vec4f(0.0);
+  var inside = vec4f(0.0);
   for (var k = 0u; k < views.n_plates; k++) {
-    candidates[k] = candidate(k, point, at.xy);
-    best_quality = max(best_quality, candidates[k].z);
+    let seen = candidate(k, point, at.xy);
+    x[k] = seen.x;
+    y[k] = seen.y;
+    quality[k] = seen.z;
+    inside[k] = seen.w;
   }
+  let best_quality = max(max(quality.x, quality.y), max(quality.z, quality.w));
   if best_quality == 0.0 { return vec4f(0.0); }
   // Against the best one, so that powers of what is poor do not underflow where there is nothing better.
-  var weights: array<f32, MAX_PLATES>;
-  var best = 0.0;
-  for (var k = 0u; k < views.n_plates; k++) {
-    weights[k] = candidates[k].w * pow(candidates[k].z / best_quality, CHOICE_POWER);
-    best = max(best, weights[k]);
-  }
+  var weights = vec4f(0.0);
+  for (var k = 0u; k < views.n_plates; k++) { weights[k] = inside[k] * choice_weight(quality[k] / best_quality); }
+  let best = max(max(weights.x, weights.y), max(weights.z, weights.w));
   // Listed first: mostly one or two, and all that neighbours do not look at costs nothing.
-  var looked_at: array<u32, MAX_PLATES>;
+  var looked_at = vec4u(0u);
   var n_looked_at = 0u;
   for (var k = 0u; k < views.n_plates; k++) {
     if weights[k] == 0.0 || weights[k] < LEAST_WEIGHT * best { continue; }
@@ -164,7 +178,7 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   var sum = vec4f(0.0);
   for (var i = 0u; i < n_looked_at; i++) {
     let k = looked_at[i];
-    sum += weights[k] * vec4f(sharp_color(k, candidates[k].xy), 1.0);
+    sum += weights[k] * vec4f(sharp_color(k, vec2f(x[k], y[k])), 1.0);
   }
   return vec4f(sum.rgb / sum.a, 1.0);
 }

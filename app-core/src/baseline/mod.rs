@@ -167,6 +167,7 @@ impl Baseline {
             globals: &self.globals,
             views: pictures.plate_views,
             plates: pictures.plates,
+            is_same_view: pictures.is_same_view,
         };
         self.plate_pass.encode(recorder, &inputs, &self.plate);
     }

@@ -11,4 +11,6 @@ pub(crate) struct Pictures<'a> {
     pub(crate) plates: &'a TextureView,
     /// Cameras and exposures of the plates.
     pub(crate) plate_views: &'a Buffer,
+    /// Whether the first plate was taken from this very camera.
+    pub(crate) is_same_view: bool,
 }

@@ -42,8 +42,8 @@ shared_struct! {
         pub plates: [PlateView; MAX_PLATES],
         pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
         pub n_plates: u32,
-        pub is_same_view: u32,
-        pub _pad: [u32; 2],
+        pub _pad_0: u32,
+        pub _pad_1: [u32; 2],
     }
 }
 
@@ -56,8 +56,15 @@ impl PlateViews {
 }
 
 pub(crate) struct Pass {
-    fine: Draw,
-    coded: Draw,
+    fine: Draws,
+    coded: Draws,
+}
+
+/// Onto a plate of one format.
+struct Draws {
+    choose: Draw,
+    /// Of a plate that was taken from this very camera.
+    copy: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -65,23 +72,34 @@ pub(crate) struct Inputs<'a> {
     pub(crate) views: &'a Buffer,
     /// An array of pictures, in the order of `views`.
     pub(crate) plates: &'a TextureView,
+    /// Whether the first of them was taken from this very camera.
+    pub(crate) is_same_view: bool,
 }
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
-        let draw = |format| gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_choose", groups, &[format]));
+        let draw = |fragment, format| gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[format]));
+        let draws = |format| Draws {
+            choose: draw("fs_choose", format),
+            copy: draw("fs_copy", format),
+        };
         Self {
-            fine: draw(FINE_FORMAT),
-            coded: draw(CODED_FORMAT),
+            fine: draws(FINE_FORMAT),
+            coded: draws(CODED_FORMAT),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &Texture) {
-        let draw = if target.format() == CODED_FORMAT {
+        let draws = if target.format() == CODED_FORMAT {
             &self.coded
         } else {
             &self.fine
+        };
+        let draw = if inputs.is_same_view {
+            &draws.copy
+        } else {
+            &draws.choose
         };
         let groups = [
             recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]),

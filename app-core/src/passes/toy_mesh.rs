@@ -9,7 +9,7 @@ use crate::geometry::bounds::Sphere;
 use crate::geometry::facing::Viewers;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Pipeline, Stream};
+use crate::gpu::pipeline::{Draw, Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
 use crate::scene::MAX_LIGHTS;
@@ -104,7 +104,10 @@ impl PoseBuffers {
 
 /// A run of indices with one material.
 struct Run {
-    indices: Range<u32>,
+    /// Those of closed pieces.
+    closed: Range<u32>,
+    /// Those of open ones, which follow.
+    open: Range<u32>,
     /// Index of the material, which the shaders take from the instance.
     material: u32,
     /// Index of its look.
@@ -120,6 +123,15 @@ pub enum Detail {
     Within(f64),
     /// The finest of as many triangles, or the coarsest.
     AtMost(u32),
+}
+
+/// Pipelines of one pass: of both sides of each triangle, and of the side alone that faces the camera.
+pub(crate) struct Sided<'a> {
+    pub(crate) both: &'a Draw,
+    pub(crate) culled: &'a Draw,
+    pub(crate) groups: &'a [Group],
+    /// Where triangles are seen from.
+    pub(crate) camera_in_anchor: Vec3,
 }
 
 /// Corners of a shape near the toy's.
@@ -168,6 +180,7 @@ impl ToyMesh {
         let materials = Materials::new(gpu, toy);
         let (casters, shadow_indices) = casters(toy, simplified);
         let shape = toy.shadow_indices();
+        let (runs, indices) = runs(toy, &materials);
         // Only of closed pieces is anything left out; the toy's own shape has the most triangles.
         let n_lists = if lists && shape.n_closed > 0 {
             1 + MAX_LIGHTS
@@ -176,11 +189,7 @@ impl ToyMesh {
         };
         let lists = std::iter::repeat_n(shape.indices.len(), n_lists);
         Self {
-            indices: gpu.buffer(
-                "indices",
-                bytemuck::cast_slice(toy.indices()),
-                BufferUsages::INDEX,
-            ),
+            indices: gpu.buffer("indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
             shadow_indices: gpu.buffer(
                 "shadow indices",
                 bytemuck::cast_slice(&shadow_indices),
@@ -195,7 +204,7 @@ impl ToyMesh {
                 bytemuck::cast_slice(toy.colors_linear().unwrap_or(&vec![[1.0; 4]; toy.n_vertices()])),
                 BufferUsages::VERTEX,
             ),
-            runs: runs(toy, &materials),
+            runs,
             materials,
             physical: PoseBuffers::new(gpu, physical, lists.clone()),
             shown: PoseBuffers::new(gpu, physical, lists),
@@ -283,8 +292,30 @@ impl ToyMesh {
         }
     }
 
-    /// Draws every part with its material; `streams` are the poses, from slot 2 on.
-    pub(crate) fn draw_parts(&self, render: &mut Render<'_>, streams: &[&PoseBuffers], looks: &[Group]) {
+    /// Draws every part with its material; `streams` are the poses, from slot 2 on, of which the first is seen.
+    ///
+    /// Of closed pieces, and from outside, only the side that faces the camera shows.
+    pub(crate) fn draw_parts(
+        &self,
+        render: &mut Render<'_>,
+        sided: &Sided<'_>,
+        streams: &[&PoseBuffers],
+        looks: &[Group],
+    ) {
+        let camera = sided.camera_in_anchor.extend(1.0).as_dvec4();
+        let is_inside = streams.first().is_some_and(|pose| pose.around.holds(camera));
+        let closed = if is_inside { sided.both } else { sided.culled };
+        // Slots outlive a change of pipelines of the same layout.
+        render.begin(closed, sided.groups);
+        self.set_streams(render, streams);
+        self.draw_runs(render, looks, |run| &run.closed);
+        if self.runs.iter().any(|run| !run.open.is_empty()) {
+            render.begin(sided.both, &[]);
+            self.draw_runs(render, looks, |run| &run.open);
+        }
+    }
+
+    fn set_streams(&self, render: &mut Render<'_>, streams: &[&PoseBuffers]) {
         render.set_vertices(0, &self.uvs);
         render.set_vertices(1, &self.colors);
         for (slot, pose) in (2..).step_by(2).zip(streams) {
@@ -292,15 +323,19 @@ impl ToyMesh {
             render.set_vertices(slot + 1, &pose.normals);
         }
         render.set_indices(&self.indices);
+    }
+
+    /// Draws a part of each run.
+    fn draw_runs(&self, render: &mut Render<'_>, looks: &[Group], part: impl Fn(&Run) -> &Range<u32>) {
         let mut current = None;
-        for run in &self.runs {
+        for run in self.runs.iter().filter(|run| !part(run).is_empty()) {
             if current != Some(run.look)
                 && let Some(look) = looks.get(run.look)
             {
                 render.set(look);
                 current = Some(run.look);
             }
-            render.draw_indexed(run.indices.clone(), run.material..run.material + 1);
+            render.draw_indexed(part(run).clone(), run.material..run.material + 1);
         }
     }
 }
@@ -335,24 +370,45 @@ fn n(indices: &[u32]) -> u32 {
     u32::try_from(indices.len()).unwrap_or(u32::MAX)
 }
 
-/// The draws of a toy, those with the same material as one where they follow one another.
-fn runs(toy: &Toy, materials: &Materials) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+/// The draws of a toy, those with the same material as one where they follow one another, and its corners: of each draw those
+/// of closed pieces first.
+fn runs(toy: &Toy, materials: &Materials) -> (Vec<Run>, Vec<u32>) {
+    let mut alike: Vec<(Range<usize>, usize)> = Vec::new();
     for part in toy.parts() {
-        let indices = part.indices.clone();
-        // Materials are counted when they are read.
-        let material = u32::try_from(part.material).unwrap_or(u32::MAX);
-        match (runs.last_mut(), materials.look(part.material)) {
-            (Some(last), _) if last.material == material && last.indices.end == indices.start => {
-                last.indices.end = indices.end;
-            }
-            (_, Some(look)) => runs.push(Run {
-                indices,
-                material,
-                look,
-            }),
-            (_, None) => {}
+        let [start, end] = [part.indices.start, part.indices.end].map(|index| index as usize);
+        match alike.last_mut() {
+            Some((last, material)) if *material == part.material && last.end == start => last.end = end,
+            _ => alike.push((start..end, part.material)),
         }
     }
-    runs
+    let (mut runs, mut indices) = (Vec::new(), Vec::new());
+    for (range, material) in alike {
+        let Some(look) = materials.look(material) else {
+            continue;
+        };
+        let [closed, open] = [true, false].map(|is_closed| {
+            let first = n(&indices);
+            indices.extend(corners_of(toy, range.clone(), is_closed));
+            first..n(&indices)
+        });
+        runs.push(Run {
+            closed,
+            open,
+            // Materials are counted when they are read.
+            material: u32::try_from(material).unwrap_or(u32::MAX),
+            look,
+        });
+    }
+    (runs, indices)
+}
+
+/// Corners of those triangles within a range of the toy's that are of closed pieces, or of open ones.
+fn corners_of(toy: &Toy, range: Range<usize>, is_closed: bool) -> impl Iterator<Item = u32> {
+    let closed = &toy.shadow_indices().is_of_closed;
+    let triangles = toy.indices().as_chunks::<3>().0.iter().zip(closed);
+    triangles
+        .skip(range.start / 3)
+        .take(range.len() / 3)
+        .filter(move |(_, is_of_closed)| **is_of_closed == is_closed)
+        .flat_map(|(corners, _)| *corners)
 }

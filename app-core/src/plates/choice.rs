@@ -124,7 +124,6 @@ pub(crate) fn plate_views(
     PlateViews {
         camera_in_plane: cameras(view),
         n_plates,
-        is_same_view: u32::from(choice.is_same_view),
         ..views
     }
 }

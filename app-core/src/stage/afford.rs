@@ -101,6 +101,7 @@ impl Stage {
             exposure_ratio: 1.0,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
+            is_same_view: footprint.choice.is_same_view,
         };
         let mut recorder = Recorder::new(&gpu, None);
         model.encode(&mut recorder, &self.toy, &pictures, Change::View);

@@ -370,6 +370,7 @@ impl Stage {
             exposure_ratio,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
+            is_same_view: footprint.choice.is_same_view,
         };
         method.encode(recorder, &self.toy, &pictures, change);
         if change < Change::View {

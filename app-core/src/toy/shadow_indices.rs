@@ -21,6 +21,8 @@ pub struct ShadowIndices {
     pub indices: Vec<u32>,
     /// How many of the corners are of closed pieces, whose faces look outwards.
     pub n_closed: usize,
+    /// For each of the toy's own triangles, whether it is of such a piece.
+    pub is_of_closed: Vec<bool>,
 }
 
 impl ShadowIndices {
@@ -28,18 +30,26 @@ impl ShadowIndices {
     pub(super) fn new(surfaces: &[Surface], geometries: &[Geometry], indices: &[u32]) -> Self {
         let first_alike = first_alike(surfaces, geometries);
         let corners = indices.as_chunks().0.iter();
-        let welded = corners.map(|corners: &[u32; 3]| corners.map(|corner| first_alike[corner as usize]));
+        let welded: Vec<_> = corners
+            .map(|corners: &[u32; 3]| corners.map(|corner| first_alike[corner as usize]))
+            .collect();
         // Without area they hide nothing.
-        let triangles: Vec<_> = welded.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        let triangles: Vec<_> = welded.iter().copied().filter(has_area).collect();
         let places = surfaces
             .iter()
             .flat_map(|surface| &geometries[surface.geometry].positions);
         let mut pieces = Pieces::of(&triangles, &places.copied().collect::<Vec<_>>());
+        let is_of_closed = welded
+            .iter()
+            .map(|corners| has_area(corners) && pieces.is_closed(corners[0]))
+            .collect();
         let (closed, open): (Vec<_>, Vec<_>) = triangles
             .into_iter()
             .partition(|[corner, ..]| pieces.is_closed(*corner));
         Self {
             n_closed: 3 * closed.len(),
+            is_of_closed,
             indices: [closed, open].concat().into_flattened(),
         }
     }

@@ -82,7 +82,6 @@ fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
     PlateViews {
         camera_in_plane: cameras(here),
         n_plates: u32::try_from(plates.len()).unwrap(),
-        is_same_view: 0,
         ..views
     }
 }
@@ -157,7 +156,7 @@ fn a_fault_in_the_choice_is_found() {
     let faults = [
         ("FEATHER_PX: f32 = 32.0", "FEATHER_PX: f32 = 31.0"),
         ("LEAST_COSINE: f32 = 0.1", "LEAST_COSINE: f32 = 0.5"),
-        ("ANGLE_POWER: f32 = 4.0", "ANGLE_POWER: f32 = 3.0"),
+        ("return square * square;", "return square * cosine;"),
         ("LEAST_WEIGHT: f32 = 0.02", "LEAST_WEIGHT: f32 = 0.03"),
         ("* determinant(", "/ determinant("),
         (".y > 0.0;", ".y > -1e9;"),

@@ -188,9 +188,7 @@ impl Pass {
             recorder.bind(compute, GROUP_SCENE, &inputs.scene.resources()),
             recorder.bind_with(compute, GROUP_PASS, step, &resources[..n_slots]),
         ];
-        #[allow(clippy::cast_possible_truncation, reason = "three")]
-        let n_channels = N_CHANNELS as u32;
-        let workgroups = [step.n_rows, 1, n_channels];
+        let workgroups = [step.n_rows, 1, 1];
         let n_sampled = n_pixels(inputs.plate.size_px() / step.stride_px.max(1));
         recorder.compute_over(compute, &groups, workgroups, n_sampled);
     }

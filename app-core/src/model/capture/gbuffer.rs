@@ -1,6 +1,7 @@
 //! `gbuffer`: the physical toy as the camera sees it: base colour, normal, received light and depth.
 
-use wgpu::{StoreOp, TextureFormat};
+use glam::Vec3;
+use wgpu::{Face, StoreOp, TextureFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::buffer::Buffer;
@@ -16,7 +17,7 @@ use crate::model::plan::Plan;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
 use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::{LOOK_STREAMS, ToyMesh};
+use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -34,11 +35,13 @@ const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 pub(crate) const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Pass {
-    draw: Draw,
+    /// Draw both sides of each triangle, or the one that faces the camera.
+    draws: [Draw; 2],
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
+    pub(crate) camera_in_anchor: Vec3,
     pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) self_shadow: &'a self_shadow::Targets,
@@ -68,29 +71,39 @@ impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, &[], MATERIAL_GROUP, SELF_SHADOW_GROUP];
         let targets = [BASE_FORMAT, NORMAL_FORMAT, RECEIVED_FORMAT];
-        Self {
-            draw: gpu.draw(&DrawSpec {
+        let draw = |culled| {
+            gpu.draw(&DrawSpec {
                 vertex: "vs_project",
                 streams: &LOOK_STREAMS,
                 depth: Some(nearest_surface()),
+                culled,
                 ..DrawSpec::fullscreen(&SHADER, "fs_describe", groups, &targets)
-            }),
+            })
+        };
+        Self {
+            draws: [None, Some(Face::Back)].map(draw),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let maps = inputs.self_shadow.resources(recorder.gpu, inputs.self_shadow);
+        let [draw, culled] = &self.draws;
         let groups = [
-            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
-            recorder.bind(&self.draw, GROUP_SELF_SHADOW, &maps),
+            recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
         ];
-        let materials = inputs.toy.bind_materials(recorder, &self.draw);
+        let materials = inputs.toy.bind_materials(recorder, draw);
         let colors = [&targets.base, &targets.normal, &targets.received];
         let colors = colors.map(|texture| Some(cleared(&texture.view)));
         let mut render = recorder.render(SHADER.name, &colors, Some(&targets.depth.view), StoreOp::Store);
         render.part_of(inputs.plan.part_drawn());
-        render.begin(&self.draw, &groups);
+        let sided = Sided {
+            both: draw,
+            culled,
+            groups: &groups,
+            camera_in_anchor: inputs.camera_in_anchor,
+        };
         let toy = inputs.toy;
-        toy.draw_parts(&mut render, &[&toy.physical], &materials);
+        toy.draw_parts(&mut render, &sided, &[&toy.physical], &materials);
     }
 }

@@ -121,6 +121,7 @@ impl CapturePath<'_> {
             globals: &self.region.globals,
             views: self.pictures.plate_views,
             plates: self.pictures.plates,
+            is_same_view: self.pictures.is_same_view,
         };
         // If `estimate` completes the plate, it reads this photographed one.
         let is_completed = estimate::is_needed(&self.region.plan);
@@ -179,6 +180,7 @@ impl CapturePath<'_> {
     fn gbuffer_inputs(&self) -> gbuffer::Inputs<'_> {
         gbuffer::Inputs {
             plan: &self.region.plan,
+            camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
             globals: &self.region.globals,
             toy: self.toy,
             self_shadow: &self.captured.light.self_shadow,

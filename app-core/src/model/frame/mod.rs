@@ -111,6 +111,7 @@ impl FramePath<'_> {
     fn toy_inputs(&self) -> toy::Inputs<'_> {
         toy::Inputs {
             plan: &self.region.plan,
+            camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
             scene: self.scene(),
             toy: self.toy,
             appearance: &self.captured.by_pass.appearance,

@@ -1,6 +1,7 @@
 //! `moved_mask`: where the visible surface of the real toy has moved in the shown pose.
 
-use wgpu::{StoreOp, TextureFormat, VertexFormat};
+use glam::Vec3;
+use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::context::Gpu;
@@ -12,7 +13,7 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::{BEHIND, MOVED};
-use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::toy_mesh::{Detail, Side, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &MOVED, &BEHIND, &part!("frame/moved_mask")]);
 /// Both poses: the physical one is drawn.
@@ -23,7 +24,8 @@ pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Pass {
-    draw: Draw,
+    /// Draws both sides of each triangle, or the one that faces the camera.
+    draws: [Draw; 2],
 }
 
 /// Of the toy box's size: two multisampled ones that are never stored, and the mask.
@@ -48,14 +50,16 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, &[], &[], &[]];
+        let spec = |culled| DrawSpec {
+            vertex: "vs_physical",
+            streams: STREAMS,
+            n_samples: N_SAMPLES,
+            depth: Some(nearest_surface()),
+            culled,
+            ..DrawSpec::fullscreen(&SHADER, "fs_moved", groups, &[MOVED_FORMAT])
+        };
         Self {
-            draw: gpu.draw(&DrawSpec {
-                vertex: "vs_physical",
-                streams: STREAMS,
-                n_samples: N_SAMPLES,
-                depth: Some(nearest_surface()),
-                ..DrawSpec::fullscreen(&SHADER, "fs_moved", groups, &[MOVED_FORMAT])
-            }),
+            draws: [None, Some(Face::Back)].map(|culled| gpu.draw(&spec(culled))),
         }
     }
 
@@ -65,13 +69,18 @@ impl Pass {
         (region, toy): (&Region, &ToyMesh),
         targets: &Targets,
     ) {
-        let group = recorder.bind(&self.draw, GROUP_SCENE, &[(&region.globals).into()]);
+        let seen = (&toy.physical, Some(Side::Camera));
+        let camera = Vec3::from(region.uniform.camera_in_anchor).extend(1.0);
+        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own));
+        let draw = &self.draws[usize::from(corners.is_culled)];
+        let group = recorder.bind(draw, GROUP_SCENE, &[(&region.globals).into()]);
         let colors = [Some(resolved(&targets.samples.view, &targets.moved.view))];
         let depth = Some(&targets.depth.view);
         let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
         render.part_of(region.plan.part_drawn());
-        render.begin(&self.draw, &[group]);
+        render.begin(draw, &[group]);
+        corners.bind(&mut render, &toy.physical);
         render.set_vertices(1, &toy.shown.positions);
-        toy.draw_positions(&mut render, &toy.physical.positions, 0..1);
+        corners.draw(&mut render, 0..1);
     }
 }

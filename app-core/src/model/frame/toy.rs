@@ -1,7 +1,7 @@
 //! `toy`: the toy in the pose to be shown, with its camera pixels, once for each offset within a pixel.
 
-use glam::Vec2;
-use wgpu::{StoreOp, TextureFormat, VertexFormat};
+use glam::{Vec2, Vec3};
+use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
@@ -21,7 +21,7 @@ use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, 
 use crate::passes::globals::GLOBALS;
 use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
 use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED};
-use crate::passes::toy_mesh::{LOOK_STREAMS, ToyMesh};
+use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -75,12 +75,14 @@ const OFFSETS_PX: [Vec2; 4] = [
 ];
 
 pub(crate) struct Pass {
-    coded: Draw,
-    fine: Draw,
+    /// Draw both sides of each triangle, or the one that faces the camera.
+    coded: [Draw; 2],
+    fine: [Draw; 2],
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
+    pub(crate) camera_in_anchor: Vec3,
     pub(crate) scene: Scene<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
@@ -132,25 +134,27 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SCENE_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
-        let draw = |format| {
+        let draw = |format, culled| {
             gpu.draw(&DrawSpec {
                 vertex: "vs_toy",
                 streams: STREAMS,
                 n_samples: N_SAMPLES,
                 depth: Some(nearest_surface()),
+                culled,
                 ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
             })
         };
+        let draws = |format| [None, Some(Face::Back)].map(|culled| draw(format, culled));
         Self {
-            coded: draw(CODED_FORMAT),
-            fine: draw(FINE_FORMAT),
+            coded: draws(CODED_FORMAT),
+            fine: draws(FINE_FORMAT),
         }
     }
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let is_fine = targets.samples.format() == FINE_FORMAT;
-        let draw = if is_fine { &self.fine } else { &self.coded };
+        let [draw, culled] = if is_fine { &self.fine } else { &self.coded };
         let [shown, physical] = inputs.self_shadow;
         let maps = shown.resources(recorder.gpu, physical);
         let materials = inputs.toy.bind_materials(recorder, draw);
@@ -176,9 +180,14 @@ impl Pass {
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn());
-            render.begin(draw, &groups);
+            let sided = Sided {
+                both: draw,
+                culled,
+                groups: &groups,
+                camera_in_anchor: inputs.camera_in_anchor,
+            };
             let toy = inputs.toy;
-            toy.draw_parts(&mut render, &[&toy.shown, &toy.physical], &materials);
+            toy.draw_parts(&mut render, &sided, &[&toy.shown, &toy.physical], &materials);
         }
     }
 }
