@@ -131,6 +131,10 @@ pub mod internals {
     pub use crate::geometry::rect::{PixelRect, PlaneRect};
     pub use crate::geometry::scene_layout::SceneLayout;
     pub use crate::geometry::shadow_atlas::ShadowAtlas;
+    pub use crate::geometry::silhouette::{
+        ByCamera, Edges, Landing, OntoReceiver, Projection, Shape, Silhouette, find_silhouette,
+    };
+    pub use crate::geometry::tiles::{CountedTiles, PixelBox, TILE_PX, Tiles};
     pub use crate::geometry::view::View;
     pub use crate::gpu::context::phone_limits;
     pub use crate::gpu::device::Kind;

@@ -4,11 +4,11 @@
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 // CPU reference: reference/lit.rs.
 
-@group(1) @binding(3) var frame: texture_2d<f32>;
-@group(1) @binding(4) var validity: texture_2d<f32>;
-@group(1) @binding(5) var visibility: texture_2d<f32>;
-@group(1) @binding(6) var ambient: texture_2d<f32>;
-@group(1) @binding(7) var ambient_sampler: sampler;
+@group(1) @binding(4) var frame: texture_2d<f32>;
+@group(1) @binding(5) var validity: texture_2d<f32>;
+@group(1) @binding(6) var visibility: texture_2d<f32>;
+@group(1) @binding(7) var ambient: texture_2d<f32>;
+@group(1) @binding(8) var ambient_sampler: sampler;
 
 // Exponent of the light that is left: shadow counts little, since its depth may not be fitted yet.
 const LIT_POWER: f32 = 8.0;
@@ -32,6 +32,6 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   if !is_cell(cell.z, cell.xy) { return; }
   var sum = vec4f(0.0);
-  for (var k = 0u; k < N_POINTS * N_POINTS; k++) { sum += lit_color(point_of_cell(cell.z, cell.xy, k)); }
+  for (var k = 0u; k < n_taken(); k++) { sum += lit_color(point_of_cell(cell.z, cell.xy, k)); }
   accumulate(cell.z, cell.xy, select(vec3f(0.0), sum.rgb / sum.a, sum.a > 0.0), sum.a);
 }

@@ -5,12 +5,12 @@
 // Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
 // the pyramids. CPU reference: reference/residual.rs.
 
-@group(1) @binding(3) var frame: texture_2d<f32>;
-@group(1) @binding(4) var plate: texture_2d<f32>;
-@group(1) @binding(5) var validity: texture_2d<f32>;
-@group(1) @binding(6) var visibility: texture_2d<f32>;
-@group(1) @binding(7) var ambient: texture_2d<f32>;
-@group(1) @binding(8) var ambient_sampler: sampler;
+@group(1) @binding(4) var frame: texture_2d<f32>;
+@group(1) @binding(5) var plate: texture_2d<f32>;
+@group(1) @binding(6) var validity: texture_2d<f32>;
+@group(1) @binding(7) var visibility: texture_2d<f32>;
+@group(1) @binding(8) var ambient: texture_2d<f32>;
+@group(1) @binding(9) var ambient_sampler: sampler;
 
 // Residual, in plates, at which a point counts half: an outlier, such as a hand.
 const CAUCHY_SCALE: f32 = 0.03;
@@ -51,7 +51,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
 fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   if !is_cell(cell.z, cell.xy) { return; }
   var sums = Sums(vec3f(0.0), vec3f(0.0), 0.0);
-  for (var k = 0u; k < N_POINTS * N_POINTS; k++) { sums = add_point(sums, point_of_cell(cell.z, cell.xy, k)); }
+  for (var k = 0u; k < n_taken(); k++) { sums = add_point(sums, point_of_cell(cell.z, cell.xy, k)); }
   let r = select(vec3f(0.0), sums.product / sums.energy, sums.energy > vec3f(0.0));
   accumulate(cell.z, cell.xy, r, sums.n_points);
 }

@@ -8,6 +8,16 @@
 // What was known before: sums of values times certainty, and of certainties. Those of the finest levels alone.
 @group(1) @binding(2) var<storage, read_write> accumulated: array<vec4f>;
 
+// Which of a cell's points are looked at: all of them, or a quarter, in turn from picture to picture.
+struct Taken {
+  // Along each side.
+  stride: u32,
+  _pad: u32,
+  first: vec2u,
+}
+
+@group(1) @binding(3) var<uniform> taken: Taken;
+
 // Points of a cell along each side.
 const N_POINTS: u32 = 8u;
 // Fraction of a cell's points that must be valid for the cell to count in full.
@@ -19,17 +29,24 @@ fn is_cell(receiver: u32, cell: vec2u) -> bool {
   return all(cell < grid.size) && grid.cell_m > 0.0;
 }
 
-// Point `k` of N_POINTS x N_POINTS in a cell.
+fn n_taken() -> u32 {
+  let n_side = N_POINTS / taken.stride;
+  return n_side * n_side;
+}
+
+// Of N_POINTS x N_POINTS points in a cell the one that is taken as number `k`.
 fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
   let grid = grids.grids[receiver];
-  let within = (vec2f(f32(k % N_POINTS), f32(k / N_POINTS)) + 0.5) / f32(N_POINTS);
+  let n_side = N_POINTS / taken.stride;
+  let point = taken.first + taken.stride * vec2u(k % n_side, k / n_side);
+  let within = (vec2f(point) + 0.5) / f32(N_POINTS);
   return point_on(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
 }
 
-// Adds a cell's value, of which `n_points` points are valid, to the accumulated sums.
+// Adds a cell's value, of which `n_points` of those taken are valid, to the accumulated sums.
 fn accumulate(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
   let grid = grids.grids[receiver];
-  let certainty = min(1.0, n_points / (FULL_SHARE * f32(N_POINTS * N_POINTS)));
+  let certainty = min(1.0, n_points / (FULL_SHARE * f32(n_taken())));
   let index = cell.y * grid.size.x + cell.x;
   let slot = receiver * MAX_CELLS + index;
   let sum = accumulated[slot] + vec4f(value, 1.0) * certainty;

@@ -4,6 +4,8 @@
 // `occlusion` each position has a constant depth, above those before it, so that overlapping triangles do not count
 // twice; rounding of z / w is far from a step of 16 bits, in which depths are 1986 steps apart. A position counts
 // where any triangle covers it: of the scene's depths only those of the receivers are tested.
+// Where no silhouette of the toy comes near all positions show the same: there it is drawn but once, and tiles that a silhouette
+// does come near are closed meanwhile (`geometry/silhouette.rs`).
 // The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
 //
 // Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position that the toy covers.
@@ -28,6 +30,20 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
   let moved = clip.xy - clip.w * vec2f(2.0, -2.0) * position_px(index) / globals.region_size_px;
   let depth = f32(index + 1u) / f32(N_POSITIONS + 1u);
   return Moved(vec4f(moved, clip.w * depth, clip.w), index);
+}
+
+// Above all positions, so that none counts again.
+@vertex
+fn vs_once(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
+  let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
+  let depth = (f32(N_POSITIONS) + 0.5) / f32(N_POSITIONS + 1u);
+  return vec4f(clip.xy, clip.w * depth, clip.w);
+}
+
+// All positions of a pixel that no silhouette comes near.
+@fragment
+fn fs_cover_all() -> @location(0) vec4f {
+  return vec4f(f32(N_POSITIONS) * COVERED_POSITION);
 }
 
 @fragment

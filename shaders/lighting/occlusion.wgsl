@@ -7,6 +7,8 @@
 // and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
 // that show another by depth.
+// Where no silhouette comes near all points see the same: there the toy is drawn but once, and tiles that a silhouette does come
+// near are closed meanwhile (`geometry/silhouette.rs`).
 // Each triangle is drawn once a point, from whichever side; of a closed mesh only those that face the light: a ray that
 // enters it leaves it again.
 //
@@ -73,6 +75,23 @@ fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: 
   let to_centre_px = (0.5 - position_in_texel(point)) * light_points.texel_px;
   clip += vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
   return Flattened(clip, in_plane.y, f32(point + 1u) / f32(light_points.n_points + 1u));
+}
+
+// Above all points, so that none counts again. Only drawn where all of the shadow is in front of the camera, and the toy
+// below the light.
+@vertex
+fn vs_once(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> @builtin(position) vec4f {
+  let receiver = instance / light_points.n_points;
+  let in_plane = (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
+  let clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
+  let depth = (f32(light_points.n_points) + 0.5) / f32(light_points.n_points + 1u);
+  return vec4f(clip.xy, clip.w * depth, clip.w);
+}
+
+// All points of a light, in a pixel that no silhouette of a shadow comes near.
+@fragment
+fn fs_cover_all() -> @location(0) vec4f {
+  return vec4f(f32(light_points.n_points) * HIDDEN_POINT);
 }
 
 struct Hidden {

@@ -6,10 +6,10 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewers {
     /// A ball that holds them: its centre and radius.
-    centre: Vec3,
-    radius: f32,
+    pub(super) centre: Vec3,
+    pub(super) radius: f32,
     /// 1 of points, 0 of directions towards them.
-    w: f32,
+    pub(super) w: f32,
 }
 
 impl Viewers {
@@ -30,7 +30,7 @@ impl Viewers {
     }
 
     /// Whether a triangle, counter-clockwise seen from outside, may show its outer side to one of them.
-    fn may_see(&self, [a, b, c]: [Vec3; 3]) -> bool {
+    pub(super) fn may_see(&self, [a, b, c]: [Vec3; 3]) -> bool {
         let normal = (b - a).cross(c - a);
         let to_centre = self.centre - self.w * a;
         // Of a ball the point that is farthest on the outer side; the rounding of a product of four is far below a thousandth.

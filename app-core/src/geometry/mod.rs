@@ -15,4 +15,6 @@ pub(crate) mod reach;
 pub(crate) mod rect;
 pub(crate) mod scene_layout;
 pub(crate) mod shadow_atlas;
+pub(crate) mod silhouette;
+pub(crate) mod tiles;
 pub(crate) mod view;

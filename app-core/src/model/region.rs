@@ -4,7 +4,7 @@ use crate::geometry::rect::PixelRect;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::model::plan::Plan;
-use crate::passes::globals::Globals;
+use crate::passes::globals::{Globals, GlobalsOnDevice};
 
 pub(crate) struct Region {
     pub(crate) plan: Plan,
@@ -27,6 +27,14 @@ impl Region {
         self.plan = plan;
         self.uniform = *globals;
         gpu.write(&self.globals, &[*globals]);
+    }
+
+    /// The globals, here and there.
+    pub(crate) fn globals_on_device(&self) -> GlobalsOnDevice<'_> {
+        GlobalsOnDevice {
+            uniform: &self.uniform,
+            buffer: &self.globals,
+        }
     }
 
     /// The rectangle of the camera image.

@@ -2,17 +2,26 @@
 //!
 //! Blending adds up. Each instance has a depth of its own, above those before it, and what is not above what is there is
 //! rejected: so triangles of one instance that overlap count once.
+//!
+//! Where no silhouette comes near, all instances show the same: what is there is drawn once and counts in full.
+
+use std::ops::Range;
 
 use glam::UVec2;
 use wgpu::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
-    DepthStencilState, StoreOp, TextureFormat,
+    DepthStencilState, Face, StoreOp, TextureFormat,
 };
 
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::nearest_surface;
-use crate::gpu::recorder::{Recorder, Render, cleared};
+use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
+use crate::gpu::recorder::{Group, Recorder, Render, cleared};
+use crate::gpu::shader::{Part, part};
 use crate::gpu::texture::Texture;
+use crate::passes::toy_mesh::{Corners, PoseBuffers};
+
+/// Tiles that are closed to what is drawn once.
+pub(crate) const TILES: Part = part!("common/tiles");
 
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
@@ -38,6 +47,78 @@ impl CountingTargets {
     pub(crate) fn render<'a>(&self, recorder: &'a mut Recorder<'_>, pass: &'static str) -> Render<'a> {
         let colors = [Some(cleared(&self.count.view))];
         recorder.render(pass, &colors, Some(&self.order.view), StoreOp::Discard)
+    }
+}
+
+/// Pipelines that count a shape's instances.
+pub(crate) struct CountingDraws {
+    /// Once for each instance; both sides of each triangle, or the outer one.
+    each: [Draw; 2],
+    /// Once for all of them; the same.
+    once: [Draw; 2],
+    tiles: Draw,
+}
+
+impl CountingDraws {
+    /// `each` draws one instance; the shader has `vs_once` and `fs_cover_all` beside it.
+    pub(crate) fn new(gpu: &Gpu, each: &DrawSpec) -> Self {
+        let once = DrawSpec {
+            vertex: "vs_once",
+            fragment: "fs_cover_all",
+            targets: vec![COUNT_FORMAT.into()],
+            ..each.clone()
+        };
+        let tiles = DrawSpec {
+            vertex: "vs_tile",
+            fragment: "fs_tile",
+            targets: vec![not_counting()],
+            depth: Some(ordered(CompareFunction::Always)),
+            ..each.clone()
+        };
+        let sided = |spec: &DrawSpec| {
+            [None, Some(Face::Back)].map(|culled| {
+                gpu.draw(&DrawSpec {
+                    culled,
+                    ..spec.clone()
+                })
+            })
+        };
+        Self {
+            each: sided(each),
+            once: sided(&once),
+            tiles: gpu.draw(&tiles),
+        }
+    }
+
+    /// One of them, to bind groups for all.
+    pub(crate) fn any(&self) -> &Draw {
+        &self.each[0]
+    }
+
+    /// Counts instances of a shape in a pose.
+    pub(crate) fn count(
+        &self,
+        render: &mut Render<'_>,
+        groups: &[Group],
+        (corners, pose): (&Corners<'_>, &PoseBuffers),
+        instances: Range<u32>,
+    ) {
+        let sided = usize::from(corners.is_culled);
+        if let Some(silhouette) = &corners.silhouette {
+            render.begin(&self.tiles, groups);
+            silhouette.draw_tiles(render, true);
+            render.begin(&self.once[sided], &[]);
+            corners.bind(render, pose);
+            corners.draw(render, instances.start..instances.start + 1);
+            render.begin(&self.tiles, &[]);
+            silhouette.draw_tiles(render, false);
+            render.begin(&self.each[sided], &[]);
+            silhouette.draw_corners(render, pose, instances);
+        } else {
+            render.begin(&self.each[sided], groups);
+            corners.bind(render, pose);
+            corners.draw(render, instances);
+        }
     }
 }
 

@@ -1,13 +1,16 @@
 //! Uniforms shared by all passes: region, receivers, lights.
 
-use glam::{DMat3, DMat4, DVec2};
+use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
 
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::facing::Viewers;
 use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::silhouette::{ByCamera, OntoReceiver};
 use crate::geometry::view::View;
 use crate::gpu::bindings::Slot;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
@@ -51,6 +54,39 @@ shared_struct! {
         pub seen_from_behind: u32,
         pub near_m: f32,
         pub _pad_1: u32,
+    }
+}
+
+/// The globals, on the processor and on the device.
+#[derive(Clone, Copy)]
+pub(crate) struct GlobalsOnDevice<'a> {
+    pub(crate) uniform: &'a Globals,
+    pub(crate) buffer: &'a Buffer,
+}
+
+impl Globals {
+    /// How the camera sees what is drawn in the toy box.
+    pub(crate) fn by_camera(&self) -> ByCamera {
+        let receivers = self.receivers.iter().take(self.n_receivers as usize);
+        ByCamera {
+            clip_from_anchor: Mat4::from_cols_array_2d(&self.clip_from_anchor),
+            region_size_px: self.region_size_px.into(),
+            origin_px: self.toy_box_origin_px.into(),
+            inverse_depths: receivers
+                .map(|receiver| Vec3::from(receiver.plane_from_region_px.map(|[_, _, w, _]| w)))
+                .collect(),
+        }
+    }
+
+    /// How shadows from the points of a light fall on the first receiver; none of a light that has none, or not all alike.
+    pub(crate) fn onto_first_receiver(&self, points_in_anchor: &[Vec4]) -> Option<OntoReceiver> {
+        let [x, y, w] = self.receivers[0].clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
+        Some(OntoReceiver {
+            light: Viewers::around(points_in_anchor)?,
+            clip_from_plane: Mat3::from_cols_array_2d(&[x, y, w]),
+            region_size_px: self.region_size_px.into(),
+            near_m: self.near_m,
+        })
     }
 }
 

@@ -6,6 +6,8 @@ use crate::gpu::texture::TextureView;
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
     pub(crate) frame: &'a TextureView,
+    /// How many the state has learned from before.
+    pub(crate) n_before: u32,
     /// Exposure of `frame` over that of the frame that last updated the state.
     pub(crate) exposure_ratio: f32,
     pub(crate) plates: &'a TextureView,

@@ -1,17 +1,26 @@
 //! The toy on the device: what never changes, the physical pose, and the pose of the frame.
 
+mod corners;
+mod runs;
+
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use glam::{Vec3, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
 use crate::geometry::facing::Viewers;
+use crate::geometry::silhouette::{Edges, Shape, find_silhouette};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, Pipeline, Stream};
+use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
+pub(crate) use crate::passes::toy_mesh::corners::{Corners, Side, SilhouetteTarget};
+use crate::passes::toy_mesh::corners::{Lists, MAX_SILHOUETTE_CORNERS, n};
+pub(crate) use crate::passes::toy_mesh::runs::Sided;
+use crate::passes::toy_mesh::runs::{Run, runs};
 use crate::scene::MAX_LIGHTS;
 use crate::toy::{Caster, PosedMesh, Toy};
 
@@ -31,46 +40,8 @@ pub(crate) struct PoseBuffers {
     pub(crate) around: Sphere,
     /// The positions on the processor.
     points: Vec<Vec3>,
-    /// Triangles that face the camera, and those that face each light.
-    facing: Vec<Buffer>,
-}
-
-/// Whom triangles are to face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    Camera,
-    /// By its index.
-    Light(usize),
-}
-
-impl Side {
-    fn index(self) -> usize {
-        match self {
-            Self::Camera => 0,
-            Self::Light(index) => 1 + index,
-        }
-    }
-}
-
-/// Corners to draw: those of a whole shape, or of its triangles that face somebody.
-pub(crate) struct Corners<'a> {
-    buffer: &'a Buffer,
-    indices: Range<u32>,
-    /// Whether triangles that face away are left out, which the draw then leaves out, too.
-    pub(crate) is_culled: bool,
-}
-
-impl Corners<'_> {
-    /// Binds them, and the positions of their pose in slot 0.
-    pub(crate) fn bind(&self, render: &mut Render<'_>, pose: &PoseBuffers) {
-        render.set_vertices(0, &pose.positions);
-        render.set_indices(self.buffer);
-    }
-
-    /// Draws each triangle once for each instance.
-    pub(crate) fn draw(&self, render: &mut Render<'_>, instances: Range<u32>) {
-        render.draw_indexed(self.indices.clone(), instances);
-    }
+    /// Of the camera, and of each light.
+    lists: Vec<Lists>,
 }
 
 impl PoseBuffers {
@@ -89,7 +60,7 @@ impl PoseBuffers {
             ),
             around: Sphere::around(&mesh.positions),
             points: mesh.positions.clone(),
-            facing: lists.map(|n_corners| list(gpu, n_corners)).collect(),
+            lists: lists.map(|n_corners| Lists::new(gpu, n_corners)).collect(),
         }
     }
 
@@ -100,18 +71,6 @@ impl PoseBuffers {
         gpu.write(&self.positions, &mesh.positions);
         gpu.write(&self.normals, &mesh.normals);
     }
-}
-
-/// A run of indices with one material.
-struct Run {
-    /// Those of closed pieces.
-    closed: Range<u32>,
-    /// Those of open ones, which follow.
-    open: Range<u32>,
-    /// Index of the material, which the shaders take from the instance.
-    material: u32,
-    /// Index of its look.
-    look: usize,
 }
 
 /// Which of the shapes near the toy's casts a shadow.
@@ -125,15 +84,6 @@ pub enum Detail {
     AtMost(u32),
 }
 
-/// Pipelines of one pass: of both sides of each triangle, and of the side alone that faces the camera.
-pub(crate) struct Sided<'a> {
-    pub(crate) both: &'a Draw,
-    pub(crate) culled: &'a Draw,
-    pub(crate) groups: &'a [Group],
-    /// Where triangles are seen from.
-    pub(crate) camera_in_anchor: Vec3,
-}
-
 /// Corners of a shape near the toy's.
 struct CasterRange {
     /// How far it is from the toy's, in units of its file.
@@ -141,6 +91,8 @@ struct CasterRange {
     indices: Range<u32>,
     /// Of the corners, those of closed pieces, which come first.
     n_closed: usize,
+    /// Found when first asked for.
+    edges: OnceLock<Edges>,
 }
 
 impl CasterRange {
@@ -181,12 +133,8 @@ impl ToyMesh {
         let (casters, shadow_indices) = casters(toy, simplified);
         let shape = toy.shadow_indices();
         let (runs, indices) = runs(toy, &materials);
-        // Only of closed pieces is anything left out; the toy's own shape has the most triangles.
-        let n_lists = if lists && shape.n_closed > 0 {
-            1 + MAX_LIGHTS
-        } else {
-            0
-        };
+        // The toy's own shape has the most triangles.
+        let n_lists = if lists { 1 + MAX_LIGHTS } else { 0 };
         let lists = std::iter::repeat_n(shape.indices.len(), n_lists);
         Self {
             indices: gpu.buffer("indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
@@ -221,18 +169,20 @@ impl ToyMesh {
     }
 
     /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of closed pieces, and from outside, what faces
-    /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs.
+    /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs. Then the
+    /// silhouette is looked for as well, where it is asked for.
     pub(crate) fn corners<'a>(
         &'a self,
         gpu: &Gpu,
         (pose, side): (&'a PoseBuffers, Option<Side>),
         (points, detail): (&[Vec4], Detail),
+        target: Option<SilhouetteTarget<'_>>,
     ) -> Corners<'a> {
         let is_inside = points.iter().any(|point| pose.around.holds(point.as_dvec4()));
         let is_culled = self.is_closed && !is_inside;
         let viewers = Viewers::around(points).filter(|_| !is_inside);
-        let listed = viewers.zip(side.and_then(|side| pose.facing.get(side.index())));
-        let Some((viewers, list)) = listed else {
+        let listed = viewers.zip(side.and_then(|side| pose.lists.get(side.index())));
+        let Some((viewers, lists)) = listed else {
             return Corners {
                 is_culled,
                 ..self.shape(detail)
@@ -241,12 +191,31 @@ impl ToyMesh {
         let (closed, open) = self.split_caster(detail);
         let mut facing = viewers.facing(&pose.points, closed);
         facing.extend(open);
-        gpu.write(list, &facing);
+        gpu.write(&lists.facing, &facing);
+        let silhouette = target.and_then(|target| {
+            let shape = self.small_shape(pose, detail)?;
+            let seen = (&viewers, target.projection);
+            let silhouette = find_silhouette(shape, seen, &facing, target.part.size_px)?;
+            lists.silhouette(gpu, &silhouette, target.part.origin_px.as_vec2())
+        });
         Corners {
-            buffer: list,
+            buffer: &lists.facing,
             indices: 0..n(&facing),
             is_culled,
+            silhouette,
         }
+    }
+
+    /// A shape in a pose, if it is small enough to look for its silhouette.
+    fn small_shape<'a>(&'a self, pose: &'a PoseBuffers, detail: Detail) -> Option<Shape<'a>> {
+        let caster = self.caster(detail)?;
+        let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
+        let corners = self.shadow_corners.get(start..end)?;
+        (corners.len() <= MAX_SILHOUETTE_CORNERS).then(|| Shape {
+            positions: &pose.points,
+            corners,
+            edges: caster.edges.get_or_init(|| Edges::of(corners)),
+        })
     }
 
     /// Corners of a whole shape.
@@ -255,6 +224,7 @@ impl ToyMesh {
             buffer: &self.shadow_indices,
             indices: self.corners_of(detail),
             is_culled: false,
+            silhouette: None,
         }
     }
 
@@ -347,6 +317,7 @@ fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
         error: 0.0,
         indices: 0..n(&all),
         n_closed: toy.shadow_indices().n_closed,
+        edges: OnceLock::new(),
     }];
     for caster in simplified {
         let first = n(&all);
@@ -355,60 +326,8 @@ fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
             error: caster.error,
             indices: first..n(&all),
             n_closed: caster.n_closed,
+            edges: OnceLock::new(),
         });
     }
     (ranges, all)
-}
-
-/// Room for corners.
-fn list(gpu: &Gpu, n_corners: usize) -> Buffer {
-    let none = vec![0_u32; n_corners];
-    gpu.buffer("facing indices", bytemuck::cast_slice(&none), BufferUsages::INDEX)
-}
-
-fn n(indices: &[u32]) -> u32 {
-    u32::try_from(indices.len()).unwrap_or(u32::MAX)
-}
-
-/// The draws of a toy, those with the same material as one where they follow one another, and its corners: of each draw those
-/// of closed pieces first.
-fn runs(toy: &Toy, materials: &Materials) -> (Vec<Run>, Vec<u32>) {
-    let mut alike: Vec<(Range<usize>, usize)> = Vec::new();
-    for part in toy.parts() {
-        let [start, end] = [part.indices.start, part.indices.end].map(|index| index as usize);
-        match alike.last_mut() {
-            Some((last, material)) if *material == part.material && last.end == start => last.end = end,
-            _ => alike.push((start..end, part.material)),
-        }
-    }
-    let (mut runs, mut indices) = (Vec::new(), Vec::new());
-    for (range, material) in alike {
-        let Some(look) = materials.look(material) else {
-            continue;
-        };
-        let [closed, open] = [true, false].map(|is_closed| {
-            let first = n(&indices);
-            indices.extend(corners_of(toy, range.clone(), is_closed));
-            first..n(&indices)
-        });
-        runs.push(Run {
-            closed,
-            open,
-            // Materials are counted when they are read.
-            material: u32::try_from(material).unwrap_or(u32::MAX),
-            look,
-        });
-    }
-    (runs, indices)
-}
-
-/// Corners of those triangles within a range of the toy's that are of closed pieces, or of open ones.
-fn corners_of(toy: &Toy, range: Range<usize>, is_closed: bool) -> impl Iterator<Item = u32> {
-    let closed = &toy.shadow_indices().is_of_closed;
-    let triangles = toy.indices().as_chunks::<3>().0.iter().zip(closed);
-    triangles
-        .skip(range.start / 3)
-        .take(range.len() / 3)
-        .filter(move |(_, is_of_closed)| **is_of_closed == is_closed)
-        .flat_map(|(corners, _)| *corners)
 }

@@ -98,6 +98,7 @@ impl Stage {
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
             frame: &frame.view,
+            n_before: 0,
             exposure_ratio: 1.0,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,

@@ -92,6 +92,8 @@ struct MethodState {
     view: View,
     /// Relative, of `image`.
     exposure: f64,
+    /// How many pictures were learned from.
+    n_pictures: u32,
     image: Option<CameraImage>,
     /// Of the lights that were learned under, in the list that they were given in.
     light_indices: Vec<usize>,
@@ -342,7 +344,9 @@ impl Stage {
         };
         #[allow(clippy::cast_possible_truncation, reason = "both within 1e9 of 1")]
         let exposure_ratio = (input.exposure / state.exposure) as f32;
+        let n_before = state.n_pictures;
         if change >= Change::Picture {
+            state.n_pictures = n_before.wrapping_add(1);
             state.exposure = input.exposure;
             state.image = Some(input.image.clone());
         }
@@ -367,6 +371,7 @@ impl Stage {
         };
         let pictures = Pictures {
             frame,
+            n_before,
             exposure_ratio,
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,

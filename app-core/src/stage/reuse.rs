@@ -119,6 +119,7 @@ impl Stage {
             method,
             view: footprint.view.clone(),
             exposure: input.exposure,
+            n_pictures: 0,
             image: None,
             light_indices: self.lights.indices.clone(),
             is_first_view: true,

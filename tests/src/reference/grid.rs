@@ -14,6 +14,25 @@ const FULL_SHARE: f64 = 0.25;
 /// Most that all frames before count together, in frames like the latest.
 const MAX_FRAMES: f64 = 8.0;
 
+/// Which of a cell's points are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// All of them.
+    All,
+    /// Of each four neighbours one: its column and row.
+    Quarter(u32, u32),
+}
+
+impl Taken {
+    /// Their numbers, row by row.
+    fn points(self) -> impl Iterator<Item = u32> {
+        (0..N_POINTS * N_POINTS).filter(move |k| match self {
+            Self::All => true,
+            Self::Quarter(column, row) => [k % N_POINTS % 2, k / N_POINTS % 2] == [column, row],
+        })
+    }
+}
+
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
@@ -45,15 +64,16 @@ impl From<&Grid> for PlaneGrid {
 }
 
 impl PlaneGrid {
-    /// The texels that show the points of a cell, once for each point that is within the region and that no other receiver
-    /// hides.
+    /// The texels that show the points of a cell that are taken, once for each point that is within the region and that no
+    /// other receiver hides.
     pub fn texels_of<'a>(
         &'a self,
         region: &'a Region,
         receiver: usize,
         cell: UVec2,
+        taken: Taken,
     ) -> impl Iterator<Item = UVec2> + 'a {
-        (0..N_POINTS * N_POINTS).filter_map(move |k| {
+        taken.points().filter_map(move |k| {
             let within = (UVec2::new(k % N_POINTS, k / N_POINTS).as_dvec2() + 0.5) / f64::from(N_POINTS);
             let in_plane = self.origin_in_plane + (cell.as_dvec2() + within) * self.cell_m;
             let px = region.receivers[receiver].region_px(in_plane)?;
@@ -73,10 +93,14 @@ impl PlaneGrid {
     }
 }
 
-/// How far a cell is known of which `n_points` points are evidence.
+/// How far a cell is known of which `n_points` of the points taken are evidence.
 #[must_use]
-pub fn certainty(n_points: f64) -> f64 {
-    (n_points / (FULL_SHARE * f64::from(N_POINTS * N_POINTS))).min(1.0)
+pub fn certainty(n_points: f64, taken: Taken) -> f64 {
+    let n_taken = match taken {
+        Taken::All => N_POINTS * N_POINTS,
+        Taken::Quarter(..) => N_POINTS * N_POINTS / 4,
+    };
+    (n_points / (FULL_SHARE * f64::from(n_taken))).min(1.0)
 }
 
 /// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of

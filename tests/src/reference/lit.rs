@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::grid::{Cell, PlaneGrid, certainty};
+use super::grid::{Cell, PlaneGrid, Taken, certainty};
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
 
@@ -16,11 +16,11 @@ pub fn pool(
     region: &Region,
     pictures: &Pictures,
     solution: &Solution,
-    (receiver, grid): (usize, &PlaneGrid),
+    (receiver, grid, taken): (usize, &PlaneGrid, Taken),
 ) -> Raster<Cell> {
     Raster::from_fn(grid.size, |cell| {
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-        for texel in grid.texels_of(region, receiver, cell) {
+        for texel in grid.texels_of(region, receiver, cell, taken) {
             let at = centre_px(texel);
             let Some(point) = region
                 .receiver_point::<f64>(at)
@@ -42,7 +42,7 @@ pub fn pool(
         }
         Cell {
             value: sum / total,
-            certainty: certainty(total),
+            certainty: certainty(total, taken),
         }
     })
 }

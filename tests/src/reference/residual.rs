@@ -2,7 +2,7 @@
 
 use glam::{DVec3, UVec2};
 
-use super::grid::{Cell, PlaneGrid, certainty};
+use super::grid::{Cell, PlaneGrid, Taken, certainty};
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at, evidence};
 use super::raster::Raster;
 
@@ -19,7 +19,7 @@ pub fn pool(
 ) -> Raster<Cell> {
     Raster::from_fn(grid.size, |cell| {
         let mut sums = Sums::default();
-        for texel in grid.texels_of(region, receiver, cell) {
+        for texel in grid.texels_of(region, receiver, cell, Taken::All) {
             if pictures.seen.at(texel) > 0.0 {
                 sums.add(region, pictures, solution, texel);
             }
@@ -71,7 +71,7 @@ impl Sums {
         };
         Cell {
             value: DVec3::new(ratio(0), ratio(1), ratio(2)),
-            certainty: certainty(self.n_points),
+            certainty: certainty(self.n_points, Taken::All),
         }
     }
 }

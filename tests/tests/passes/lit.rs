@@ -1,7 +1,7 @@
 //! `lit` on scrambled inputs, and onto what was known before.
 
 use glam::{DVec4, UVec2};
-use harness::reference::grid::accumulate;
+use harness::reference::grid::{Taken, accumulate};
 use harness::reference::lit::pool;
 
 use app_core::internals::MAX_CELLS;
@@ -31,14 +31,29 @@ fn kept_before() -> Vec<[f32; 4]> {
     (0..u32::try_from(N_CELLS).unwrap()).map(cell).collect()
 }
 
-/// How far cells and sums are off that `source` makes.
+/// How far cells and sums are off that `source` makes, of all points and of two quarters.
 fn errors(source: &str) -> Errors {
+    let taken = [Taken::All, Taken::Quarter(1, 0), Taken::Quarter(0, 1)];
+    Errors::between(taken.map(|taken| pairs(source, taken)).concat())
+}
+
+/// What the shader has for the points taken: the step from one to the next, then the first.
+fn step(taken: Taken) -> [u32; 4] {
+    match taken {
+        Taken::All => [1, 0, 0, 0],
+        Taken::Quarter(column, row) => [2, 0, column, row],
+    }
+}
+
+/// Cells and sums as they are and as they should be.
+fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let kept_before = kept_before();
     let pools = [
         device.uniform(&scene.grids()),
         device.storage(bytemuck::cast_slice(&vec![[f32::NAN; 4]; N_CELLS])),
         device.storage(bytemuck::cast_slice(&kept_before)),
+        device.uniform(&step(taken)),
     ];
     let maps = [
         device.map(&scene.image),
@@ -48,8 +63,8 @@ fn errors(source: &str) -> Errors {
     ];
     let linear = device.linear_sampler();
     let mut own = buffers(0, &pools);
-    own.extend(views(3, &maps));
-    own.push((7, wgpu::BindingResource::Sampler(&linear)));
+    own.extend(views(4, &maps));
+    own.push((8, wgpu::BindingResource::Sampler(&linear)));
     let shared = scene.shared(device);
     device.compute(source, "cs_pool", [&buffers(0, &shared), &own], WORKGROUPS);
     let [cells, accumulated] = [1, 2].map(|k: usize| device.read(&pools[k]));
@@ -57,7 +72,7 @@ fn errors(source: &str) -> Errors {
     let pictures = scene.pictures(2);
     let mut pairs = Vec::new();
     for (receiver, grid) in scene.plane_grids().iter().enumerate() {
-        let fresh = pool(&scene.region, &pictures, &scene.solution, (receiver, grid));
+        let fresh = pool(&scene.region, &pictures, &scene.solution, (receiver, grid, taken));
         let n_some = fresh.texels().iter().filter(|cell| cell.certainty > 0.0).count();
         assert!(
             n_some > 30 && n_some < fresh.texels().len(),
@@ -75,7 +90,7 @@ fn errors(source: &str) -> Errors {
             }
         }
     }
-    Errors::between(pairs)
+    pairs
 }
 
 #[test]
@@ -95,6 +110,7 @@ fn a_fault_in_the_pooling_is_found() {
         ("FULL_SHARE: f32 = 0.25", "FULL_SHARE: f32 = 0.24"),
         ("MAX_FRAMES: f32 = 8.0", "MAX_FRAMES: f32 = 7.0"),
         (".a, 1.0)", ".a, 2.0)"),
+        ("= taken.first +", "="),
         ("+ 0.5) / globals", ") / globals"),
         (") != receiver_of(", ") + 9u == receiver_of("),
     ];

@@ -11,4 +11,5 @@ mod preset;
 mod region;
 mod rig;
 mod shadow_atlas;
+mod silhouette;
 mod transforms;

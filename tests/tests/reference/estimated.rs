@@ -4,6 +4,7 @@ use glam::{DVec3, DVec4, UVec2};
 use harness::reference::detail::{DETAIL, NOISE, separate, told};
 use harness::reference::estimate::{ESTIMATED, Known, complete};
 use harness::reference::fill::fill;
+use harness::reference::grid::Taken;
 use harness::reference::grid::{Cell, accumulate};
 use harness::reference::lit::pool;
 use harness::reference::model::{Pictures, Region, Solution};
@@ -56,7 +57,7 @@ fn texels() -> impl Iterator<Item = UVec2> {
 fn a_plate_is_found_again_in_the_frame() {
     let (region, solution, pictures) = scene(|_| PLATE, |_| DVec3::ZERO);
     let grid = grid(SIZE, 4);
-    let cells = pool(&region, &pictures, &solution, (0, &grid));
+    let cells = pool(&region, &pictures, &solution, (0, &grid, Taken::All));
     assert_eq!(cells.at(UVec2::new(7, 4)), Cell::default(), "the toy is there");
     let bright = cells.at(UVec2::ZERO).certainty;
     assert!(

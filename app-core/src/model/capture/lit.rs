@@ -5,7 +5,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::model::capture::observed::Observed;
-use crate::model::capture::pool::{POOL, Pool, PoolGrids};
+use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
@@ -29,6 +29,7 @@ const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::ReadWrite,
     Slot::ReadWrite,
+    Slot::per_use::<Taken>(),
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
@@ -62,6 +63,6 @@ impl Pass {
             observed.visibility,
             observed.ambient,
         ];
-        self.0.encode(recorder, &inputs.on, &pictures);
+        self.0.encode(recorder, &inputs.on, &Taken::ALL, &pictures);
     }
 }

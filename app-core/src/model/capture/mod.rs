@@ -11,7 +11,7 @@ use crate::model::capture::estimate::Fineness;
 use crate::model::capture::fit::Task;
 use crate::model::capture::observed::Observed;
 use crate::model::capture::order::Step;
-use crate::model::capture::pool::PoolGrids;
+use crate::model::capture::pool::{PoolGrids, Taken};
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
@@ -90,7 +90,10 @@ impl CapturePath<'_> {
             Step::FillLit => self.fill(recorder, &self.state.lit),
             Step::Estimate(fineness) => self.estimate(recorder, fineness),
             Step::Fit(task) => self.fit(recorder, task),
-            Step::Residual => passes.residual.encode(recorder, &self.residual_inputs()),
+            Step::Residual { is_first } => {
+                let inputs = self.residual_inputs(is_first);
+                passes.residual.encode(recorder, &inputs);
+            }
             Step::FillResidual => self.fill(recorder, &self.state.residual),
             Step::Detail => passes.detail.encode(recorder, &self.detail_inputs(), &of.detail),
             Step::Tint => passes
@@ -109,7 +112,7 @@ impl CapturePath<'_> {
     fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
         let (passes, lighting) = self.lighting;
         let posed = Posed {
-            globals: &self.region.globals,
+            globals: self.region.globals_on_device(),
             toy: self.toy,
             pose: &self.toy.physical,
         };
@@ -209,9 +212,13 @@ impl CapturePath<'_> {
         }
     }
 
-    fn residual_inputs(&self) -> residual::Inputs<'_> {
+    fn residual_inputs(&self, is_first: bool) -> residual::Inputs<'_> {
         residual::Inputs {
             on: self.pool_grids(&self.state.residual),
+            taken: match is_first {
+                true => Taken::ALL,
+                false => Taken::quarter(self.pictures.n_before),
+            },
             observed: self.observed(),
             plate: &self.captured.plate.view,
         }

@@ -27,7 +27,9 @@ pub(crate) enum Step {
     FillLit,
     Estimate(Fineness),
     Fit(Task),
-    Residual,
+    Residual {
+        is_first: bool,
+    },
     FillResidual,
     Detail,
     Tint,
@@ -51,7 +53,7 @@ impl Step {
             Self::FillLit | Self::FillResidual => &["fill"],
             Self::Estimate(_) => &["estimate"],
             Self::Fit(_) => &["fit", "fit_solve"],
-            Self::Residual => &["residual"],
+            Self::Residual { .. } => &["residual"],
             Self::Detail => &["detail"],
             Self::Tint => &["tint"],
             Self::TintFill => &["tint_fill"],
@@ -94,7 +96,8 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
             add_rest_of_fits(&mut steps, plan, true);
         }
     }
-    steps.extend([Step::Residual, Step::FillResidual]);
+    let is_first = change >= Change::Scene;
+    steps.extend([Step::Residual { is_first }, Step::FillResidual]);
     add_if(&mut steps, detail::is_needed(plan), [Step::Detail]);
     let is_new_view = change >= Change::View;
     steps.extend([Step::Tint, Step::TintFill, Step::Appearance { is_new_view }]);

@@ -6,16 +6,45 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::{SCENE_SLOTS, Scene};
 
 /// Sample points of a cell, and its accumulation.
-pub(crate) const POOL: Part = part!("common/pool", constants: [N_POINTS]);
+pub(crate) const POOL: Part = part!("common/pool", structs: [Taken], constants: [N_POINTS]);
 /// Points of a cell along each side.
 const N_POINTS: u32 = 8;
 /// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
 const WORKGROUPS: u32 = 8;
+
+shared_struct! {
+    /// Which of a cell's points are looked at.
+    pub(crate) struct Taken {
+        pub stride: u32,
+        pub _pad: u32,
+        pub first: [u32; 2],
+    }
+}
+
+impl Taken {
+    /// All of them.
+    pub(crate) const ALL: Self = Self {
+        stride: 1,
+        _pad: 0,
+        first: [0, 0],
+    };
+
+    /// A quarter, all of which come in turn: what is known is a mean over several pictures.
+    pub(crate) fn quarter(n_pictures: u32) -> Self {
+        Self {
+            stride: 2,
+            _pad: 0,
+            // The second of two pictures lies between the points of the first.
+            first: [[0, 0], [1, 1], [1, 0], [0, 1]][(n_pictures % 4) as usize],
+        }
+    }
+}
 
 pub(crate) struct Pool {
     compute: Compute,
@@ -32,7 +61,7 @@ pub(crate) struct PoolGrids<'a> {
 }
 
 impl Pool {
-    /// The slots begin with the grids, the cells and their accumulated sums.
+    /// The slots begin with the grids, the cells and their accumulated sums, and the points taken.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader, slots: &'static [Slot]) -> Self {
         Self {
             compute: gpu.compute(&ComputeSpec {
@@ -44,19 +73,27 @@ impl Pool {
     }
 
     /// Pools `pictures`, which are in the order of the slots, the sampler after them.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, on: &PoolGrids<'_>, pictures: &[&TextureView]) {
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        on: &PoolGrids<'_>,
+        taken: &Taken,
+        pictures: &[&TextureView],
+    ) {
         let buffers = [on.grids, &on.cells.cells, &on.cells.accumulated].map(Resource::from);
         let sampler = Resource::from(&recorder.gpu.samplers.linear);
         let resources: Vec<_> = buffers
             .into_iter()
+            .chain([Resource::PerUse])
             .chain(pictures.iter().map(|picture| Resource::from(*picture)))
             .chain([sampler])
             .collect();
         let groups = [
             recorder.bind(&self.compute, GROUP_SCENE, &on.scene.resources()),
-            recorder.bind(&self.compute, GROUP_PASS, &resources),
+            recorder.bind_with(&self.compute, GROUP_PASS, taken, &resources),
         ];
-        let n_points = (u64::from(N_POINTS * N_POINTS) * on.layout.n_cells()).min(recorder.n_pixels);
+        let n_side = N_POINTS / taken.stride;
+        let n_points = (u64::from(n_side * n_side) * on.layout.n_cells()).min(recorder.n_pixels);
         let workgroups = [WORKGROUPS, WORKGROUPS, on.n_receivers];
         recorder.compute_over(&self.compute, &groups, workgroups, n_points);
     }

@@ -6,7 +6,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::TextureView;
 use crate::model::capture::observed::Observed;
-use crate::model::capture::pool::{POOL, Pool, PoolGrids};
+use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::FIT;
@@ -29,6 +29,7 @@ const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::ReadWrite,
     Slot::ReadWrite,
+    Slot::per_use::<Taken>(),
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
@@ -41,6 +42,8 @@ pub(crate) struct Pass(Pool);
 
 pub(crate) struct Inputs<'a> {
     pub(crate) on: PoolGrids<'a>,
+    /// Points of a cell that are looked at.
+    pub(crate) taken: Taken,
     pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a TextureView,
 }
@@ -60,6 +63,6 @@ impl Pass {
             observed.visibility,
             observed.ambient,
         ];
-        self.0.encode(recorder, &inputs.on, &pictures);
+        self.0.encode(recorder, &inputs.on, &inputs.taken, &pictures);
     }
 }

@@ -1,22 +1,23 @@
 //! `coverage`: fraction of each pixel that the posed toy covers, from many positions, in one pass.
 
-use wgpu::{CompareFunction, Face, VertexFormat};
+use wgpu::{CompareFunction, VertexFormat};
 
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
+use crate::gpu::pipeline::{DrawSpec, Stream};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
-use crate::passes::counting::{CountingTargets, counting, ordered};
+use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::{Detail, Side, ToyMesh};
+use crate::passes::toy_mesh::{Detail, Side, SilhouetteTarget, ToyMesh};
 
 /// Counting of a pixel's covered positions.
 pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BEHIND, &COVERED, &part!("frame/coverage")]);
+pub(crate) const SHADER: Shader =
+    Shader::new(&[&GLOBALS, &BEHIND, &COVERED, &TILES, &part!("frame/coverage")]);
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Positions within a pixel that the toy's coverage is counted over. RMS error of the area that a straight edge of any
 /// direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
@@ -25,8 +26,7 @@ pub(crate) const N_POSITIONS: u32 = 32;
 pub(crate) const COVERED_CODES: u32 = 7;
 
 pub(crate) struct Pass {
-    /// Draws both sides of each triangle, or the one that faces the camera.
-    draws: [Draw; 2],
+    draws: CountingDraws,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -51,31 +51,33 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, &[], &[], &[]];
-        let spec = |culled| DrawSpec {
+        let each = DrawSpec {
             vertex: "vs_move",
             streams: STREAMS,
             targets: vec![counting()],
             depth: Some(ordered(CompareFunction::Greater)),
-            culled,
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
         Self {
-            draws: [None, Some(Face::Back)].map(|culled| gpu.draw(&spec(culled))),
+            draws: CountingDraws::new(gpu, &each),
         }
     }
 
-    /// Draws the shown toy once for each position in a pixel.
+    /// Draws the shown toy once for each position in a pixel, as far as its silhouette comes near.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
         let camera = inputs.camera_in_anchor.extend(1.0);
         let seen = (pose, Some(Side::Camera));
-        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own));
-        let draw = &self.draws[usize::from(corners.is_culled)];
-        let group = recorder.bind(draw, GROUP_SCENE, &[(&inputs.region.globals).into()]);
+        let target = SilhouetteTarget {
+            projection: &inputs.region.uniform.by_camera(),
+            part: inputs.region.plan.toy_box,
+        };
+        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
+        let globals = [(&inputs.region.globals).into()];
+        let group = recorder.bind(self.draws.any(), GROUP_SCENE, &globals);
         let mut render = targets.covered.render(recorder, SHADER.name);
         render.part_of(inputs.region.plan.part_drawn());
-        render.begin(draw, &[group]);
-        corners.bind(&mut render, pose);
-        corners.draw(&mut render, 0..N_POSITIONS);
+        let drawn = (&corners, pose);
+        self.draws.count(&mut render, &[group], drawn, 0..N_POSITIONS);
     }
 }

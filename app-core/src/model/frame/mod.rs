@@ -101,7 +101,7 @@ impl FramePath<'_> {
     fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
         let (passes, lighting) = self.lighting;
         let posed = Posed {
-            globals: &self.region.globals,
+            globals: self.region.globals_on_device(),
             toy: self.toy,
             pose: &self.toy.shown,
         };

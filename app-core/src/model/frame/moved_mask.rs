@@ -71,7 +71,7 @@ impl Pass {
     ) {
         let seen = (&toy.physical, Some(Side::Camera));
         let camera = Vec3::from(region.uniform.camera_in_anchor).extend(1.0);
-        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own));
+        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), None);
         let draw = &self.draws[usize::from(corners.is_culled)];
         let group = recorder.bind(draw, GROUP_SCENE, &[(&region.globals).into()]);
         let colors = [Some(resolved(&targets.samples.view, &targets.moved.view))];

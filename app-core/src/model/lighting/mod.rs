@@ -5,13 +5,13 @@ use glam::Vec4;
 
 use crate::geometry::light_points::ambient_directions;
 use crate::geometry::shadow_atlas::ShadowAtlas;
-use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
 use crate::model::lighting::occlusion::LightPointsBuffer;
 use crate::model::plan::{Casters, Plan};
 use crate::passes::counting::CountingTargets;
+use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
 
@@ -79,7 +79,7 @@ pub(crate) struct Lighting {
 /// A toy in a pose, in a view.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a> {
-    pub(crate) globals: &'a Buffer,
+    pub(crate) globals: GlobalsOnDevice<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
 }

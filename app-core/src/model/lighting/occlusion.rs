@@ -1,8 +1,9 @@
 //! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
 
 use glam::{UVec2, Vec4};
-use wgpu::{CompareFunction, Face, VertexFormat};
+use wgpu::{CompareFunction, VertexFormat};
 
+use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
@@ -11,10 +12,10 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::model::plan::Plan;
-use crate::passes::counting::{CountingTargets, counting, not_counting, ordered};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, not_counting, ordered};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
 use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, SilhouetteTarget, ToyMesh};
 use crate::scene::MAX_RECEIVERS;
 
 /// Increment per hidden light point.
@@ -23,6 +24,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FLATTEN,
     &HIDDEN,
+    &TILES,
     &part!("lighting/occlusion", structs: [LightPoints]),
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
@@ -113,15 +115,14 @@ impl Targets {
 }
 
 pub(crate) struct Pass {
-    /// Draws both sides of each triangle, or the one that faces the light.
-    cover: [Draw; 2],
+    cover: CountingDraws,
     /// Masks pixels that show another receiver, where there are several.
     route: Draw,
 }
 
 /// A posed toy, and the points of a light whose occlusion is tested.
 pub(crate) struct Inputs<'a> {
-    pub(crate) globals: &'a Buffer,
+    pub(crate) globals: GlobalsOnDevice<'a>,
     pub(crate) n_receivers: u32,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
@@ -135,12 +136,11 @@ pub(crate) struct Inputs<'a> {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
-        let cover = |culled| DrawSpec {
+        let cover = DrawSpec {
             vertex: "vs_flatten",
             streams: STREAMS,
             targets: vec![counting()],
             depth: Some(ordered(CompareFunction::Greater)),
-            culled,
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
         let route = DrawSpec {
@@ -151,7 +151,7 @@ impl Pass {
         };
         Self {
             // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
-            cover: [None, Some(Face::Back)].map(|culled| gpu.draw(&cover(culled))),
+            cover: CountingDraws::new(gpu, &cover),
             route: gpu.draw(&route),
         }
     }
@@ -160,23 +160,32 @@ impl Pass {
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
         let of_pose = (inputs.pose, inputs.side);
         let points = (inputs.light.in_anchor(), inputs.caster);
-        let corners = inputs.toy.corners(recorder.gpu, of_pose, points);
-        let cover = &self.cover[usize::from(corners.is_culled)];
+        let projection = inputs.globals.uniform.onto_first_receiver(points.0);
+        // Each receiver would have silhouettes of its own.
+        let projection = projection.filter(|_| inputs.n_receivers == 1);
+        let target = projection.as_ref().map(|projection| SilhouetteTarget {
+            projection,
+            part: PixelRect {
+                origin_px: UVec2::ZERO,
+                size_px: targets.count.size_px(),
+            },
+        });
+        let corners = inputs.toy.corners(recorder.gpu, of_pose, points, target);
+        let cover = self.cover.any();
         let groups = [
-            recorder.bind(cover, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
             recorder.bind(cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
         ];
         let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
         let mut render = targets.render(recorder, SHADER.name);
-        corners.bind(&mut render, inputs.pose);
+        let drawn = (&corners, inputs.pose);
         for receiver in 0..n_receivers {
             if n_receivers > 1 {
                 render.begin(&self.route, &groups);
                 render.draw(0..3, receiver..receiver + 1);
             }
-            render.begin(cover, &groups);
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            corners.draw(&mut render, instances);
+            self.cover.count(&mut render, &groups, drawn, instances);
         }
     }
 }

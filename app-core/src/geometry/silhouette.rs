@@ -1,0 +1,279 @@
+//! Where the silhouette of a shape may run, seen from many points at once, so that all else is drawn but once.
+//!
+//! What a shape covers is bounded by its silhouette: edges between a triangle that shows its outer side and one that shows
+//! its inner side, and edges of one triangle alone. In a tile that no silhouette of any point comes near, every point sees
+//! the same: all of it is covered, or none. Only triangles that meet other tiles have to be drawn once for each point.
+//! Source: Appel 1967 (silhouettes as edges between front and back faces); tiles as in Green 2008 (bounds of penumbras).
+
+use std::collections::HashMap;
+
+use glam::{UVec2, Vec2, Vec3, Vec3Swizzles, Vec4Swizzles};
+
+use crate::geometry::facing::Viewers;
+use crate::geometry::tiles::{PixelBox, Tiles};
+
+/// Distance that positions within a pixel are from its centre, and some for the rounding of 32 bits.
+const AROUND_PX: f32 = 0.55;
+
+/// An edge, and the triangles beside it: none where there is one alone, or more than two, or two that do not pass it in
+/// opposite directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Edge {
+    ends: [u32; 2],
+    beside: Option<[u32; 2]>,
+}
+
+/// The edges of a shape.
+#[derive(Clone, Debug, Default)]
+pub struct Edges(Vec<Edge>);
+
+impl Edges {
+    /// Of triangles that share corners where they share places.
+    #[must_use]
+    pub fn of(corners: &[u32]) -> Self {
+        /// Triangles that pass an edge from its lower to its higher corner, and the other way.
+        #[derive(Default)]
+        struct Passed([Vec<u32>; 2]);
+        let mut passed: HashMap<[u32; 2], Passed> = HashMap::new();
+        for (index, [a, b, c]) in (0..).zip(corners.as_chunks::<3>().0) {
+            for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
+                let edge = passed.entry([from.min(to), from.max(to)]).or_default();
+                edge.0[usize::from(from > to)].push(index);
+            }
+        }
+        let mut edges: Vec<Edge> = passed
+            .into_iter()
+            .map(|(ends, passed)| {
+                let beside = match [&passed.0[0][..], &passed.0[1][..]] {
+                    [[one], [other]] => Some([*one, *other]),
+                    _ => None,
+                };
+                Edge { ends, beside }
+            })
+            .collect();
+        edges.sort_unstable_by_key(|edge| edge.ends);
+        Self(edges)
+    }
+}
+
+/// Where points of a shape are seen.
+pub trait Projection {
+    /// Of a point in anchor space; none where that has no bounds.
+    fn land(&self, in_anchor: Vec3) -> Option<Landing>;
+}
+
+/// Where a point is seen, from one point or from many.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// In the middle.
+    pub at_px: Vec2,
+    /// How far from there, along each axis.
+    pub within_px: Vec2,
+    /// Whether something may cut off what is there: the silhouette then runs where it does.
+    pub may_be_cut: bool,
+}
+
+/// From a camera, before receivers.
+#[derive(Clone, Debug)]
+pub struct ByCamera {
+    /// Clip space of the region.
+    pub clip_from_anchor: glam::Mat4,
+    /// Size of the region.
+    pub region_size_px: Vec2,
+    /// Corner of the target in the region.
+    pub origin_px: Vec2,
+    /// Inverse depths of the receivers' planes at a pixel of the region (u, v, 1).
+    pub inverse_depths: Vec<Vec3>,
+}
+
+/// Half of the share of its depth by which a point may lie behind a receiver and still be before it, as the shaders have it.
+const ON_RECEIVER: f32 = 0.5e-4;
+
+impl Projection for ByCamera {
+    fn land(&self, in_anchor: Vec3) -> Option<Landing> {
+        let clip = self.clip_from_anchor * in_anchor.extend(1.0);
+        // Reversed depth: beyond 1 it is nearer than what is drawn.
+        if clip.w <= 0.0 || clip.z > clip.w {
+            return None;
+        }
+        let in_region_px = (clip.xy() / clip.w * Vec2::new(0.5, -0.5) + 0.5) * self.region_size_px;
+        let inverse_depth = 1.0 / clip.w;
+        let is_behind =
+            |plane: &Vec3| inverse_depth < plane.dot(in_region_px.extend(1.0)) * (1.0 - ON_RECEIVER);
+        Some(Landing {
+            at_px: in_region_px - self.origin_px,
+            within_px: Vec2::ZERO,
+            may_be_cut: self.inverse_depths.iter().any(is_behind),
+        })
+    }
+}
+
+/// From the points of a light, as shadows on the first receiver.
+#[derive(Clone, Debug)]
+pub struct OntoReceiver {
+    /// A ball that holds the light's points, in anchor space: the plane is y = 0.
+    pub light: Viewers,
+    /// Homography: clip (x, y, w) of the plane's point (x, z, 1).
+    pub clip_from_plane: glam::Mat3,
+    /// Size of the region.
+    pub region_size_px: Vec2,
+    /// Depth in metres nearer than which a shadow is cut off.
+    pub near_m: f32,
+}
+
+/// Height up to which a shadow may be cut off where its caster meets the receiver, in metres.
+const NEAR_RECEIVER_M: f32 = 1e-5;
+
+impl Projection for OntoReceiver {
+    fn land(&self, in_anchor: Vec3) -> Option<Landing> {
+        let (height, light) = (in_anchor.y, self.light.centre.extend(self.light.w));
+        let below = light.y - light.w * height;
+        let aside = light.w * in_anchor.xz() - light.xz();
+        let least_below = below - self.light.radius;
+        if least_below <= 0.0 {
+            return None;
+        }
+        let shadow = in_anchor.xz() + aside * (height / below);
+        // Of (aside / below), where either moves by the radius.
+        let within_m = height.abs() * self.light.radius / least_below * (1.0 + aside.length() / below);
+        let clip = self.clip_from_plane * shadow.extend(1.0);
+        let rows = self.clip_from_plane.transpose();
+        let [x, y, w] = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate());
+        let least_w = clip.z - within_m * w.length();
+        if least_w <= self.near_m.max(0.0) {
+            return None;
+        }
+        let at = clip.truncate() / clip.z;
+        let moved = |row: Vec2, at: f32| within_m * (row - at * w).length() / least_w;
+        let half = 0.5 * self.region_size_px;
+        Some(Landing {
+            at_px: (at * Vec2::new(0.5, -0.5) + 0.5) * self.region_size_px,
+            within_px: Vec2::new(moved(x, at.x), moved(y, at.y)) * half,
+            may_be_cut: height < NEAR_RECEIVER_M,
+        })
+    }
+}
+
+/// A shape in a pose: its places in anchor space, its triangles, and their edges.
+#[derive(Clone, Copy)]
+pub struct Shape<'a> {
+    /// Of all vertices, in anchor space.
+    pub positions: &'a [Vec3],
+    /// Three of each triangle.
+    pub corners: &'a [u32],
+    /// Between them.
+    pub edges: &'a Edges,
+}
+
+/// What has to be drawn once for each point, and where.
+#[derive(Clone, Debug)]
+pub struct Silhouette {
+    /// Tiles in which the points may see different things.
+    pub tiles: Tiles,
+    /// Corners of the triangles, of those that were asked for, that meet these tiles.
+    pub corners: Vec<u32>,
+}
+
+/// Looks for the silhouette of a shape in a target of `size_px`. `facing` are the corners that are to be drawn, at least those
+/// that show to one of the viewers. None where what is seen of a point has no bounds.
+#[must_use]
+pub fn find_silhouette(
+    shape: Shape<'_>,
+    (viewers, projection): (&Viewers, &dyn Projection),
+    facing: &[u32],
+    size_px: UVec2,
+) -> Option<Silhouette> {
+    let landings = landings(shape, projection)?;
+    let land = |corner: u32| landings.get(corner as usize).copied().unwrap_or(NOWHERE);
+    let triangles = shape.corners.as_chunks::<3>().0;
+    let sides: Vec<Sides> = triangles
+        .iter()
+        .map(|corners| Sides::of(viewers, corners.map(|corner| place(shape.positions, corner))))
+        .collect();
+    let mut tiles = Tiles::over(size_px);
+    for edge in &shape.edges.0 {
+        if edge
+            .beside
+            .is_none_or(|[one, other]| may_part(&sides, one, other))
+        {
+            let [from, to] = edge.ends.map(land);
+            let reach_px = from.within_px.max(to.within_px) + AROUND_PX;
+            tiles.mark_segment([from.at_px, to.at_px], reach_px);
+        }
+    }
+    for corners in triangles {
+        let landings = corners.map(land);
+        if landings.iter().any(|landing| landing.may_be_cut) {
+            tiles.mark_box(around(landings));
+        }
+    }
+    let counted = tiles.counted();
+    let corners: Vec<u32> = facing
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .filter(|corners| counted.meets(around(corners.map(land))))
+        .flatten()
+        .copied()
+        .collect();
+    Some(Silhouette { tiles, corners })
+}
+
+/// Of a corner that there is not.
+const NOWHERE: Landing = Landing {
+    at_px: Vec2::ZERO,
+    within_px: Vec2::ZERO,
+    may_be_cut: false,
+};
+
+/// Where each corner of a shape is seen; none where one has no bounds.
+fn landings(shape: Shape<'_>, projection: &dyn Projection) -> Option<Vec<Landing>> {
+    let mut is_used = vec![false; shape.positions.len()];
+    for corner in shape.corners {
+        if let Some(is_used) = is_used.get_mut(*corner as usize) {
+            *is_used = true;
+        }
+    }
+    let land = |(position, is_used): (&Vec3, bool)| match is_used {
+        true => projection.land(*position),
+        false => Some(NOWHERE),
+    };
+    shape.positions.iter().zip(is_used).map(land).collect()
+}
+
+/// Which sides of a triangle may show to one of the viewers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sides {
+    outer: bool,
+    inner: bool,
+}
+
+impl Sides {
+    fn of(viewers: &Viewers, [a, b, c]: [Vec3; 3]) -> Self {
+        Self {
+            outer: viewers.may_see([a, b, c]),
+            inner: viewers.may_see([a, c, b]),
+        }
+    }
+}
+
+/// Whether one of the viewers may see the outer side of one triangle and the inner side of another.
+fn may_part(sides: &[Sides], one: u32, other: u32) -> bool {
+    let [one, other] = [one, other].map(|index| sides[index as usize]);
+    (one.outer && other.inner) || (one.inner && other.outer)
+}
+
+fn place(positions: &[Vec3], corner: u32) -> Vec3 {
+    positions.get(corner as usize).copied().unwrap_or_default()
+}
+
+/// A box around all that is seen of a triangle.
+fn around(landings: [Landing; 3]) -> PixelBox {
+    let low = landings.map(|one| one.at_px - one.within_px);
+    let high = landings.map(|one| one.at_px + one.within_px);
+    let around = Vec2::splat(AROUND_PX);
+    [
+        low[0].min(low[1]).min(low[2]) - around,
+        high[0].max(high[1]).max(high[2]) + around,
+    ]
+}
