@@ -1,6 +1,7 @@
 //! Replay harness: runs the core over recorded sessions on a desktop, scores what it makes and reports what it took.
 
 pub mod alignment;
+pub mod ball;
 pub mod bench;
 pub mod card;
 pub mod check;
@@ -30,6 +31,7 @@ pub mod random;
 pub mod reference;
 pub mod replay;
 pub mod report;
+pub mod scaling;
 pub mod session_format;
 pub mod sized;
 pub mod stability;

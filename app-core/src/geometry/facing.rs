@@ -30,11 +30,18 @@ impl Viewers {
     }
 
     /// Whether a triangle, counter-clockwise seen from outside, may show its outer side to one of them.
-    pub(super) fn may_see(&self, [a, b, c]: [Vec3; 3]) -> bool {
+    fn may_see(&self, triangle: [Vec3; 3]) -> bool {
+        self.sides_of(triangle)[0]
+    }
+
+    /// Whether a triangle may show its outer side to one of them, and whether its inner side.
+    pub(super) fn sides_of(&self, [a, b, c]: [Vec3; 3]) -> [bool; 2] {
         let normal = (b - a).cross(c - a);
         let to_centre = self.centre - self.w * a;
-        // Of a ball the point that is farthest on the outer side; the rounding of a product of four is far below a thousandth.
-        normal.dot(to_centre) >= -(self.radius + 1e-3 * to_centre.length()) * normal.length()
+        let towards = normal.dot(to_centre);
+        // Of a ball the point that is farthest on either side; the rounding of a product of four is far below a thousandth.
+        let reach = (self.radius + 1e-3 * to_centre.length()) * normal.length();
+        [towards >= -reach, towards <= reach]
     }
 
     /// Corners of those triangles of a shape that face them, in the same order.

@@ -186,9 +186,10 @@ pub fn find_silhouette(
     let landings = landings(shape, projection)?;
     let land = |corner: u32| landings.get(corner as usize).copied().unwrap_or(NOWHERE);
     let triangles = shape.corners.as_chunks::<3>().0;
-    let sides: Vec<Sides> = triangles
+    // Whether a triangle may show its outer side, and its inner side.
+    let sides: Vec<[bool; 2]> = triangles
         .iter()
-        .map(|corners| Sides::of(viewers, corners.map(|corner| place(shape.positions, corner))))
+        .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
         .collect();
     let mut tiles = Tiles::over(size_px);
     for edge in &shape.edges.0 {
@@ -241,26 +242,10 @@ fn landings(shape: Shape<'_>, projection: &dyn Projection) -> Option<Vec<Landing
     shape.positions.iter().zip(is_used).map(land).collect()
 }
 
-/// Which sides of a triangle may show to one of the viewers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Sides {
-    outer: bool,
-    inner: bool,
-}
-
-impl Sides {
-    fn of(viewers: &Viewers, [a, b, c]: [Vec3; 3]) -> Self {
-        Self {
-            outer: viewers.may_see([a, b, c]),
-            inner: viewers.may_see([a, c, b]),
-        }
-    }
-}
-
 /// Whether one of the viewers may see the outer side of one triangle and the inner side of another.
-fn may_part(sides: &[Sides], one: u32, other: u32) -> bool {
-    let [one, other] = [one, other].map(|index| sides[index as usize]);
-    (one.outer && other.inner) || (one.inner && other.outer)
+fn may_part(sides: &[[bool; 2]], one: u32, other: u32) -> bool {
+    let [[outer, inner], [other_outer, other_inner]] = [one, other].map(|index| sides[index as usize]);
+    (outer && other_inner) || (inner && other_outer)
 }
 
 fn place(positions: &[Vec3], corner: u32) -> Vec3 {

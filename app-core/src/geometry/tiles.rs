@@ -5,6 +5,9 @@ use glam::{UVec2, Vec2};
 /// Pixels along each side of a tile.
 pub const TILE_PX: u32 = 4;
 
+/// What lies within so many pixels along both axes is marked as a box.
+const SHORT_PX: f32 = TILE_PX as f32;
+
 /// Tiles of a target, in rows, whose last ones may reach past its border.
 #[derive(Clone, Debug)]
 pub struct Tiles {
@@ -30,6 +33,10 @@ impl Tiles {
     /// Marks all tiles that a segment meets, or that lie within `reach_px` of it along either axis.
     pub fn mark_segment(&mut self, [from, to]: PixelBox, reach_px: Vec2) {
         let (low, high) = (from.min(to) - reach_px, from.max(to) + reach_px);
+        // Of a short one there is nothing to leave out.
+        if (high - low).cmplt(Vec2::splat(SHORT_PX)).all() {
+            return self.mark_box([low, high]);
+        }
         let Some(rows) = span(low.y, high.y, self.size.y) else {
             return;
         };

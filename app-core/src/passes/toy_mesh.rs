@@ -17,7 +17,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
 use crate::gpu::recorder::{Group, Recorder, Render};
 use crate::passes::materials::Materials;
-pub(crate) use crate::passes::toy_mesh::corners::{Corners, Side, SilhouetteTarget};
+pub(crate) use crate::passes::toy_mesh::corners::{Corners, Saves, Side, SilhouetteTarget};
 use crate::passes::toy_mesh::corners::{Lists, MAX_SILHOUETTE_CORNERS, n};
 pub(crate) use crate::passes::toy_mesh::runs::Sided;
 use crate::passes::toy_mesh::runs::{Run, runs};
@@ -192,7 +192,8 @@ impl ToyMesh {
         let mut facing = viewers.facing(&pose.points, closed);
         facing.extend(open);
         gpu.write(&lists.facing, &facing);
-        let silhouette = target.and_then(|target| {
+        let worth_it = target.filter(|target| target.saves.pays(facing.len(), self.is_closed));
+        let silhouette = worth_it.and_then(|target| {
             let shape = self.small_shape(pose, detail)?;
             let seen = (&viewers, target.projection);
             let silhouette = find_silhouette(shape, seen, &facing, target.part.size_px)?;

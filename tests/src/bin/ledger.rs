@@ -1,7 +1,7 @@
 //! Prints what frames of a session must cost on any device, pass by pass. Needs no device.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -13,7 +13,9 @@ use clap::Parser;
 use harness::count::{count, ledgers};
 use harness::files::BUNDLED_SESSION;
 use harness::program::{exit_code, open_session};
+use harness::scaling::{by_area, by_lights, by_picture, by_triangles};
 use harness::sized::{SizePx, parse_size, sized_input, sized_scene};
+use harness::stability::draw;
 
 /// Say what frames of a session must cost on any device, pass by pass: triangles, vertices, bytes that a tiler moves, copies
 /// of the screen; for a new pose, a new picture and a new view.
@@ -28,6 +30,9 @@ struct Args {
     /// In pictures, and on a screen, of this size [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<SizePx>,
+    /// Instead, draw how the cost of a ball grows with picture, region, lights and triangles, into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["session", "presets", "size"])]
+    scaling: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -35,6 +40,9 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
+    if let Some(folder) = &args.scaling {
+        return draw_scaling(folder);
+    }
     let folder = args
         .session
         .clone()
@@ -58,6 +66,16 @@ fn run(args: &Args) -> anyhow::Result<()> {
     io::stdout()
         .write_all(text.as_bytes())
         .context("writing to standard output")
+}
+
+fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    for sweep in [by_picture()?, by_area()?, by_lights()?, by_triangles()?] {
+        draw(folder, &sweep)?;
+        let path = folder.join(format!("{}.svg", sweep.name));
+        writeln!(io::stdout(), "{}", path.display()).context("writing to standard output")?;
+    }
+    Ok(())
 }
 
 /// The first frame that is worked on.

@@ -1,51 +1,19 @@
 //! Budgets of frames, held on the ledger: it has no noise and needs no device.
 
-use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
-
 use app_core::Core;
-use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
 use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_FRONT, Knob, Step};
 use app_core::preset::Preset;
-use app_core::scene::{Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
+use app_core::scene::Scene;
 use app_core::toy::Toy;
-use glam::{DMat4, DVec2, DVec3};
+use glam::DVec3;
+use harness::ball::{SCREEN_PX, ball, lifted, phone};
 use harness::bench::FrameKind;
 use harness::count::{Counted, count, ledgers};
-use harness::glb::Glb;
-use harness::photographer::world::camera;
-use serde_json::json;
 
-/// The screen of an iPhone X, across.
-const SCREEN_PX: [u32; 2] = [2436, 1125];
-
-/// A closed ball of 2 `n_around` (`n_along` - 1) triangles, 40 mm in radius.
-fn ball(n_around: u32, n_along: u32) -> Toy {
-    let mut positions = vec![[0.0f32, 1.0, 0.0]];
-    for ring in 1..n_along {
-        let polar = PI * f64::from(ring) / f64::from(n_along);
-        positions.extend((0..n_around).map(|step| {
-            let turn = TAU * f64::from(step) / f64::from(n_around);
-            let at = DVec3::new(polar.sin() * turn.cos(), polar.cos(), polar.sin() * turn.sin());
-            at.as_vec3().to_array()
-        }));
-    }
-    positions.push([0.0, -1.0, 0.0]);
-    let last = u32::try_from(positions.len()).unwrap() - 1;
-    let at = |ring: u32, step: u32| 1 + (ring - 1) * n_around + step % n_around;
-    let mut indices = Vec::new();
-    for step in 0..n_around {
-        indices.extend([0, at(1, step + 1), at(1, step)]);
-        for ring in 1..n_along - 1 {
-            let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(r, s)| at(ring + r, step + s));
-            indices.extend([a, b, c, b, d, c]);
-        }
-        indices.extend([last, at(n_along - 1, step), at(n_along - 1, step + 1)]);
-    }
-    let normals: Vec<f32> = positions.concat();
-    let scaled: Vec<f32> = normals.iter().map(|x| 0.04 * x).collect();
-    lifted(&scaled, &normals, &indices)
+/// On that screen.
+fn scene_of(toy: Toy, n_lights: u32) -> (Scene, FrameInput) {
+    harness::ball::scene_of(toy, n_lights, (phone(), SCREEN_PX))
 }
 
 /// Squares of 80 mm, two triangles each, a hair's breadth one above the other.
@@ -73,94 +41,7 @@ fn grains(n: u32) -> Toy {
     lifted(&positions, &normals, &indices.collect::<Vec<_>>())
 }
 
-/// A toy that a clip lifts.
-fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
-    let mut file = Glb::new();
-    let (position, normal) = (file.floats("VEC3", positions), file.floats("VEC3", normals));
-    let indices = file.u32s(indices);
-    let mesh = file.push(
-        "meshes",
-        json!({ "primitives": [{ "attributes": { "POSITION": position, "NORMAL": normal }, "indices": indices }] }),
-    );
-    file.push("nodes", json!({ "mesh": mesh }));
-    let times = file.floats("SCALAR", &[0.0, 1.0]);
-    let places = file.floats("VEC3", &[0.0, 0.0, 0.0, 0.02, 0.02, 0.0]);
-    file.animate("lift", "translation", "LINEAR", [times, places]);
-    Toy::from_glb("toy.glb", &file.bytes()).unwrap()
-}
-
-/// A grey picture of the screen's size, as a phone delivers it whose platform does not lend textures.
-fn planes() -> PlanarImage {
-    let [width, height] = SCREEN_PX.map(|side| side as usize);
-    let (luma, chroma) = (vec![128; width * height], vec![128; width * height.div_ceil(2)]);
-    let encoding = YcbcrEncoding {
-        coefficients: LumaCoefficients::Bt601,
-        range: CodeRange::Full,
-    };
-    PlanarImage::new(&Planes::nv12(
-        SCREEN_PX,
-        (&luma, width),
-        (&chroma, width),
-        encoding,
-    ))
-    .unwrap()
-}
-
-/// A toy on a table; of the ball the region is some 900 x 700 px of the screen.
-fn scene_of(toy: Toy, n_lights: usize) -> (Scene, FrameInput) {
-    let eye = DVec3::new(0.0, 0.37, 0.41);
-    let target = DVec3::new(-0.02, 0.03, 0.0);
-    let camera = camera(SCREEN_PX, eye, target);
-    let image = Image {
-        width_px: SCREEN_PX[0],
-        height_px: SCREEN_PX[1],
-        rgba8: vec![128; 4 * (SCREEN_PX[0] * SCREEN_PX[1]) as usize],
-    };
-    let place = |turn: f64| DVec3::new(turn.cos(), 1.6, turn.sin());
-    let lights = (0..n_lights).map(|index| Light::Sphere {
-        position_in_world: place(0.4 + 2.0 * f64::from(u32::try_from(index).unwrap())),
-        radius_m: 0.05,
-    });
-    let world_from_object = DMat4::from_translation(DVec3::new(0.0, 0.04, 0.0));
-    let toy = Arc::new(toy);
-    let scene = Scene {
-        name: "ball".to_owned(),
-        width_px: SCREEN_PX[0],
-        height_px: SCREEN_PX[1],
-        toy: Arc::clone(&toy),
-        world_from_object,
-        physical_pose: Pose::default(),
-        receivers: vec![Receiver {
-            name: "table".to_owned(),
-            world_from_plane: DMat4::IDENTITY,
-            half_extent_m: DVec2::splat(1.0),
-            surface: Surface::Uniform,
-        }],
-        lights: lights.collect(),
-        plates: vec![Plate {
-            camera,
-            image: Arc::new(image),
-        }],
-        probe: None,
-        uncertainty: Uncertainty::default(),
-    };
-    let input = FrameInput {
-        image: planes().into(),
-        camera,
-        exposure: 1.0,
-        world_from_object,
-        lights: None,
-        light_estimate: None,
-        shown_pose: Pose::Clip {
-            clip: toy.find_clip("lift").unwrap(),
-            time_secs: 0.5,
-        },
-        effect: 1.0,
-    };
-    (scene, input)
-}
-
-fn counted(n_lights: usize, preset: Preset) -> Vec<Counted> {
+fn counted(n_lights: u32, preset: Preset) -> Vec<Counted> {
     // 10,000 triangles.
     let (scene, input) = scene_of(ball(100, 51), n_lights);
     count(&scene, (preset, &[]), &input).unwrap()
@@ -171,7 +52,7 @@ fn counted(n_lights: usize, preset: Preset) -> Vec<Counted> {
 /// took two MiB more than without them, and a third of the triangles less.
 type Budget = (FrameKind, u64, f64);
 
-fn assert_held(n_lights: usize, preset: Preset, budgets: [Budget; 3], peak_mib: f64) {
+fn assert_held(n_lights: u32, preset: Preset, budgets: [Budget; 3], peak_mib: f64) {
     for (counted, (kind, triangles, copies)) in counted(n_lights, preset).iter().zip(budgets) {
         assert_eq!(counted.kind, kind);
         let total = counted.ledger.total();

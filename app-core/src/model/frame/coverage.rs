@@ -12,7 +12,7 @@ use crate::model::region::Region;
 use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::{Detail, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::toy_mesh::{Detail, Saves, Side, SilhouetteTarget, ToyMesh};
 
 /// Counting of a pixel's covered positions.
 pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
@@ -71,6 +71,7 @@ impl Pass {
         let target = SilhouetteTarget {
             projection: &inputs.region.uniform.by_camera(),
             part: inputs.region.plan.toy_box,
+            saves: Saves::Pixels,
         };
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
         let globals = [(&inputs.region.globals).into()];

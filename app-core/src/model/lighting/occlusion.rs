@@ -15,7 +15,7 @@ use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
 use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::toy_mesh::{Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
 use crate::scene::MAX_RECEIVERS;
 
 /// Increment per hidden light point.
@@ -169,6 +169,7 @@ impl Pass {
                 origin_px: UVec2::ZERO,
                 size_px: targets.count.size_px(),
             },
+            saves: Saves::Triangles,
         });
         let corners = inputs.toy.corners(recorder.gpu, of_pose, points, target);
         let cover = self.cover.any();

@@ -1,0 +1,146 @@
+//! A toy on a table as the ledger's examples have it: what it costs depends on numbers alone, which are varied.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
+use app_core::frame::FrameInput;
+use app_core::scene::{Camera, Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
+use app_core::toy::Toy;
+use glam::{DMat4, DVec2, DVec3};
+use serde_json::json;
+
+use crate::glb::Glb;
+use crate::photographer::world::camera;
+
+/// The screen of an iPhone X, across.
+pub const SCREEN_PX: [u32; 2] = [2436, 1125];
+
+/// A closed ball of 2 `n_around` (`n_along` - 1) triangles, 40 mm in radius.
+///
+/// # Panics
+/// With fewer than three triangles around or along it.
+#[must_use]
+pub fn ball(n_around: u32, n_along: u32) -> Toy {
+    let mut positions = vec![[0.0f32, 1.0, 0.0]];
+    for ring in 1..n_along {
+        let polar = PI * f64::from(ring) / f64::from(n_along);
+        positions.extend((0..n_around).map(|step| {
+            let turn = TAU * f64::from(step) / f64::from(n_around);
+            let at = DVec3::new(polar.sin() * turn.cos(), polar.cos(), polar.sin() * turn.sin());
+            at.as_vec3().to_array()
+        }));
+    }
+    positions.push([0.0, -1.0, 0.0]);
+    let last = u32::try_from(positions.len()).unwrap_or(u32::MAX) - 1;
+    let at = |ring: u32, step: u32| 1 + (ring - 1) * n_around + step % n_around;
+    let mut indices = Vec::new();
+    for step in 0..n_around {
+        indices.extend([0, at(1, step + 1), at(1, step)]);
+        for ring in 1..n_along - 1 {
+            let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(r, s)| at(ring + r, step + s));
+            indices.extend([a, b, c, b, d, c]);
+        }
+        indices.extend([last, at(n_along - 1, step), at(n_along - 1, step + 1)]);
+    }
+    let normals: Vec<f32> = positions.concat();
+    let scaled: Vec<f32> = normals.iter().map(|x| 0.04 * x).collect();
+    lifted(&scaled, &normals, &indices)
+}
+
+/// A toy that a clip lifts.
+///
+/// # Panics
+/// When they are no toy.
+#[must_use]
+pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
+    let mut file = Glb::new();
+    let (position, normal) = (file.floats("VEC3", positions), file.floats("VEC3", normals));
+    let indices = file.u32s(indices);
+    let mesh = file.push(
+        "meshes",
+        json!({ "primitives": [{ "attributes": { "POSITION": position, "NORMAL": normal }, "indices": indices }] }),
+    );
+    file.push("nodes", json!({ "mesh": mesh }));
+    let times = file.floats("SCALAR", &[0.0, 1.0]);
+    let places = file.floats("VEC3", &[0.0, 0.0, 0.0, 0.02, 0.02, 0.0]);
+    file.animate("lift", "translation", "LINEAR", [times, places]);
+    Toy::from_glb("toy.glb", &file.bytes()).expect("a toy of valid triangles")
+}
+
+/// A picture of what is grey, as a phone delivers it whose platform does not lend textures.
+fn planes(size_px: [u32; 2]) -> Option<PlanarImage> {
+    let [width, height] = size_px.map(|side| side as usize);
+    let (luma, chroma) = (vec![128; width * height], vec![128; width * height.div_ceil(2)]);
+    let encoding = YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range: CodeRange::Full,
+    };
+    PlanarImage::new(&Planes::nv12(size_px, (&luma, width), (&chroma, width), encoding)).ok()
+}
+
+/// A camera that sees the ball's region some 900 x 700 px large on that screen.
+#[must_use]
+pub fn phone() -> Camera {
+    camera(
+        SCREEN_PX,
+        DVec3::new(0.0, 0.37, 0.41),
+        DVec3::new(-0.02, 0.03, 0.0),
+    )
+}
+
+/// A toy on a table, seen in pictures of a size.
+///
+/// # Panics
+/// When the toy has no clip `lift`, or a side of the picture is 0.
+#[must_use]
+pub fn scene_of(toy: Toy, n_lights: u32, (camera, size_px): (Camera, [u32; 2])) -> (Scene, FrameInput) {
+    let [width_px, height_px] = size_px;
+    let image = Image {
+        width_px,
+        height_px,
+        rgba8: vec![128; 4 * (width_px * height_px) as usize],
+    };
+    let place = |turn: f64| DVec3::new(turn.cos(), 1.6, turn.sin());
+    let lights = (0..n_lights).map(|index| Light::Sphere {
+        position_in_world: place(0.4 + 2.0 * f64::from(index)),
+        radius_m: 0.05,
+    });
+    let world_from_object = DMat4::from_translation(DVec3::new(0.0, 0.04, 0.0));
+    let toy = Arc::new(toy);
+    let scene = Scene {
+        name: "ball".to_owned(),
+        width_px,
+        height_px,
+        toy: Arc::clone(&toy),
+        world_from_object,
+        physical_pose: Pose::default(),
+        receivers: vec![Receiver {
+            name: "table".to_owned(),
+            world_from_plane: DMat4::IDENTITY,
+            half_extent_m: DVec2::splat(1.0),
+            surface: Surface::Uniform,
+        }],
+        lights: lights.collect(),
+        plates: vec![Plate {
+            camera,
+            image: Arc::new(image),
+        }],
+        probe: None,
+        uncertainty: Uncertainty::default(),
+    };
+    let input = FrameInput {
+        image: planes(size_px).expect("a picture that has pixels").into(),
+        camera,
+        exposure: 1.0,
+        world_from_object,
+        lights: None,
+        light_estimate: None,
+        shown_pose: Pose::Clip {
+            clip: toy.find_clip("lift").expect("a clip of that name"),
+            time_secs: 0.5,
+        },
+        effect: 1.0,
+    };
+    (scene, input)
+}
