@@ -80,10 +80,10 @@ impl Globals {
 
     /// How shadows from the points of a light fall on the first receiver; none of a light that has none, or not all alike.
     pub(crate) fn onto_first_receiver(&self, points_in_anchor: &[Vec4]) -> Option<OntoReceiver> {
-        let [x, y, w] = self.receivers[0].clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
+        let columns = self.receivers[0].clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
         Some(OntoReceiver {
             light: Viewers::around(points_in_anchor)?,
-            clip_from_plane: Mat3::from_cols_array_2d(&[x, y, w]),
+            clip_from_plane: Mat3::from_cols_array_2d(&columns),
             region_size_px: self.region_size_px.into(),
             near_m: self.near_m,
         })

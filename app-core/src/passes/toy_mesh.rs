@@ -133,8 +133,13 @@ impl ToyMesh {
         let (casters, shadow_indices) = casters(toy, simplified);
         let shape = toy.shadow_indices();
         let (runs, indices) = runs(toy, &materials);
-        // The toy's own shape has the most triangles.
-        let n_lists = if lists { 1 + MAX_LIGHTS } else { 0 };
+        // Only of closed pieces is anything left out, and shadows of others have no silhouette that pays; the toy's own shape
+        // has the most triangles.
+        let n_lists = match lists {
+            true if shape.n_closed > 0 => 1 + MAX_LIGHTS,
+            true if shape.indices.len() <= MAX_SILHOUETTE_CORNERS => 1,
+            _ => 0,
+        };
         let lists = std::iter::repeat_n(shape.indices.len(), n_lists);
         Self {
             indices: gpu.buffer("indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
