@@ -5,7 +5,7 @@
 // is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
 // Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
 // with self-shadowing.
-// Intensities: frame = gain plate (ambient_model + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
+// Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
 //

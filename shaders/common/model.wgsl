@@ -39,14 +39,6 @@ fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
   return fit.receivers[receiver_of(point)].direct_fraction[i].rgb * falloff(i, point) / total;
 }
 
-fn ambient_model(point: ReceiverPoint, ambient: f32) -> vec3f {
-  return ambient_part(point, ambient, plate_falloff(point));
-}
-
-fn light_fraction(i: u32, point: ReceiverPoint) -> vec3f {
-  return light_part(i, point, plate_falloff(point));
-}
-
 // The model of a receiver in two states of its light at once, such as before and after: in the columns. No array is indexed
 // by a light's number, since processors keep such arrays in memory.
 fn receiver_models(point: ReceiverPoint, ambient: vec2f, visibility_0: vec4f, visibility_1: vec4f) -> mat2x3f {

@@ -7,7 +7,7 @@ use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, Planes, Y
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
 use app_core::toy::Toy;
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde_json::json;
 
 use crate::glb::Glb;
@@ -16,22 +16,20 @@ use crate::photographer::world::camera;
 /// The screen of an iPhone X, across.
 pub const SCREEN_PX: [u32; 2] = [2436, 1125];
 
-/// A closed ball of 2 `n_around` (`n_along` - 1) triangles, 40 mm in radius.
-///
-/// # Panics
-/// With fewer than three triangles around or along it.
+/// Positions on the unit ball, and the corners of 2 `n_around` (`n_along` - 1) triangles that close it, counter-clockwise seen
+/// from outside; the last position is its lowest point.
 #[must_use]
-pub fn ball(n_around: u32, n_along: u32) -> Toy {
-    let mut positions = vec![[0.0f32, 1.0, 0.0]];
+pub fn ball_mesh(n_around: u32, n_along: u32) -> (Vec<Vec3>, Vec<u32>) {
+    let mut positions = vec![Vec3::Y];
     for ring in 1..n_along {
         let polar = PI * f64::from(ring) / f64::from(n_along);
         positions.extend((0..n_around).map(|step| {
             let turn = TAU * f64::from(step) / f64::from(n_around);
             let at = DVec3::new(polar.sin() * turn.cos(), polar.cos(), polar.sin() * turn.sin());
-            at.as_vec3().to_array()
+            at.as_vec3()
         }));
     }
-    positions.push([0.0, -1.0, 0.0]);
+    positions.push(-Vec3::Y);
     let last = u32::try_from(positions.len()).unwrap_or(u32::MAX) - 1;
     let at = |ring: u32, step: u32| 1 + (ring - 1) * n_around + step % n_around;
     let mut indices = Vec::new();
@@ -43,7 +41,17 @@ pub fn ball(n_around: u32, n_along: u32) -> Toy {
         }
         indices.extend([last, at(n_along - 1, step), at(n_along - 1, step + 1)]);
     }
-    let normals: Vec<f32> = positions.concat();
+    (positions, indices)
+}
+
+/// A closed ball of as many triangles, 40 mm in radius.
+///
+/// # Panics
+/// With fewer than three triangles around or along it.
+#[must_use]
+pub fn ball(n_around: u32, n_along: u32) -> Toy {
+    let (positions, indices) = ball_mesh(n_around, n_along);
+    let normals: Vec<f32> = positions.iter().flat_map(Vec3::to_array).collect();
     let scaled: Vec<f32> = normals.iter().map(|x| 0.04 * x).collect();
     lifted(&scaled, &normals, &indices)
 }

@@ -1,12 +1,11 @@
 //! Tiles that no silhouette comes near, against rays: there all points see the same, and what meets the others covers as much
 //! of them as the whole shape.
 
-use std::f64::consts::TAU;
-
 use app_core::internals::{
     ByCamera, Edges, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette,
 };
 use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use harness::ball::ball_mesh;
 
 const SIZE_PX: UVec2 = UVec2::new(192, 144);
 /// Where pixels are looked through, from their corner: at the lattice's ends, and between.
@@ -17,30 +16,12 @@ type Mesh = (Vec<Vec3>, Vec<u32>);
 
 /// A ball of `n` by `n` squares; without its last ring it is open.
 fn ball(centre: Vec3, radius: f32, n: u32, is_closed: bool) -> Mesh {
-    let mut positions = vec![centre + radius * Vec3::Y];
-    for ring in 1..n {
-        let polar = 0.5 * TAU * f64::from(ring) / f64::from(n);
-        positions.extend((0..n).map(|step| {
-            let turn = TAU * f64::from(step) / f64::from(n);
-            let at = DVec3::new(polar.sin() * turn.cos(), polar.cos(), polar.sin() * turn.sin());
-            centre + radius * at.as_vec3()
-        }));
-    }
-    positions.push(centre - radius * Vec3::Y);
-    let last = (n - 1) * n + 1;
-    let at = |ring: u32, step: u32| 1 + (ring - 1) * n + step % n;
-    let mut corners = Vec::new();
-    for step in 0..n {
-        corners.extend([0, at(1, step + 1), at(1, step)]);
-        for ring in 1..n - 1 {
-            let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(r, s)| at(ring + r, step + s));
-            corners.extend([a, b, c, b, d, c]);
-        }
-        if is_closed {
-            corners.extend([last, at(n - 1, step), at(n - 1, step + 1)]);
-        }
-    }
-    (positions, corners)
+    let (mut positions, corners) = ball_mesh(n, n);
+    let last = u32::try_from(positions.len()).expect("some hundreds") - 1;
+    positions.iter_mut().for_each(|at| *at = centre + radius * *at);
+    let triangles = corners.as_chunks::<3>().0.iter();
+    let kept = triangles.filter(|triangle| is_closed || !triangle.contains(&last));
+    (positions, kept.flatten().copied().collect())
 }
 
 fn both((mut positions, mut corners): Mesh, (others, more): Mesh) -> Mesh {
