@@ -64,14 +64,20 @@ impl Order {
             frame: frame::order(plan),
         }
     }
+
+    /// The capture steps that `change` needs after so many pictures.
+    fn captured(&self, change: Change, n_before: u32) -> impl Iterator<Item = capture::order::Step> {
+        let steps = self.capture[change as usize].iter().copied();
+        steps.filter(move |step| change != Change::Picture || step.is_due(n_before))
+    }
 }
 
-/// The passes that run for `change`, each as often as it runs but for the steps of a fit.
-pub fn planned(plan: &Plan, change: Change) -> Vec<(Path, &'static str)> {
+/// The passes that run for `change` after so many pictures, each as often as it runs but for the steps of a fit.
+pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'static str)> {
     let order = Order::new(plan);
-    let captured = order.capture[change as usize]
-        .iter()
-        .flat_map(|step| step.passes());
+    let captured = order
+        .captured(change, n_before)
+        .flat_map(capture::order::Step::passes);
     let drawn = order.frame.iter().flat_map(|step| step.passes());
     captured
         .map(|pass| (capture_path(change), *pass))
@@ -190,8 +196,8 @@ impl Model {
             pictures,
         };
         recorder.path = capture_path(change);
-        for step in &self.order.capture[change as usize] {
-            capture.encode(recorder, *step);
+        for step in self.order.captured(change, pictures.n_before) {
+            capture.encode(recorder, step);
         }
         let frame = FramePath {
             region: &self.region,

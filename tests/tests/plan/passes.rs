@@ -54,9 +54,9 @@ fn a_new_pose_costs_the_frame_path_alone() {
     // Both lights, and the ambient light.
     let frame = light.into_iter().chain(ambient).chain(drawn);
     let frame: Vec<_> = frame.map(|pass| (Path::Frame, pass)).collect();
-    assert_eq!(planned_by_model(&plan, Change::Pose), frame);
+    assert_eq!(planned_by_model(&plan, Change::Pose, 0), frame);
     for change in Change::ALL {
-        let planned = planned_by_model(&plan, change);
+        let planned = planned_by_model(&plan, change, 0);
         assert!(planned.ends_with(&frame), "{change:?}: {planned:?}");
         let before = &planned[..planned.len() - frame.len()];
         assert!(
@@ -72,7 +72,7 @@ fn a_new_pose_costs_the_frame_path_alone() {
 fn the_capture_path_reads_what_was_made_before() {
     let plan = plan([640, 360], 1);
     for change in [Change::View, Change::Scene] {
-        let planned = planned_by_model(&plan, change);
+        let planned = planned_by_model(&plan, change, 0);
         let place = |name: &str| planned.iter().position(|(_, pass)| *pass == name).unwrap();
         for order in [
             &[

@@ -60,6 +60,15 @@ impl Step {
             Self::Appearance { .. } => &["appearance"],
         }
     }
+
+    /// Whether it runs for a new picture of a known view after so many: the two means over several pictures take turns.
+    pub(crate) fn is_due(self, n_before: u32) -> bool {
+        match self {
+            Self::Residual { .. } | Self::FillResidual => n_before.is_multiple_of(2),
+            Self::Tint | Self::TintFill => !n_before.is_multiple_of(2),
+            _ => true,
+        }
+    }
 }
 
 /// The steps that run for `change`.
