@@ -44,6 +44,7 @@ pub fn count(
         let mut core = Core::counting();
         core.set_scene(scene.clone(), preset)?;
         core.turn_down(turned_down)?;
+        core.draw_every_pose()?;
         let others = [input.clone(), with_new(input, kind)];
         for known in &others {
             core.frame(known)?;

@@ -196,7 +196,7 @@ fn session() -> Capture {
 /// The frames after which nothing but one thing changes, and what that is.
 fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
     let pose = later(first);
-    let picture = photographed_again(&pose);
+    let picture = photographed_again(&later(&pose));
     // The region grows when the camera comes nearer, and then keeps its size for a while.
     let growing = from_nearby(&picture);
     let view = from_beside(&growing);

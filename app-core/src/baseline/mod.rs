@@ -20,7 +20,7 @@ use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate::{self, FINE_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::Change;
+use crate::plan::{Change, News};
 use crate::readback::FloatMap;
 use crate::readback::inject::{Injected, InjectedVisibility, upload};
 
@@ -87,9 +87,10 @@ impl Baseline {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        change: Change,
+        news: News,
     ) {
-        for (path, step) in &self.order[change as usize] {
+        let steps = self.order[news.change as usize].iter();
+        for (path, step) in steps.filter(|(_, step)| step.is_due(news)) {
             recorder.path = *path;
             self.encode_step(recorder, (toy, pictures), *step);
         }

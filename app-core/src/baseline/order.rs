@@ -3,7 +3,7 @@
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::{box_filter, census, search};
 use crate::gpu::pass_run::Path;
-use crate::plan::Change;
+use crate::plan::{Change, News};
 
 /// Which of the toy's poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +40,14 @@ impl Step {
             Self::Search => "search",
             Self::BoxFilter => "box_filter",
             Self::Retarget => "retarget",
+        }
+    }
+
+    /// Whether it runs: of a paused toy a new picture changes the colours alone.
+    pub(crate) fn is_due(self, news: News) -> bool {
+        match self {
+            Self::Warp(Pose::Shown, _) | Self::Pcss(Pose::Shown) => !news.keeps_pose(),
+            _ => !news.keeps_picture(),
         }
     }
 }

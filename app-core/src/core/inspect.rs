@@ -69,6 +69,13 @@ pub trait Inspect {
     /// # Errors
     /// When there is no scene.
     fn withhold_shadow(&mut self) -> Result<(), CoreError>;
+
+    /// Draws a pose that is shown again as if it were new, so that a frame can be measured by repeating it. Until another scene
+    /// is set.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    fn draw_every_pose(&mut self) -> Result<(), CoreError>;
 }
 
 impl Inspect for Core {
@@ -147,6 +154,11 @@ impl Inspect for Core {
 
     fn withhold_shadow(&mut self) -> Result<(), CoreError> {
         self.stage.as_mut().ok_or(CoreError::NoScene)?.withhold_shadow();
+        Ok(())
+    }
+
+    fn draw_every_pose(&mut self) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.draw_every_pose();
         Ok(())
     }
 }

@@ -28,7 +28,7 @@ use crate::passes::globals::Globals;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::Change;
+use crate::plan::{Change, News};
 use crate::readback::FloatMap;
 use crate::readback::inject::{InjectedVisibility, upload};
 
@@ -72,7 +72,7 @@ impl Order {
     }
 }
 
-/// The passes that run for `change` after so many pictures, each as often as it runs but for the steps of a fit.
+/// The passes that run for `change` and a new pose after so many pictures, each as often as it runs but for the steps of a fit.
 pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'static str)> {
     let order = Order::new(plan);
     let captured = order
@@ -176,14 +176,15 @@ impl Model {
         self.drawn.by_pass.composite.picture()
     }
 
-    /// Encodes the frame path, and before it the capture steps that `change` needs.
+    /// Encodes what of the frame path is due, and before it the capture steps that the change needs.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        change: Change,
+        news: News,
     ) {
+        let change = news.change;
         let lighting = (&self.passes.light, &self.lighting);
         let capture = CapturePath {
             region: &self.region,
@@ -210,7 +211,7 @@ impl Model {
             frame: pictures.frame,
         };
         recorder.path = Path::Frame;
-        for step in &self.order.frame {
+        for step in self.order.frame.iter().filter(|step| step.is_due(news)) {
             frame.encode(recorder, *step);
         }
     }

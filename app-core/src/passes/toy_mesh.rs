@@ -6,7 +6,7 @@ mod runs;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
@@ -38,8 +38,8 @@ pub(crate) struct PoseBuffers {
     pub(crate) normals: Buffer,
     /// Holds all positions.
     pub(crate) around: Sphere,
-    /// The positions on the processor.
-    points: Vec<Vec3>,
+    /// The same on the processor.
+    mesh: PosedMesh,
     /// Of the camera, and of each light.
     lists: Vec<Lists>,
 }
@@ -59,15 +59,20 @@ impl PoseBuffers {
                 BufferUsages::VERTEX,
             ),
             around: Sphere::around(&mesh.positions),
-            points: mesh.positions.clone(),
+            mesh: mesh.clone(),
             lists: lists.map(|n_corners| Lists::new(gpu, n_corners)).collect(),
         }
+    }
+
+    /// Whether it is this pose.
+    pub(crate) fn is(&self, mesh: &PosedMesh) -> bool {
+        self.mesh == *mesh
     }
 
     /// Replaces the pose by another of the same toy.
     pub(crate) fn write(&mut self, gpu: &Gpu, mesh: &PosedMesh) {
         self.around = Sphere::around(&mesh.positions);
-        self.points.clone_from(&mesh.positions);
+        self.mesh.clone_from(mesh);
         gpu.write(&self.positions, &mesh.positions);
         gpu.write(&self.normals, &mesh.normals);
     }
@@ -194,7 +199,7 @@ impl ToyMesh {
             };
         };
         let (closed, open) = self.split_caster(detail);
-        let mut facing = viewers.facing(&pose.points, closed);
+        let mut facing = viewers.facing(&pose.mesh.positions, closed);
         facing.extend(open);
         gpu.write(&lists.facing, &facing);
         let worth_it = target.filter(|target| target.saves.pays(facing.len(), self.is_closed));
@@ -218,7 +223,7 @@ impl ToyMesh {
         let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
         let corners = self.shadow_corners.get(start..end)?;
         (corners.len() <= MAX_SILHOUETTE_CORNERS).then(|| Shape {
-            positions: &pose.points,
+            positions: &pose.mesh.positions,
             corners,
             edges: caster.edges.get_or_init(|| Edges::of(corners)),
         })

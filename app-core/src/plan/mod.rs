@@ -64,3 +64,23 @@ impl Change {
     /// Every change, the least first.
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }
+
+/// What a frame brings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct News {
+    pub(crate) change: Change,
+    /// Whether another pose is shown than in the frame before.
+    pub(crate) is_pose_new: bool,
+}
+
+impl News {
+    /// Whether what is drawn of the shown pose alone, such as its shadows, can stay.
+    pub(crate) fn keeps_pose(self) -> bool {
+        !self.is_pose_new && self.change < Change::View
+    }
+
+    /// Whether the picture can stay, too.
+    pub(crate) fn keeps_picture(self) -> bool {
+        self.keeps_pose() && self.change < Change::Picture
+    }
+}

@@ -16,7 +16,7 @@ use crate::model::state::grids::grids_over;
 use crate::passes::globals::globals;
 use crate::passes::pictures::Pictures;
 use crate::passes::present::REGION_FORMAT;
-use crate::plan::Change;
+use crate::plan::{Change, News};
 use crate::preset::ModelSettings;
 
 /// Most triangles of a new view that are drawn: with one light 90,000 of a toy stay below it with the settings of
@@ -105,7 +105,11 @@ impl Stage {
             is_same_view: footprint.choice.is_same_view,
         };
         let mut recorder = Recorder::new(&gpu, None);
-        model.encode(&mut recorder, &self.toy, &pictures, Change::View);
+        let news = News {
+            change: Change::View,
+            is_pose_new: true,
+        };
+        model.encode(&mut recorder, &self.toy, &pictures, news);
         #[allow(clippy::cast_precision_loss, reason = "at most 64")]
         let [n_points, n_directions] = [plan.n_light_points, plan.n_ambient_directions].map(|n| n as f64);
         let by_lights: f64 = covered.by_lights_px.iter().sum();

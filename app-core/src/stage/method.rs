@@ -11,7 +11,7 @@ use crate::passes::finished::Picture;
 use crate::passes::list::WarmUp;
 use crate::passes::pictures::Pictures;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, LeftOut};
+use crate::plan::{LeftOut, News};
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
@@ -87,11 +87,11 @@ impl Method {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        change: Change,
+        news: News,
     ) {
         match self {
-            Self::Model(model) => model.encode(recorder, toy, pictures, change),
-            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, change),
+            Self::Model(model) => model.encode(recorder, toy, pictures, news),
+            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, news),
         }
     }
 

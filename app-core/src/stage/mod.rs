@@ -30,7 +30,7 @@ use crate::passes::finished::{Finished, Laid};
 use crate::passes::pictures::Pictures;
 use crate::passes::present::{self, OUTPUT_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, LeftOut};
+use crate::plan::{Change, LeftOut, News};
 use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
@@ -62,6 +62,8 @@ pub(crate) struct Stage {
     /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
     is_shadow_withheld: bool,
+    /// A pose that is shown again counts as a new one.
+    is_every_pose_new: bool,
     /// Settings that the caller turns down.
     asked_down: Vec<Step>,
     /// Those that are turned down since the scene would cost too much.
@@ -169,6 +171,7 @@ impl Stage {
             is_object_placed: true,
             scene,
             is_shadow_withheld: false,
+            is_every_pose_new: false,
             turned_down: Vec::new(),
             asked_down: Vec::new(),
             cost_warning: None,
@@ -183,6 +186,11 @@ impl Stage {
             self.is_shadow_withheld = true;
             self.state = None;
         }
+    }
+
+    /// Draws a pose that is shown again as if it were new.
+    pub(crate) fn draw_every_pose(&mut self) {
+        self.is_every_pose_new = true;
     }
 
     /// The latest picture, of which the region's part still has to be laid over the camera image.
@@ -334,7 +342,10 @@ impl Stage {
         report: &mut FrameReport,
     ) {
         let gpu = recorder.gpu;
-        self.toy.shown.write(gpu, &self.posed);
+        let is_pose_new = self.is_every_pose_new || !self.toy.shown.is(&self.posed);
+        if is_pose_new {
+            self.toy.shown.write(gpu, &self.posed);
+        }
         recorder.stages.begin("reuse");
         let change = self.update_method(gpu, input, footprint);
         report.warnings.extend(self.cost_warning.clone());
@@ -377,7 +388,14 @@ impl Stage {
             plate_views: &self.plates.views,
             is_same_view: footprint.choice.is_same_view,
         };
-        method.encode(recorder, &self.toy, &pictures, change);
+        let news = News { change, is_pose_new };
+        method.encode(recorder, &self.toy, &pictures, news);
+        if news.keeps_pose() {
+            report.skipped.push(LeftOut {
+                what: "shadows of the shown pose",
+                why: "it is the one that is there",
+            });
+        }
         if change < Change::View {
             report.skipped.push(LeftOut {
                 what: "capture path",

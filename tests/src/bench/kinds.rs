@@ -87,6 +87,7 @@ pub(super) fn measure(
     n_repeats: usize,
 ) -> Result<Vec<KindTimes>, CoreError> {
     core.time_passes(true)?;
+    core.draw_every_pose()?;
     let start = Instant::now();
     core.time_stages(Some(Clock::new(move || start.elapsed().as_secs_f64() * 1e3)));
     let measured = FRAME_KINDS

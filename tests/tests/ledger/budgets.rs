@@ -3,6 +3,7 @@
 use app_core::Core;
 use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_FRONT, Knob, Step};
+use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_core::toy::Toy;
@@ -130,10 +131,41 @@ fn residual_and_tints_take_turns() {
 }
 
 #[test]
+fn a_paused_toy_is_drawn_for_new_pictures_alone_and_casts_no_shadow_anew() {
+    let passes = |report: &FrameReport| -> Vec<&str> { report.ran.iter().map(|run| run.pass).collect() };
+    for (preset, drawn, kept) in [
+        (Preset::Balanced, ["toy", "composite"], ["occlusion", "coverage"]),
+        (Preset::Paper, ["search", "retarget"], ["warp", "pcss"]),
+    ] {
+        let (scene, input) = scene_of(ball(10, 5), 1);
+        let mut core = Core::counting();
+        core.set_scene(scene, preset).unwrap();
+        core.frame(&input).unwrap();
+        let paused = core.frame(&input).unwrap();
+        assert_eq!(passes(&paused), [""; 0], "{preset}");
+        let picture = passes(&core.frame(&with_new(&input, FrameKind::Picture)).unwrap());
+        assert!(
+            drawn.iter().all(|pass| picture.contains(pass)),
+            "{preset}: {picture:?}"
+        );
+        assert!(
+            !kept.iter().any(|pass| picture.contains(pass)),
+            "{preset}: {picture:?}"
+        );
+        let view = passes(&core.frame(&with_new(&input, FrameKind::View)).unwrap());
+        assert!(
+            drawn.iter().chain(&kept).all(|pass| view.contains(pass)),
+            "{preset}: {view:?}"
+        );
+    }
+}
+
+#[test]
 fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
     let (scene, input) = scene_of(ball(100, 51), 1);
     let mut core = Core::counting();
     core.set_scene(scene, Preset::Balanced).unwrap();
+    core.draw_every_pose().unwrap();
     core.frame(&input).unwrap();
     let mut triangles = |steps: &[Step]| -> (Option<Change>, u64) {
         core.turn_down(steps).unwrap();

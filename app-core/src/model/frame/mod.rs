@@ -12,6 +12,7 @@ use crate::model::state::SceneState;
 use crate::model::state::solution::Scene;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::News;
 
 passes!(Plan: moved_mask, toy, coverage, composite);
 
@@ -37,9 +38,17 @@ impl Step {
             Self::Composite => &["composite"],
         }
     }
+
+    /// Whether it runs: of a paused toy a new picture changes the colours alone.
+    pub(crate) fn is_due(self, news: News) -> bool {
+        match self {
+            Self::Toy | Self::Composite => !news.keeps_picture(),
+            Self::Lighting(_) | Self::MovedMask | Self::Coverage => !news.keeps_pose(),
+        }
+    }
 }
 
-/// The steps that run for every frame.
+/// The steps that run for every new pose.
 pub(crate) fn order(plan: &Plan) -> Vec<Step> {
     lighting::Step::visibilities(plan)
         .chain([lighting::Step::SelfShadow])
