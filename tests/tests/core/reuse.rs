@@ -34,25 +34,44 @@ fn the_pose_as_authored_is_a_pose_like_any_other() {
     );
 }
 
+/// The frame at half of its codes.
+fn dimmed(input: &FrameInput) -> FrameInput {
+    let image = input.image.rgba();
+    let pixels = image.rgba8.chunks_exact(4);
+    let image = Arc::new(Image {
+        rgba8: pixels.flat_map(|p| [p[0] / 2, p[1] / 2, p[2] / 2, 255]).collect(),
+        ..image.as_ref().clone()
+    });
+    FrameInput {
+        image: image.into(),
+        ..input.clone()
+    }
+}
+
+#[test]
+fn a_paused_toy_looks_as_one_that_is_drawn_again() {
+    let mut core = core();
+    let first = first_input();
+    let second = dimmed(&first);
+    for preset in [Preset::Balanced, Preset::Paper] {
+        let mut pictures = |is_drawn_again: bool| {
+            core.set_scene(scene(), preset).unwrap();
+            if is_drawn_again {
+                core.draw_every_pose().unwrap();
+            }
+            [&first, &first, &second, &second, &first].map(|input| picture_of(&mut core, input))
+        };
+        let [kept, drawn] = [false, true].map(&mut pictures);
+        assert!(kept == drawn, "{preset}");
+        assert!(kept[1] != kept[2], "{preset}: the picture makes a difference");
+    }
+}
+
 #[test]
 fn the_toys_colours_are_those_of_the_latest_picture() {
     let mut core = core();
     let first = first_input();
-    let dimmed: Vec<u8> = first
-        .image
-        .rgba()
-        .rgba8
-        .chunks_exact(4)
-        .flat_map(|p| [p[0] / 2, p[1] / 2, p[2] / 2, 255])
-        .collect();
-    let image = Arc::new(Image {
-        rgba8: dimmed,
-        ..first.image.rgba().as_ref().clone()
-    });
-    let second = FrameInput {
-        image: image.into(),
-        ..first.clone()
-    };
+    let second = dimmed(&first);
     let at_rest = FrameInput {
         shown_pose: scene().physical_pose.clone(),
         ..second.clone()
