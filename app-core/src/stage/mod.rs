@@ -342,7 +342,9 @@ impl Stage {
         report: &mut FrameReport,
     ) {
         let gpu = recorder.gpu;
-        let is_pose_new = self.is_every_pose_new || !self.toy.shown.is(&self.posed);
+        // A refused frame, after which nothing is known, may not have brought its pose to the device.
+        let is_pose_known = self.state.is_some() && self.toy.shown.is(&self.posed);
+        let is_pose_new = self.is_every_pose_new || !is_pose_known;
         if is_pose_new {
             self.toy.shown.write(gpu, &self.posed);
         }
