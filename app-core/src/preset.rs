@@ -64,6 +64,7 @@ impl Preset {
 /// - own shapes and simplified ones: shadow 1.53 and 1.53, toy 3.91 and 3.91, edge 4.56 and 4.54.
 pub const BALANCED: ModelSettings = ModelSettings {
     n_light_points: 64,
+    n_narrow_light_points: 32,
     n_ambient_directions: 64,
     ambient_divisor: 4,
     n_toy_draws: 1,
@@ -97,6 +98,7 @@ pub const FAST: ModelSettings = ModelSettings {
 
 /// Settings of `best`.
 pub const BEST: ModelSettings = ModelSettings {
+    n_narrow_light_points: 64,
     ambient_divisor: 2,
     n_toy_draws: 4,
     n_self_shadow_points: 16,
@@ -145,6 +147,8 @@ pub enum Settings {
 pub struct ModelSettings {
     /// Points over each light, a multiple of 16 up to 64.
     pub n_light_points: usize,
+    /// The same of a light whose penumbra is no wider in pixels than this.
+    pub n_narrow_light_points: usize,
     /// Directions of ambient light, a multiple of 16 up to 64.
     pub n_ambient_directions: usize,
     /// Region pixels per texel of the ambient map, along each side.

@@ -35,7 +35,7 @@ impl BaselinePlan {
             });
         }
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
-        let n_lights = facts.n_lights.min(MAX_LIGHTS) as u32;
+        let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS) as u32;
         Self {
             region: facts.region,
             n_lights,

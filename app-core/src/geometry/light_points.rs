@@ -37,16 +37,14 @@ pub fn light_points(
     vogel_disc(n_points).map(|at| disc.point(at).as_vec4()).collect()
 }
 
-/// The corners of the square around the light's disc, homogeneous as [`light_points`].
+/// The corners of the square around the light's disc, homogeneous as [`light_points`], row by row.
 pub(crate) fn light_corners(
     light: &Light,
     plane_from_world: &DMat4,
     target_in_plane: DVec3,
-) -> impl Iterator<Item = DVec4> {
+) -> [DVec4; 4] {
     let disc = Disc::of(light, plane_from_world, target_in_plane);
-    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]
-        .into_iter()
-        .map(move |(x, y)| disc.point(DVec2::new(x, y)))
+    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| disc.point(DVec2::new(x, y)))
 }
 
 /// A light's disc, facing the toy.

@@ -3,6 +3,8 @@
 //! Homographies map its pixels to receiver points, so passes that draw in a receiver's plane draw straight onto the
 //! pixels that show it: texel and pixel coincide, and an edge in the plane is as sharp as the screen allows.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::geometry::bounds::Bounds;
@@ -29,6 +31,8 @@ pub struct Reach<'a> {
     extent: Extent,
     /// Of the toy alone.
     toy: Extent,
+    /// Widest penumbra of each light in the picture.
+    penumbrae_px: Vec<f64>,
 }
 
 /// The extent on one receiver.
@@ -40,8 +44,8 @@ struct PlaneReach {
     receiver: PlaneRect,
     /// False for a receiver that is seen from behind: it changes nothing in the picture.
     is_seen: bool,
-    /// Corners of each light's disc, boxed: their shadows bound those of the whole light.
-    sources: Vec<DVec4>,
+    /// Corners of the square around each light's disc: their shadows bound those of the whole light.
+    lights: Vec<[DVec4; 4]>,
     rect: PlaneRect,
     kept: PlaneRect,
 }
@@ -58,13 +62,13 @@ impl<'a> Reach<'a> {
             let target = plane_from_anchor.transform_point3(toy.centre());
             let middle = DVec2::new(target.x, target.z);
             let lights = layout.lights.iter();
-            let corners = lights.flat_map(|light| light_corners(light, &plane_from_world, target));
+            let corners = lights.map(|light| light_corners(light, &plane_from_world, target));
             PlaneReach {
                 world_from_plane: receiver.world_from_plane,
                 plane_from_anchor,
                 receiver: receiver.rect,
                 is_seen: view.sees_front_of(&receiver.world_from_plane),
-                sources: corners.filter(|source| source.y > 0.0).collect(),
+                lights: corners.collect(),
                 rect: PlaneRect {
                     min: DVec2::INFINITY,
                     max: DVec2::NEG_INFINITY,
@@ -82,6 +86,7 @@ impl<'a> Reach<'a> {
             ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
             extent: Extent::EMPTY,
             toy: Extent::EMPTY,
+            penumbrae_px: vec![0.0; layout.lights.len()],
         }
     }
 
@@ -101,8 +106,9 @@ impl<'a> Reach<'a> {
                     self.include_on(k, near);
                 }
             }
-            for source in 0..self.planes[k].sources.len() {
-                self.include_shadow(k, in_plane, self.planes[k].sources[source]);
+            let on_receiver = in_plane.with_y(in_plane.y.max(0.0));
+            for light in 0..self.penumbrae_px.len() {
+                self.include_shadow(k, on_receiver, light);
             }
         }
     }
@@ -119,22 +125,35 @@ impl<'a> Reach<'a> {
         self.toy.rect(self.view.image_px)
     }
 
+    /// Width in pixels of each light's widest penumbra, infinite where a shadow has no end.
+    #[must_use]
+    pub fn penumbrae_px(&self) -> &[f64] {
+        &self.penumbrae_px
+    }
+
     /// Extent of toy and shadows on each receiver, within the rectangle that is kept.
     #[must_use]
     pub fn plane_rects(&self) -> Vec<PlaneRect> {
         self.planes.iter().map(|plane| plane.rect).collect()
     }
 
-    /// Includes the shadow of a point over receiver `k`; points under it are moved up onto it.
-    fn include_shadow(&mut self, k: usize, in_plane: DVec3, source: DVec4) {
-        let shadow = shadow_of(in_plane.with_y(in_plane.y.max(0.0)), source);
-        if shadow.z > 0.0 {
-            self.include_on(k, shadow.truncate() / shadow.z);
-            return;
+    /// Includes the shadow of a point that is not under receiver `k`, and its penumbra.
+    fn include_shadow(&mut self, k: usize, in_plane: DVec3, light: usize) {
+        let corners = self.planes[k].lights[light];
+        for corner in corners.into_iter().filter(|corner| corner.y > 0.0) {
+            let shadow = shadow_of(in_plane, corner);
+            if shadow.z > 0.0 {
+                self.include_on(k, shadow.truncate() / shadow.z);
+                continue;
+            }
+            // A light no higher than the point casts a shadow as far as the receiver goes.
+            for end in self.planes[k].receiver.corners() {
+                self.include_on(k, end);
+            }
         }
-        // A light no higher than the point casts a shadow as far as the receiver goes.
-        for corner in self.planes[k].receiver.corners() {
-            self.include_on(k, corner);
+        if self.planes[k].is_seen {
+            let width_px = self.planes[k].penumbra_px(self.view, in_plane, corners);
+            self.penumbrae_px[light] = self.penumbrae_px[light].max(width_px);
         }
     }
 
@@ -157,6 +176,26 @@ impl<'a> Reach<'a> {
 pub(crate) fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
     let at = light.y * p - p.y * light.truncate();
     DVec3::new(at.x, at.z, light.y - light.w * p.y)
+}
+
+impl PlaneReach {
+    /// Width in the picture of the shadow's edge that a point casts: the farthest that shadows of opposite corners around the
+    /// light are apart, over what these are. Infinite where one does not end, or is behind the camera.
+    fn penumbra_px(&self, view: &View, in_plane: DVec3, [a, b, c, d]: [DVec4; 4]) -> f64 {
+        let seen_at = |light: DVec4| {
+            let shadow = shadow_of(in_plane, light);
+            if light.y <= 0.0 || shadow.z <= 0.0 {
+                return None;
+            }
+            let at = self.receiver.nearest(shadow.truncate() / shadow.z);
+            let px = view.image_px_from(&self.world_from_plane, DVec4::new(at.x, 0.0, at.y, 1.0));
+            (px.z > 0.0).then(|| px.truncate() / px.z)
+        };
+        let apart = |one, other| Some(seen_at(one)?.distance(seen_at(other)?));
+        apart(a, d)
+            .zip(apart(b, c))
+            .map_or(f64::INFINITY, |(one, other)| FRAC_1_SQRT_2 * one.max(other))
+    }
 }
 
 impl View {

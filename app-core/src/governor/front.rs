@@ -82,7 +82,10 @@ impl Step {
             Knob::AmbientDirections => {
                 settings.n_ambient_directions = settings.n_ambient_directions.min(points);
             }
-            Knob::LightPoints => settings.n_light_points = settings.n_light_points.min(points),
+            Knob::LightPoints => {
+                settings.n_light_points = settings.n_light_points.min(points);
+                settings.n_narrow_light_points = settings.n_narrow_light_points.min(points);
+            }
             Knob::FramesPerSecond => {}
         }
     }

@@ -74,7 +74,7 @@ pub struct Plan {
     /// Lights whose shadows are moved, at most four.
     pub n_lights: usize,
     /// Points over each of them, a multiple of 16: of a hard light as well, whose edge they antialias.
-    pub n_light_points: usize,
+    pub n_light_points: Vec<usize>,
     /// Directions of ambient light.
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
@@ -114,7 +114,8 @@ impl Plan {
     #[must_use]
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
-        let n_lights = facts.n_lights.min(MAX_LIGHTS);
+        let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS);
+        let penumbrae_px = facts.penumbrae_px.iter().take(MAX_LIGHTS);
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
@@ -136,7 +137,7 @@ impl Plan {
             fit_stride_px: stride_px(size_px, MAX_FIT_PIXELS),
             rough_fit_stride_px: stride_px(size_px, MAX_ROUGH_FIT_PIXELS),
             n_lights,
-            n_light_points: settings.n_light_points,
+            n_light_points: penumbrae_px.map(|width_px| n_light_points(*width_px, settings)).collect(),
         }
     }
 }
@@ -146,10 +147,12 @@ impl Plan {
     #[must_use]
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
-            let counts = [plan.n_lights, plan.n_light_points, plan.n_ambient_directions];
+            let counts = [plan.n_lights, plan.n_ambient_directions];
             (plan.region.size_px, plan.toy_box.size_px, plan.ambient_px, counts)
         };
-        sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
+        let are_lights_alike =
+            self.n_light_points == other.n_light_points && self.self_shadow == other.self_shadow;
+        sizes(self) == sizes(other) && are_lights_alike
     }
 
     /// Format of the plate.
@@ -207,6 +210,17 @@ fn toy_box(facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
         size_px: UVec2::ONE,
         ..whole
     })
+}
+
+/// Points over a light: fewer where that still is one for each pixel of its penumbra.
+fn n_light_points(penumbra_px: f64, settings: &ModelSettings) -> usize {
+    #[allow(clippy::cast_precision_loss, reason = "at most 64")]
+    let is_narrow = penumbra_px <= settings.n_narrow_light_points as f64;
+    if is_narrow {
+        settings.n_narrow_light_points
+    } else {
+        settings.n_light_points
+    }
 }
 
 /// An atlas for the toy's shadow on itself.

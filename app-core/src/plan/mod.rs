@@ -17,8 +17,8 @@ pub struct SceneFacts {
     pub toy_box: Option<PixelRect>,
     /// What a pixel is across at the nearest part of the toy, in units of its file; 0 where the camera is within.
     pub pixel_in_object: f64,
-    /// Lights whose shadows are moved.
-    pub n_lights: usize,
+    /// Width in pixels of the widest penumbra of each light whose shadows are moved.
+    pub penumbrae_px: Vec<f64>,
     /// Receivers that shadows are moved on, one to four.
     pub n_receivers: u32,
     /// One plate shows all of the region, or several together.

@@ -111,13 +111,14 @@ impl Stage {
         };
         model.encode(&mut recorder, &self.toy, &pictures, news);
         #[allow(clippy::cast_precision_loss, reason = "at most 64")]
-        let [n_points, n_directions] = [plan.n_light_points, plan.n_ambient_directions].map(|n| n as f64);
-        let by_lights: f64 = covered.by_lights_px.iter().sum();
+        let count = |n: usize| n as f64;
+        let by_lights = plan.n_light_points.iter().zip(&covered.by_lights_px);
+        let by_lights: f64 = by_lights.map(|(n_points, px)| count(*n_points) * px).sum();
         let texel_px = f64::from(divisor * divisor);
         Cost {
             triangles: recorder.submit().ran.iter().map(|run| run.work.triangles()).sum(),
-            covered_px: n_points * by_lights
-                + n_directions * covered.from_above_px / texel_px
+            covered_px: by_lights
+                + count(plan.n_ambient_directions) * covered.from_above_px / texel_px
                 + N_CAMERA_DRAWS * covered.by_camera_px,
         }
     }

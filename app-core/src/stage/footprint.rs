@@ -41,6 +41,8 @@ pub(super) struct Footprint {
     /// the picture.
     pub(super) least_toy_box: Option<PixelRect>,
     pub(super) bounds: Bounds,
+    /// Width in pixels of each light's widest penumbra.
+    pub(super) penumbrae_px: Vec<f64>,
     pub(super) plane_rects: Vec<PlaneRect>,
     pub(super) choice: PlateChoice,
     pub(super) plate_views: PlateViews,
@@ -122,6 +124,7 @@ impl Stage {
         Some(Footprint {
             camera: *camera,
             bounds: reach.bounds,
+            penumbrae_px: on_view.penumbrae_px().to_vec(),
             plate_views: plate_views(&self.scene, &layout, &view, &choice, &self.plates.gains),
             plate_fraction: covered_fraction(&self.scene, &layout, &view, &region, &choice),
             corners_in_world,

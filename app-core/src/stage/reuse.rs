@@ -218,7 +218,7 @@ impl Stage {
                 .image_rect(&world_from_anchor, &self.physical_bounds),
             toy_box: toy_box_in(&region, footprint, known_box_px),
             pixel_in_object: self.pixel_in_object(footprint),
-            n_lights: self.lights.used.len(),
+            penumbrae_px: footprint.penumbrae_px.clone(),
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region),
             are_plates_scaled: footprint.plate_views.are_scaled(),
@@ -276,9 +276,9 @@ impl Stage {
 
     /// The points of each light, as many as are planned.
     pub(super) fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
-        let lights = self.lights.used.iter();
+        let lights = self.lights.used.iter().zip(&plan.n_light_points);
         lights
-            .map(|light| self.points_of(light, plan.n_light_points))
+            .map(|(light, n_points)| self.points_of(light, *n_points))
             .collect()
     }
 

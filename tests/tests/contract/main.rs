@@ -119,7 +119,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
             physical_toy: Some(region),
             toy_box: Some(region),
             pixel_in_object: 0.0,
-            n_lights: 1,
+            penumbrae_px: vec![0.0],
             n_receivers: 1,
             is_plate_complete: true,
             are_plates_scaled: false,

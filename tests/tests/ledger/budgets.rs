@@ -5,7 +5,7 @@ use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_FRONT, Knob, Step};
 use app_core::internals::Inspect;
 use app_core::preset::Preset;
-use app_core::scene::Scene;
+use app_core::scene::{Light, Scene};
 use app_core::toy::Toy;
 use glam::DVec3;
 use harness::ball::{SCREEN_PX, ball, lifted, phone};
@@ -162,7 +162,12 @@ fn a_paused_toy_is_drawn_for_new_pictures_alone_and_casts_no_shadow_anew() {
 
 #[test]
 fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
-    let (scene, input) = scene_of(ball(100, 51), 1);
+    let (mut scene, input) = scene_of(ball(100, 51), 1);
+    // As wide as to have all points to begin with.
+    scene.lights = vec![Light::Sphere {
+        position_in_world: DVec3::new(0.9, 1.6, 0.4),
+        radius_m: 0.5,
+    }];
     let mut core = Core::counting();
     core.set_scene(scene, Preset::Balanced).unwrap();
     core.draw_every_pose().unwrap();

@@ -31,7 +31,7 @@ fn surface(run: &Run, region_px: DVec2) -> Option<(usize, DVec3, DVec3)> {
 fn light_points(run: &Run) -> Vec<Vec<DVec4>> {
     let planned = run.plan.self_shadow.n_points.iter();
     let points = planned.enumerate().map(|(i, n_points)| {
-        let points = run.stand.light_points(i, run.plan.n_light_points);
+        let points = run.stand.light_points(i, run.plan.n_light_points[i]);
         let stride = points.len() / n_points;
         points.into_iter().step_by(stride).collect()
     });

@@ -108,7 +108,9 @@ fn is_seen_from_each_quarter(n_points: usize) -> bool {
 fn each_quarter_of_a_pixel_gets_points_from_all_over_the_light() {
     for preset in Preset::ALL {
         if let Settings::Model(settings) = preset.settings() {
-            assert!(is_seen_from_each_quarter(settings.n_light_points), "{preset}");
+            for n_points in [settings.n_light_points, settings.n_narrow_light_points] {
+                assert!(is_seen_from_each_quarter(n_points), "{preset}");
+            }
         }
     }
     // With 16 there are too few, and with 48 a position's column goes with its distance from the light's middle.

@@ -23,6 +23,10 @@ const SIZES_PX: [[u32; 2]; 12] = [
 ];
 
 fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
+    plan_with(size_px, vec![0.0; n_lights])
+}
+
+fn plan_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> Plan {
     let region = PixelRect {
         origin_px: UVec2::new(3, 7),
         size_px: size_px.into(),
@@ -32,7 +36,7 @@ fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
         physical_toy: Some(region),
         toy_box: Some(region),
         pixel_in_object: 0.0,
-        n_lights,
+        penumbrae_px,
         n_receivers: 2,
         is_plate_complete: false,
         are_plates_scaled: false,
@@ -103,6 +107,12 @@ fn further_lights_are_left_out() {
         assert_eq!(plan.n_lights, n_lights.min(4), "the fifth is left out");
         assert_eq!(leaves_out(&plan, "overlap of shadows"), n_lights == 1);
     }
+}
+
+#[test]
+fn a_wide_penumbra_is_drawn_from_more_points() {
+    let plan = plan_with([640, 360], vec![0.0, 32.0, 32.1, f64::INFINITY]);
+    assert_eq!(plan.n_light_points, [32, 32, 64, 64]);
 }
 
 #[test]

@@ -74,6 +74,42 @@ fn the_region_holds_the_penumbra() {
     }
 }
 
+/// The farthest that shadows of opposite points of a bulb's rim are apart.
+fn widest_px(rig: &Rig, point: DVec3, light: DVec3, radius_m: f64) -> f64 {
+    let (across, along) = (light - TOY.centre()).normalize().any_orthonormal_pair();
+    let seen_px = |degrees: i32| {
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        rig.pixel(shadow(point, light + radius_m * (cos * across + sin * along)))
+    };
+    let widths_px = (0..180).map(|degrees| seen_px(degrees).distance(seen_px(degrees + 180)));
+    widths_px.fold(0.0, f64::max)
+}
+
+#[test]
+fn a_penumbra_is_as_wide_as_the_widest_of_its_points() {
+    let mut rig = Rig::new(DVec3::ZERO);
+    rig.image_px *= 8;
+    let (view, receivers) = (rig.view(), [rig.receiver()]);
+    let (near, radius_m) = (DVec3::new(0.1, 0.8, -0.6), 0.03);
+    let points = [TOY.min, TOY.centre(), TOY.centre().with_y(TOY.max.y)];
+    let lights = [(BULB_AT, radius_m), (near, radius_m), (near, 0.0)];
+    let bulbs = lights.map(|(at, radius_m)| rig.bulb(at, radius_m));
+    let mut reach = Reach::new(&view, &TOY, &layout(&receivers, &bulbs));
+    points.into_iter().for_each(|point| reach.include(point));
+    for ((at, radius_m), found_px) in lights.into_iter().zip(reach.penumbrae_px()) {
+        let widths_px = points.map(|point| widest_px(&rig, point, at, radius_m));
+        let widest_px = widths_px.into_iter().fold(0.0, f64::max);
+        // Two of its diameters are looked at.
+        let is_near = (0.7 * widest_px..=1.02 * widest_px).contains(found_px);
+        assert!(is_near, "{found_px} where {widest_px} is the widest");
+    }
+    // A bulb no higher than the toy throws a shadow without an end.
+    let low = [rig.bulb(DVec3::new(0.4, TOY.max.y, 0.0), radius_m)];
+    let mut reach = Reach::new(&view, &TOY, &layout(&receivers, &low));
+    reach.include(points[2]);
+    assert_eq!(reach.penumbrae_px(), [f64::INFINITY]);
+}
+
 #[test]
 fn the_region_of_some_points_is_within_that_of_their_box() {
     let rig = Rig::new(DVec3::ZERO);
