@@ -31,8 +31,8 @@ impl ClipReach {
         posed: &mut PosedMesh,
     ) -> Result<Self, ToyError> {
         toy.pose(physical, anchor_from_object, posed)?;
-        let mut outline = Outline::new(Bounds::around(posed.points()).centre());
-        for moment in moments(toy, clip)?.iter().chain([physical]) {
+        let mut outline = Outline::around(posed);
+        for moment in &moments(toy, clip)? {
             toy.pose(moment, anchor_from_object, posed)?;
             posed.points().for_each(|p| outline.include(p));
         }

@@ -2,6 +2,9 @@
 
 use glam::DVec3;
 
+use crate::geometry::bounds::Bounds;
+use crate::toy::PosedMesh;
+
 /// Bins along each side of each of the six faces of the cube of directions.
 const N_SIDE_BINS: usize = 8;
 const N_BINS: usize = 6 * N_SIDE_BINS * N_SIDE_BINS;
@@ -28,6 +31,14 @@ impl Outline {
             middle,
             farthest: vec![[DVec3::ZERO; N_KEPT]; N_BINS],
         }
+    }
+
+    /// Of all points of a pose.
+    #[must_use]
+    pub fn around(posed: &PosedMesh) -> Self {
+        let mut outline = Self::new(Bounds::around(posed.points()).centre());
+        posed.points().for_each(|point| outline.include(point));
+        outline
     }
 
     /// Includes a point.

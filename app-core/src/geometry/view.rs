@@ -2,7 +2,6 @@
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
-use crate::geometry::bounds::Bounds;
 use crate::geometry::extent::{Extent, NEAR_M};
 use crate::geometry::rect::PixelRect;
 use crate::scene::{Camera, Intrinsics};
@@ -60,14 +59,16 @@ impl View {
         )
     }
 
-    /// The pixels of the image that can show any of `bounds`; all of them where a part of it is behind the camera, none where
+    /// The pixels of the image that can show anything amid `points`; all of them where one is behind the camera, none where
     /// it is out of the picture.
     #[must_use]
-    pub fn image_rect(&self, world_from_space: &DMat4, bounds: &Bounds) -> Option<PixelRect> {
+    pub fn image_rect(
+        &self,
+        world_from_space: &DMat4,
+        points: impl Iterator<Item = DVec3>,
+    ) -> Option<PixelRect> {
         let mut extent = Extent::EMPTY;
-        for corner in bounds.corners() {
-            extent.include(self.image_px_from(world_from_space, corner.extend(1.0)));
-        }
+        points.for_each(|point| extent.include(self.image_px_from(world_from_space, point.extend(1.0))));
         extent.rect(self.image_px)
     }
 

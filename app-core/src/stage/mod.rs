@@ -19,7 +19,8 @@ use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::clip_reach::ClipReach;
-use crate::geometry::rect::PlaneRect;
+use crate::geometry::outline::Outline;
+use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::governor::Step;
@@ -61,6 +62,7 @@ pub(crate) struct Stage {
     bounds_in_object: Bounds,
     /// Of the physical pose, in anchor space.
     physical_bounds: Bounds,
+    physical_outline: Outline,
     is_shadow_withheld: bool,
     /// A pose that is shown again counts as a new one.
     is_every_pose_new: bool,
@@ -147,6 +149,7 @@ impl Stage {
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
+            physical_outline: Outline::around(&posed),
             toy: ToyMesh::new(
                 gpu,
                 &scene.toy,
@@ -255,11 +258,14 @@ impl Stage {
         view.is_some_and(|view| self.shows_toy(view))
     }
 
-    /// Whether the box around the physical toy is in the picture.
+    /// Whether the physical toy is in the picture.
     fn shows_toy(&self, view: &View) -> bool {
-        let world_from_anchor = self.layout().world_from_anchor();
-        let rect = view.image_rect(&world_from_anchor, &self.physical_bounds);
-        rect.is_some()
+        self.physical_toy_in(view).is_some()
+    }
+
+    /// The pixels of the image that can show the physical toy.
+    fn physical_toy_in(&self, view: &View) -> Option<PixelRect> {
+        view.image_rect(&self.layout().world_from_anchor(), self.physical_outline.points())
     }
 
     /// The picture that was learned from last.

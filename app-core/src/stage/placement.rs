@@ -8,6 +8,7 @@ use crate::frame::input::FrameInput;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::displacement::between_poses;
 use crate::geometry::inside::is_inside;
+use crate::geometry::outline::Outline;
 use crate::gpu::context::Gpu;
 use crate::scene::Light;
 use crate::toy::ToyError;
@@ -86,6 +87,7 @@ impl Stage {
         self.world_from_object = *world_from_object;
         self.is_object_placed = true;
         self.physical_bounds = Bounds::around(self.posed.points());
+        self.physical_outline = Outline::around(&self.posed);
         self.toy.physical.write(gpu, &self.posed);
         Ok(())
     }

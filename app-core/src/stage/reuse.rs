@@ -208,14 +208,11 @@ impl Stage {
         footprint: &Footprint,
         (region, known_box_px): (PixelRect, UVec2),
     ) -> SceneFacts {
-        let world_from_anchor = self.layout().world_from_anchor();
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_receivers = self.receivers.len() as u32;
         SceneFacts {
             region,
-            physical_toy: footprint
-                .view
-                .image_rect(&world_from_anchor, &self.physical_bounds),
+            physical_toy: self.physical_toy_in(&footprint.view),
             toy_box: toy_box_in(&region, footprint, known_box_px),
             pixel_in_object: self.pixel_in_object(footprint),
             penumbrae_px: footprint.penumbrae_px.clone(),
