@@ -130,11 +130,12 @@ pub mod internals {
     pub use crate::geometry::reach::Reach;
     pub use crate::geometry::rect::{PixelRect, PlaneRect};
     pub use crate::geometry::scene_layout::SceneLayout;
+    pub use crate::geometry::seen::mark_seen;
     pub use crate::geometry::shadow_atlas::ShadowAtlas;
     pub use crate::geometry::silhouette::{
         ByCamera, Edges, Landing, OntoReceiver, Projection, Shape, Silhouette, find_silhouette,
     };
-    pub use crate::geometry::tiles::{CountedTiles, PixelBox, TILE_PX, Tiles};
+    pub use crate::geometry::tiles::{CountedTiles, PixelBox, Tiles};
     pub use crate::geometry::view::View;
     pub use crate::gpu::context::phone_limits;
     pub use crate::gpu::device::Kind;

@@ -16,25 +16,26 @@ struct Drawing {
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
 @group(1) @binding(3) var plate: texture_2d<f32>;
-@group(1) @binding(4) var validity: texture_2d<f32>;
-@group(1) @binding(5) var physical_visibility: texture_2d<f32>;
-@group(1) @binding(6) var physical_ambient: texture_2d<f32>;
-@group(1) @binding(7) var visibility: texture_2d<f32>;
-@group(1) @binding(8) var ambient: texture_2d<f32>;
-@group(1) @binding(9) var linear_sampler: sampler;
-// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
-@group(1) @binding(10) var toy_0: texture_2d<f32>;
-@group(1) @binding(11) var toy_1: texture_2d<f32>;
-@group(1) @binding(12) var toy_2: texture_2d<f32>;
-@group(1) @binding(13) var toy_3: texture_2d<f32>;
-// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
-@group(1) @binding(14) var toy_moved: texture_2d<f32>;
-@group(1) @binding(15) var moved_mask: texture_2d<f32>;
+@group(1) @binding(4) var physical_visibility: texture_2d<f32>;
+@group(1) @binding(5) var physical_ambient: texture_2d<f32>;
+@group(1) @binding(6) var visibility: texture_2d<f32>;
+@group(1) @binding(7) var ambient: texture_2d<f32>;
+@group(1) @binding(8) var linear_sampler: sampler;
 // Each pixel's own residual, in plates.
-@group(1) @binding(16) var detail: texture_2d<f32>;
+@group(1) @binding(9) var detail: texture_2d<f32>;
+@group(1) @binding(10) var<uniform> drawing: Drawing;
+
+@group(2) @binding(0) var validity: texture_2d<f32>;
+// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
+@group(2) @binding(1) var toy_0: texture_2d<f32>;
+@group(2) @binding(2) var toy_1: texture_2d<f32>;
+@group(2) @binding(3) var toy_2: texture_2d<f32>;
+@group(2) @binding(4) var toy_3: texture_2d<f32>;
+// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+@group(2) @binding(5) var toy_moved: texture_2d<f32>;
+@group(2) @binding(6) var moved_mask: texture_2d<f32>;
 // COVERED_POSITION for each position that the shown toy covers.
-@group(1) @binding(17) var covered: texture_2d<f32>;
-@group(1) @binding(18) var<uniform> drawing: Drawing;
+@group(2) @binding(7) var covered: texture_2d<f32>;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -99,8 +100,9 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
 
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
-// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks.
-fn receiver(position: vec4f, evident: vec4f, change: ptr<function, vec4f>) -> vec3f {
+// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks, and beside it
+// the real toy may have moved.
+fn receiver(position: vec4f, evident: vec4f, has_moved: bool, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let f = textureLoad(frame, texel, 0).rgb;
@@ -136,7 +138,6 @@ fn receiver(position: vec4f, evident: vec4f, change: ptr<function, vec4f>) -> ve
   let is_outlier = smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
-  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(vec2i(texel)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let made = lit * max(after + residual, vec3f(0.0));
@@ -206,7 +207,9 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
     return vec4f(mix(toy.rgb, frame_color, stillness(in_box)), 1.0);
   }
   var change = vec4f(0.0);
-  let laid = (1.0 - toy.a) * receiver(position, marks_at(vec2i(texel)), &change) + toy.rgb;
+  let evident = marks_at(vec2i(texel));
+  let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
+  let laid = (1.0 - toy.a) * receiver(position, evident, has_moved, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
   if change.a == 0.0 { return vec4f(laid, 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
@@ -214,14 +217,14 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
 }
 
-// Beside the toy box.
+// Clear of the toy in either pose.
 @fragment
 fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   var change = vec4f(0.0);
-  return vec4f(receiver(position, FAR_MARKS, &change), 1.0);
+  return vec4f(receiver(position, FAR_MARKS, false, &change), 1.0);
 }
 
-// Within the toy box, where the toy was drawn once, or four times. An entry point for each, since some processors take all
+// Near a toy, which was drawn once, or four times. An entry point for each, since some processors take all
 // branches of a shader.
 @fragment
 fn fs_drawn_once(@builtin(position) position: vec4f) -> @location(0) vec4f {

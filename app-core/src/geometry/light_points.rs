@@ -38,11 +38,7 @@ pub fn light_points(
 }
 
 /// The corners of the square around the light's disc, homogeneous as [`light_points`], row by row.
-pub(crate) fn light_corners(
-    light: &Light,
-    plane_from_world: &DMat4,
-    target_in_plane: DVec3,
-) -> [DVec4; 4] {
+pub(crate) fn light_corners(light: &Light, plane_from_world: &DMat4, target_in_plane: DVec3) -> [DVec4; 4] {
     let disc = Disc::of(light, plane_from_world, target_in_plane);
     [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| disc.point(DVec2::new(x, y)))
 }

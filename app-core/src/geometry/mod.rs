@@ -14,6 +14,7 @@ pub(crate) mod outline;
 pub(crate) mod reach;
 pub(crate) mod rect;
 pub(crate) mod scene_layout;
+pub(crate) mod seen;
 pub(crate) mod shadow_atlas;
 pub(crate) mod silhouette;
 pub(crate) mod tiles;

@@ -12,6 +12,8 @@ use glam::{UVec2, Vec2, Vec3, Vec3Swizzles, Vec4Swizzles};
 use crate::geometry::facing::Viewers;
 use crate::geometry::tiles::{PixelBox, Tiles};
 
+/// Pixels along each side of a tile.
+const TILE_PX: u32 = 4;
 /// Distance that positions within a pixel are from its centre, and some for the rounding of 32 bits.
 const AROUND_PX: f32 = 0.55;
 
@@ -183,7 +185,7 @@ pub fn find_silhouette(
     facing: &[u32],
     size_px: UVec2,
 ) -> Option<Silhouette> {
-    let landings = landings(shape, projection)?;
+    let landings = landings(shape.positions, shape.corners, projection)?;
     let land = |corner: u32| landings.get(corner as usize).copied().unwrap_or(NOWHERE);
     let triangles = shape.corners.as_chunks::<3>().0;
     // Whether a triangle may show its outer side, and its inner side.
@@ -191,7 +193,7 @@ pub fn find_silhouette(
         .iter()
         .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
         .collect();
-    let mut tiles = Tiles::over(size_px);
+    let mut tiles = Tiles::over(size_px, TILE_PX);
     for edge in &shape.edges.0 {
         if edge
             .beside
@@ -228,9 +230,13 @@ const NOWHERE: Landing = Landing {
 };
 
 /// Where each corner of a shape is seen; none where one has no bounds.
-fn landings(shape: Shape<'_>, projection: &dyn Projection) -> Option<Vec<Landing>> {
-    let mut is_used = vec![false; shape.positions.len()];
-    for corner in shape.corners {
+pub(super) fn landings(
+    positions: &[Vec3],
+    corners: &[u32],
+    projection: &dyn Projection,
+) -> Option<Vec<Landing>> {
+    let mut is_used = vec![false; positions.len()];
+    for corner in corners {
         if let Some(is_used) = is_used.get_mut(*corner as usize) {
             *is_used = true;
         }
@@ -239,7 +245,7 @@ fn landings(shape: Shape<'_>, projection: &dyn Projection) -> Option<Vec<Landing
         true => projection.land(*position),
         false => Some(NOWHERE),
     };
-    shape.positions.iter().zip(is_used).map(land).collect()
+    positions.iter().zip(is_used).map(land).collect()
 }
 
 /// Whether one of the viewers may see the outer side of one triangle and the inner side of another.

@@ -411,8 +411,13 @@ impl Render<'_> {
 
     /// Draws no farther than a part of the attachments; before anything is set.
     fn within(&mut self, part: (UVec2, UVec2)) {
-        self.tally.narrow(n_pixels(part.1));
+        self.narrow(n_pixels(part.1));
         self.clip(part);
+    }
+
+    /// What is set next is looked at by so many pixels alone.
+    pub(crate) fn narrow(&mut self, n_pixels: u64) {
+        self.tally.narrow(n_pixels);
     }
 
     /// Draws next in a part of the attachments; others are drawn in the rest of them.

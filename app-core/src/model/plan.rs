@@ -137,7 +137,9 @@ impl Plan {
             fit_stride_px: stride_px(size_px, MAX_FIT_PIXELS),
             rough_fit_stride_px: stride_px(size_px, MAX_ROUGH_FIT_PIXELS),
             n_lights,
-            n_light_points: penumbrae_px.map(|width_px| n_light_points(*width_px, settings)).collect(),
+            n_light_points: penumbrae_px
+                .map(|width_px| n_light_points(*width_px, settings))
+                .collect(),
         }
     }
 }

@@ -11,7 +11,9 @@ use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
 use crate::geometry::facing::Viewers;
-use crate::geometry::silhouette::{Edges, Shape, find_silhouette};
+use crate::geometry::seen::mark_seen;
+use crate::geometry::silhouette::{Edges, Projection, Shape, find_silhouette};
+use crate::geometry::tiles::Tiles;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Pipeline, Stream};
@@ -214,6 +216,19 @@ impl ToyMesh {
             indices: 0..n(&facing),
             is_culled,
             silhouette,
+        }
+    }
+
+    /// Marks the tiles of a target within `reach_px` of what a camera may see of a pose.
+    pub(crate) fn mark_seen(
+        &self,
+        tiles: &mut Tiles,
+        pose: &PoseBuffers,
+        (camera, reach_px): (&dyn Projection, f32),
+    ) {
+        let (closed, open) = self.split_caster(Detail::Own);
+        for corners in [closed, open] {
+            mark_seen(tiles, (&pose.mesh.positions, corners), camera, reach_px);
         }
     }
 

@@ -65,7 +65,7 @@ fn a_planted_import_is_found() {
             "circle: ",
         ),
         (
-            "geometry::bounds",
+            "geometry::extent",
             "planted! { crate::geometry::view::planted }",
             "circle: ",
         ),

@@ -75,15 +75,15 @@ fn assert_held(n_lights: u32, preset: Preset, budgets: [Budget; 3], peak_mib: f6
 fn frames_of_balanced_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
-        (Pose, 300_000, 1.85),
-        (Picture, 300_000, 2.47),
-        (View, 546_000, 3.5),
+        (Pose, 222_000, 1.80),
+        (Picture, 222_000, 2.41),
+        (View, 392_000, 3.41),
     ];
     assert_held(1, Preset::Balanced, one, 39.0);
     let two = [
-        (Pose, 487_000, 2.06),
-        (Picture, 487_000, 2.7),
-        (View, 916_000, 3.9),
+        (Pose, 332_000, 2.02),
+        (Picture, 332_000, 2.63),
+        (View, 609_000, 3.79),
     ];
     assert_held(2, Preset::Balanced, two, 43.5);
 }
@@ -103,7 +103,7 @@ fn a_planted_budget_is_broken() {
     use FrameKind::{Picture, Pose, View};
     let planted = [
         (Pose, 869_000, 2.2),
-        (Picture, 869_000, 2.4),
+        (Picture, 869_000, 2.3),
         (View, 1_408_000, 4.2),
     ];
     assert_held(1, Preset::Balanced, planted, 41.0);

@@ -85,6 +85,19 @@ fn block<'a>(lines: &'a [&'a str], first: usize) -> &'a [&'a str] {
     &lines[first..(first + n_lines).min(lines.len())]
 }
 
+/// Pixels that are drawn in by what a pass draws from line `first` on: no two of its parts have one in common.
+fn n_drawn_from(text: &[&str], first: usize) -> u64 {
+    let is = |index: usize, name: &str| text[index].trim_start().starts_with(name);
+    let part_of = |draw: usize| (0..draw).rev().find(|index| is(*index, "SetScissor("));
+    let draws = (first..text.len()).filter(|index| is(*index, "Draw"));
+    let parts: BTreeSet<Option<usize>> = draws.map(part_of).collect();
+    let area = |part: &Option<usize>| {
+        let side = |key| part.map_or(u64::MAX, |index| number(block(text, index), key).unwrap());
+        side("w:").saturating_mul(side("h:"))
+    };
+    parts.iter().map(area).fold(0, u64::saturating_add)
+}
+
 impl Objects {
     /// Takes a part of a trace; returns the passes in it.
     pub(crate) fn take(&mut self, trace: &str) -> BTreeMap<String, Given> {
@@ -166,15 +179,6 @@ impl Objects {
         if is_drawn {
             (n_pixels, read) = self.attachments(text, given);
         }
-        // Where a pass draws in parts, no two of them have a pixel in common.
-        let scissors = (0..text.len()).filter(|index| text[*index].contains("SetScissor("));
-        let parts = scissors.map(|index| {
-            let side = |key| number(block(text, index), key).unwrap();
-            side("w:") * side("h:")
-        });
-        if let Some(n_drawn) = parts.reduce(|sum, part| sum + part) {
-            n_pixels = n_pixels.min(n_drawn);
-        }
         let mut seen = BTreeSet::new();
         for (index, line) in text.iter().enumerate() {
             let within = || block(text, index);
@@ -182,7 +186,8 @@ impl Objects {
             match line.trim().trim_end_matches('(') {
                 "SetBindGroup" => {
                     let group = within().iter().find_map(|line| pointer(line)).unwrap();
-                    let (bytes_read, bytes_written) = self.bound(group, n_pixels, &mut seen);
+                    let n_seen = n_pixels.min(n_drawn_from(text, index));
+                    let (bytes_read, bytes_written) = self.bound(group, n_seen, &mut seen);
                     read += bytes_read;
                     given.bytes_written += bytes_written;
                 }

@@ -12,4 +12,5 @@ mod region;
 mod rig;
 mod shadow_atlas;
 mod silhouette;
+mod tiles;
 mod transforms;

@@ -141,7 +141,8 @@ impl FramePath<'_> {
     fn composite_inputs(&self) -> composite::Inputs<'_> {
         let (captured, drawn) = (self.captured, self.drawn);
         composite::Inputs {
-            toy_box: self.region.plan.toy_box,
+            region: self.region,
+            mesh: self.toy,
             scene: self.scene(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,
