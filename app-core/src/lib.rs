@@ -137,6 +137,7 @@ pub mod internals {
     };
     pub use crate::geometry::tiles::{CountedTiles, PixelBox, Tiles};
     pub use crate::geometry::view::View;
+    pub use crate::geometry::whole_shadow::Caster as ShadowCaster;
     pub use crate::gpu::context::phone_limits;
     pub use crate::gpu::device::Kind;
     pub use crate::gpu::meter::Memory;

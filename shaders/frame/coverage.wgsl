@@ -24,12 +24,34 @@ fn position_px(index: u32) -> vec2f {
   return (vec2f(vec2u(index, index * LATTICE_STEP % N_POSITIONS)) + 0.5) / f32(N_POSITIONS) - 0.5;
 }
 
+// Of a corner at `clip`, drawn for a position.
+fn moved_clip(clip: vec4f, index: u32) -> vec4f {
+  let moved = clip.xy - clip.w * vec2f(2.0, -2.0) * position_px(index) / globals.region_size_px;
+  return vec4f(moved, clip.w * f32(index + 1u) / f32(N_POSITIONS + 1u), clip.w);
+}
+
 @vertex
 fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Moved {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  let moved = clip.xy - clip.w * vec2f(2.0, -2.0) * position_px(index) / globals.region_size_px;
-  let depth = f32(index + 1u) / f32(N_POSITIONS + 1u);
-  return Moved(vec4f(moved, clip.w * depth, clip.w), index);
+  return Moved(moved_clip(clip, index), index);
+}
+
+struct Plain {
+  @builtin(position) clip: vec4f,
+  @location(0) on_receiver: vec3f,
+}
+
+// Before one receiver.
+@vertex
+fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Plain {
+  let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
+  return Plain(moved_clip(clip, index), on_first_receiver(clip));
+}
+
+@fragment
+fn fs_cover_plain(@location(0) on_receiver: vec3f) -> @location(0) vec4f {
+  if is_behind_first(on_receiver) { discard; }
+  return vec4f(COVERED_POSITION);
 }
 
 // Above all positions, so that none counts again.

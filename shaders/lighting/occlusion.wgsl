@@ -65,16 +65,42 @@ fn position_in_texel(point: u32) -> vec2f {
   return (vec2f(point * POSITION_STEPS % light_points.n_points) + 0.5) / f32(light_points.n_points);
 }
 
+fn in_plane_of(instance: u32, in_anchor: vec3f) -> vec3f {
+  let receiver = instance / light_points.n_points;
+  return (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
+}
+
+// Where the shadow of a point is drawn, moved so that its light point's position comes to the pixel's centre, where the
+// rasteriser samples.
+fn moved_clip(instance: u32, in_plane: vec3f) -> vec4f {
+  let receiver = instance / light_points.n_points;
+  let clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
+  let to_centre_px = (0.5 - position_in_texel(instance % light_points.n_points)) * light_points.texel_px;
+  return clip + vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
+}
+
+fn depth_of(instance: u32) -> f32 {
+  return f32(instance % light_points.n_points + 1u) / f32(light_points.n_points + 1u);
+}
+
 @vertex
 fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Flattened {
-  let receiver = instance / light_points.n_points;
-  let point = instance % light_points.n_points;
-  let in_plane = (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
-  var clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
-  // Moves the position to the pixel's centre, where the rasteriser samples.
-  let to_centre_px = (0.5 - position_in_texel(point)) * light_points.texel_px;
-  clip += vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
-  return Flattened(clip, in_plane.y, f32(point + 1u) / f32(light_points.n_points + 1u));
+  let in_plane = in_plane_of(instance, in_anchor);
+  return Flattened(moved_clip(instance, in_plane), in_plane.y, depth_of(instance));
+}
+
+struct Plain {
+  @builtin(position) clip: vec4f,
+  @location(0) height_m: f32,
+}
+
+// Where all of the shadow is in front of the camera, and the toy below the light: nothing is cut off by depth, which then
+// needs not to be written by the fragment shader.
+@vertex
+fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Plain {
+  let in_plane = in_plane_of(instance, in_anchor);
+  let clip = moved_clip(instance, in_plane);
+  return Plain(vec4f(clip.xy, clip.w * depth_of(instance), clip.w), in_plane.y);
 }
 
 // Above all points, so that none counts again. Only drawn where all of the shadow is in front of the camera, and the toy
@@ -82,8 +108,8 @@ fn vs_flatten(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: 
 @vertex
 fn vs_once(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> @builtin(position) vec4f {
   let receiver = instance / light_points.n_points;
-  let in_plane = (globals.receivers[receiver].plane_from_anchor * vec4f(in_anchor, 1.0)).xyz;
-  let clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
+  let clip =
+    clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane_of(instance, in_anchor)));
   let depth = (f32(light_points.n_points) + 0.5) / f32(light_points.n_points + 1u);
   return vec4f(clip.xy, clip.w * depth, clip.w);
 }
@@ -97,6 +123,13 @@ fn fs_cover_all() -> @location(0) vec4f {
 struct Hidden {
   @location(0) share: vec4f,
   @builtin(frag_depth) depth: f32,
+}
+
+// Parts under the receiver cast no shadow on it.
+@fragment
+fn fs_cover_plain(@location(0) height_m: f32) -> @location(0) vec4f {
+  if height_m < 0.0 { discard; }
+  return vec4f(HIDDEN_POINT);
 }
 
 @fragment

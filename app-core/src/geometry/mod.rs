@@ -19,3 +19,4 @@ pub(crate) mod shadow_atlas;
 pub(crate) mod silhouette;
 pub(crate) mod tiles;
 pub(crate) mod view;
+pub(crate) mod whole_shadow;

@@ -54,14 +54,22 @@ impl CountingTargets {
 pub(crate) struct CountingDraws {
     /// Once for each instance; both sides of each triangle, or the outer one.
     each: [Draw; 2],
+    /// The same where less has to be looked at.
+    plain: [Draw; 2],
     /// Once for all of them; the same.
     once: [Draw; 2],
     tiles: Draw,
 }
 
 impl CountingDraws {
-    /// `each` draws one instance; the shader has `vs_once` and `fs_cover_all` beside it.
+    /// `each` draws one instance; the shader has `vs_once` and `fs_cover_all` beside it, and for instances that have it plain
+    /// `vs_plain` and `fs_cover_plain`.
     pub(crate) fn new(gpu: &Gpu, each: &DrawSpec) -> Self {
+        let plain = DrawSpec {
+            vertex: "vs_plain",
+            fragment: "fs_cover_plain",
+            ..each.clone()
+        };
         let once = DrawSpec {
             vertex: "vs_once",
             fragment: "fs_cover_all",
@@ -85,6 +93,7 @@ impl CountingDraws {
         };
         Self {
             each: sided(each),
+            plain: sided(&plain),
             once: sided(&once),
             tiles: gpu.draw(&tiles),
         }
@@ -95,13 +104,13 @@ impl CountingDraws {
         &self.each[0]
     }
 
-    /// Counts instances of a shape in a pose.
+    /// Counts instances of a shape in a pose, of which the first `n_plain` have it plain.
     pub(crate) fn count(
         &self,
         render: &mut Render<'_>,
         groups: &[Group],
         (corners, pose): (&Corners<'_>, &PoseBuffers),
-        instances: Range<u32>,
+        (instances, n_plain): (Range<u32>, u32),
     ) {
         let sided = usize::from(corners.is_culled);
         if let Some(silhouette) = &corners.silhouette {
@@ -112,12 +121,18 @@ impl CountingDraws {
             corners.draw(render, instances.start..instances.start + 1);
             render.begin(&self.tiles, &[]);
             silhouette.draw_tiles(render, false);
-            render.begin(&self.each[sided], &[]);
-            silhouette.draw_corners(render, pose, instances);
         } else {
-            render.begin(&self.each[sided], groups);
-            corners.bind(render, pose);
-            corners.draw(render, instances);
+            groups.iter().for_each(|group| render.set(group));
+        }
+        // One after the other, since each counts above those before it.
+        let first_other = (instances.start + n_plain).min(instances.end);
+        let plain = (&self.plain[sided], instances.start..first_other);
+        let others = (&self.each[sided], first_other..instances.end);
+        for (draw, instances) in [plain, others] {
+            if !instances.is_empty() {
+                render.begin(draw, &[]);
+                corners.draw_each(render, pose, instances);
+            }
         }
     }
 }

@@ -3,12 +3,14 @@
 use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
 
 use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::bounds::Sphere;
 use crate::geometry::facing::Viewers;
 use crate::geometry::light_points::light_in_plane;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::silhouette::{ByCamera, OntoReceiver};
 use crate::geometry::view::View;
+use crate::geometry::whole_shadow::Caster;
 use crate::gpu::bindings::Slot;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Part, part};
@@ -76,6 +78,23 @@ impl Globals {
                 .map(|receiver| Vec3::from(receiver.plane_from_region_px.map(|[_, _, w, _]| w)))
                 .collect(),
         }
+    }
+
+    /// How many of a light's points, from the first on, see all of a toy's shadow on a receiver land before the camera; the points
+    /// are in its space.
+    pub(crate) fn n_whole_shadows(&self, receiver: usize, points: &[Vec4], toy: &Sphere) -> usize {
+        let Some(receiver) = self.receivers.get(receiver) else {
+            return 0;
+        };
+        let plane_from_anchor = Mat4::from_cols_array_2d(&receiver.plane_from_anchor);
+        #[allow(clippy::cast_possible_truncation, reason = "metres")]
+        let caster = Caster {
+            centre: plane_from_anchor.transform_point3(toy.centre.as_vec3()),
+            radius_m: toy.radius_m as f32,
+        };
+        let depth = Vec3::from(receiver.clip_from_plane.map(|[_, _, w, _]| w));
+        let is_whole = |point: &&Vec4| caster.has_whole_shadow(**point, depth, self.near_m);
+        points.iter().take_while(is_whole).count()
     }
 
     /// How shadows from the points of a light fall on the first receiver; none of a light that has none, or not all alike.

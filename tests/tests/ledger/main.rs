@@ -137,7 +137,7 @@ fn what_is_planted_in_a_trace_is_found() {
     let honest = Objects::default().take(&text);
     assert_eq!(counted(&report, &honest), honest);
     for (from, to) in [
-        ("instance_count: 64,", "instance_count: 63,"),
+        ("instance_count: 32,", "instance_count: 31,"),
         ("store_op: discard,", "store_op: store,"),
         ("format: \"rgba16float\"", "format: \"rgba32float\""),
         ("load_op: clear((", "load_op: load,("),

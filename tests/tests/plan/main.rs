@@ -14,3 +14,4 @@ mod shadow_atlas;
 mod silhouette;
 mod tiles;
 mod transforms;
+mod whole_shadow;

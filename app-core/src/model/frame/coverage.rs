@@ -79,6 +79,13 @@ impl Pass {
         let mut render = targets.covered.render(recorder, SHADER.name);
         render.part_of(inputs.region.plan.part_drawn());
         let drawn = (&corners, pose);
-        self.draws.count(&mut render, &[group], drawn, 0..N_POSITIONS);
+        // Before one receiver it is told from the vertices what is behind it.
+        let n_plain = if inputs.region.plan.n_receivers == 1 {
+            N_POSITIONS
+        } else {
+            0
+        };
+        self.draws
+            .count(&mut render, &[group], drawn, (0..N_POSITIONS, n_plain));
     }
 }

@@ -186,7 +186,24 @@ impl Pass {
                 render.draw(0..3, receiver..receiver + 1);
             }
             let instances = receiver * n_points..(receiver + 1) * n_points;
-            self.cover.count(&mut render, &groups, drawn, instances);
+            let n_plain = inputs.n_whole_shadows(receiver);
+            self.cover
+                .count(&mut render, &groups, drawn, (instances, n_plain));
         }
+    }
+}
+
+impl Inputs<'_> {
+    /// Points of the light, from the first on, whose shadows of the toy on a receiver need not be cut off.
+    fn n_whole_shadows(&self, receiver: u32) -> u32 {
+        let points = self
+            .light
+            .points
+            .chunks(self.light.n_points.max(1) as usize)
+            .nth(receiver as usize);
+        let globals = self.globals.uniform;
+        let n_whole =
+            globals.n_whole_shadows(receiver as usize, points.unwrap_or_default(), &self.pose.around);
+        u32::try_from(n_whole).unwrap_or(0)
     }
 }

@@ -164,6 +164,16 @@ impl Corners<'_> {
         render.set_indices(self.buffer);
     }
 
+    /// Draws what has to be drawn once for each instance.
+    pub(crate) fn draw_each(&self, render: &mut Render<'_>, pose: &PoseBuffers, instances: Range<u32>) {
+        if let Some(silhouette) = &self.silhouette {
+            silhouette.draw_corners(render, pose, instances);
+        } else {
+            self.bind(render, pose);
+            self.draw(render, instances);
+        }
+    }
+
     /// Draws each triangle once for each instance.
     pub(crate) fn draw(&self, render: &mut Render<'_>, instances: Range<u32>) {
         render.draw_indexed(self.indices.clone(), instances);
