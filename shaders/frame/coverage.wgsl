@@ -8,8 +8,15 @@
 // does come near are closed meanwhile (`geometry/silhouette.rs`).
 // The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
 //
-// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position that the toy covers.
+// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position of the lattice that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
+
+struct Positions {
+  // From one that is drawn for to the next, of the lattice's.
+  step: u32,
+}
+
+@group(1) @binding(0) var<uniform> positions: Positions;
 
 // Row step from one column's position to the next: of all lattices of 32 it has the least error at a straight edge.
 const LATTICE_STEP: u32 = 9u;
@@ -31,7 +38,8 @@ fn moved_clip(clip: vec4f, index: u32) -> vec4f {
 }
 
 @vertex
-fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Moved {
+fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Moved {
+  let index = positions.step * instance;
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
   return Moved(moved_clip(clip, index), index);
 }
@@ -43,15 +51,15 @@ struct Plain {
 
 // Before one receiver.
 @vertex
-fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Plain {
+fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Plain {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Plain(moved_clip(clip, index), on_first_receiver(clip));
+  return Plain(moved_clip(clip, positions.step * instance), on_first_receiver(clip));
 }
 
 @fragment
 fn fs_cover_plain(@location(0) on_receiver: vec3f) -> @location(0) vec4f {
   if is_behind_first(on_receiver) { discard; }
-  return vec4f(COVERED_POSITION);
+  return covered();
 }
 
 // Above all positions, so that none counts again.
@@ -60,6 +68,11 @@ fn vs_once(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
   let depth = (f32(N_POSITIONS) + 0.5) / f32(N_POSITIONS + 1u);
   return vec4f(clip.xy, clip.w * depth, clip.w);
+}
+
+// By a position that is drawn for, which stands for those up to the next.
+fn covered() -> vec4f {
+  return vec4f(f32(positions.step) * COVERED_POSITION);
 }
 
 // All positions of a pixel that no silhouette comes near.
@@ -72,5 +85,5 @@ fn fs_cover_all() -> @location(0) vec4f {
 fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
   // w is the inverse depth at the position.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px + position_px(index), at.w) { discard; }
-  return vec4f(COVERED_POSITION);
+  return covered();
 }

@@ -12,6 +12,8 @@ pub enum Knob {
     AmbientDirections,
     /// Points over each light.
     LightPoints,
+    /// Positions within a pixel that the toy's outline is counted over.
+    CoveragePositions,
     /// Frames a second.
     FramesPerSecond,
 }
@@ -66,6 +68,12 @@ pub const BALANCED_FRONT: &[Step] = &[
         what: "ambient shadow is drawn from 16 directions",
     },
     Step {
+        knob: Knob::CoveragePositions,
+        value: 16,
+        gain: 0.95,
+        what: "the toy's outline is drawn from 16 positions in each pixel",
+    },
+    Step {
         knob: Knob::FramesPerSecond,
         value: 30,
         gain: 0.5,
@@ -85,6 +93,9 @@ impl Step {
             Knob::LightPoints => {
                 settings.n_light_points = settings.n_light_points.min(points);
                 settings.n_narrow_light_points = settings.n_narrow_light_points.min(points);
+            }
+            Knob::CoveragePositions => {
+                settings.n_coverage_positions = settings.n_coverage_positions.min(self.value);
             }
             Knob::FramesPerSecond => {}
         }

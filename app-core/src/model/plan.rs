@@ -87,6 +87,8 @@ pub struct Plan {
     pub is_plate_fine: bool,
     /// Draws of the shown toy, each offset by a fraction of a pixel.
     pub n_toy_draws: u32,
+    /// Positions within a pixel that the shown toy's coverage is counted over.
+    pub n_coverage_positions: u32,
     /// Whether the real shadow is denoised.
     pub is_noise_removed: bool,
     /// Whether the real shadow is withheld from all but the first fits.
@@ -127,6 +129,7 @@ impl Plan {
             is_plate_estimated: !facts.is_plate_complete,
             is_plate_fine: settings.is_plate_fine || !facts.is_plate_complete || facts.are_plates_scaled,
             n_toy_draws: settings.n_toy_draws,
+            n_coverage_positions: settings.n_coverage_positions,
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
             self_shadow: self_shadow(n_lights, settings),

@@ -45,6 +45,7 @@ fn a_preset_spends_what_the_passes_can_take() {
         }
         assert!((1..=16).contains(&settings.ambient_divisor), "{preset}");
         assert!([1, 4].contains(&settings.n_toy_draws), "{preset}");
+        assert!([16, 32].contains(&settings.n_coverage_positions), "{preset}");
         assert!((1..=16).contains(&settings.n_self_shadow_points), "{preset}");
     }
 }

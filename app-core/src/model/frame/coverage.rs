@@ -2,11 +2,12 @@
 
 use wgpu::{CompareFunction, VertexFormat};
 
-use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{DrawSpec, Stream};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shared::shared_struct;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, ordered};
@@ -16,14 +17,27 @@ use crate::passes::toy_mesh::{Detail, Saves, Side, SilhouetteTarget, ToyMesh};
 
 /// Counting of a pixel's covered positions.
 pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&GLOBALS, &BEHIND, &COVERED, &TILES, &part!("frame/coverage")]);
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &BEHIND,
+    &COVERED,
+    &TILES,
+    &part!("frame/coverage", structs: [Positions]),
+]);
+const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Positions within a pixel that the toy's coverage is counted over. RMS error of the area that a straight edge of any
+/// Positions of the lattice within a pixel that the toy's coverage is counted over, all of them or every other. RMS error of the area that a straight edge of any
 /// direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
 pub(crate) const N_POSITIONS: u32 = 32;
 /// Increment per covered position, in 8-bit codes.
 pub(crate) const COVERED_CODES: u32 = 7;
+
+shared_struct! {
+    /// Of the lattice's positions those that are drawn for.
+    pub(crate) struct Positions {
+        pub step: u32,
+    }
+}
 
 pub(crate) struct Pass {
     draws: CountingDraws,
@@ -50,7 +64,7 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [GLOBALS_GROUP, &[], &[], &[]];
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
         let each = DrawSpec {
             vertex: "vs_move",
             streams: STREAMS,
@@ -63,7 +77,7 @@ impl Pass {
         }
     }
 
-    /// Draws the shown toy once for each position in a pixel, as far as its silhouette comes near.
+    /// Draws the shown toy once for each of its positions in a pixel, as far as its silhouette comes near.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
         let camera = inputs.camera_in_anchor.extend(1.0);
@@ -75,17 +89,25 @@ impl Pass {
         };
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
         let globals = [(&inputs.region.globals).into()];
-        let group = recorder.bind(self.draws.any(), GROUP_SCENE, &globals);
+        let n_positions = inputs.region.plan.n_coverage_positions.clamp(1, N_POSITIONS);
+        let positions = Positions {
+            step: N_POSITIONS / n_positions,
+        };
+        let any = self.draws.any();
+        let groups = [
+            recorder.bind(any, GROUP_SCENE, &globals),
+            recorder.bind_with(any, GROUP_PASS, &positions, &[Resource::PerUse]),
+        ];
         let mut render = targets.covered.render(recorder, SHADER.name);
         render.part_of(inputs.region.plan.part_drawn());
         let drawn = (&corners, pose);
         // Before one receiver it is told from the vertices what is behind it.
         let n_plain = if inputs.region.plan.n_receivers == 1 {
-            N_POSITIONS
+            n_positions
         } else {
             0
         };
         self.draws
-            .count(&mut render, &[group], drawn, (0..N_POSITIONS, n_plain));
+            .count(&mut render, &groups, drawn, (0..n_positions, n_plain));
     }
 }
