@@ -27,8 +27,8 @@ pub(crate) const MAX_FIT_ROWS: u32 = 32;
 /// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
 /// where the real shadow is some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
-/// Those that suffice for gain and intensities to begin with.
-const MAX_ROUGH_FIT_PIXELS: u32 = 1 << 14;
+/// Those that suffice for gain and intensities: on six sessions shadow, toy and edge change by at most .0004 codes.
+const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
 /// The farthest that what casts a light's shadow is from the toy's shape, in pixels at the toy: a shadow is seen from farther away.
 const CASTER_PX: f64 = 1.0;
 /// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
@@ -105,8 +105,8 @@ pub struct Plan {
     pub n_intensity_steps: u32,
     /// Sampling stride of the fit, in region pixels, along each side.
     pub fit_stride_px: u32,
-    /// That of a first step that weighs nothing, and is only begun with.
-    pub rough_fit_stride_px: u32,
+    /// That of the fit of gain and intensities.
+    pub intensity_fit_stride_px: u32,
     /// Work that the scene does not need.
     pub left_out: Vec<LeftOut>,
 }
@@ -138,7 +138,7 @@ impl Plan {
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,
             fit_stride_px: stride_px(size_px, MAX_FIT_PIXELS),
-            rough_fit_stride_px: stride_px(size_px, MAX_ROUGH_FIT_PIXELS),
+            intensity_fit_stride_px: stride_px(size_px, MAX_INTENSITY_PIXELS),
             n_lights,
             n_light_points: penumbrae_px
                 .map(|width_px| n_light_points(*width_px, settings))

@@ -153,7 +153,7 @@ fn the_fit_takes_enough_pixels_and_not_many() {
             "{size_px:?}: a workgroup without work"
         );
         // To begin with, a quarter of them, but not of a small region.
-        let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.rough_fit_stride_px));
+        let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.intensity_fit_stride_px));
         let n_rough = width * height;
         assert!(n_rough <= 1 << 14, "{size_px:?}: {n_rough}");
         assert!(n_rough >= n_pixels.min(1 << 14) / 8, "{size_px:?}: {n_rough}");

@@ -98,8 +98,8 @@ impl Task {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
         #[allow(clippy::cast_possible_truncation, reason = "at most six columns")]
         let n_columns = 2 + plan.n_lights as u32;
-        let stride_px = if is_first_of_picture {
-            plan.rough_fit_stride_px
+        let stride_px = if self.subject == Subject::Intensities {
+            plan.intensity_fit_stride_px
         } else {
             plan.fit_stride_px
         };
