@@ -100,8 +100,8 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
 
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
-// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks, and beside it
-// the real toy may have moved.
+// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks;
+// `has_moved` is whether the real toy beside it has.
 fn receiver(position: vec4f, evident: vec4f, has_moved: bool, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
