@@ -155,7 +155,7 @@ pub enum Settings {
 pub struct ModelSettings {
     /// Points over each light, a multiple of 16 up to 64.
     pub n_light_points: usize,
-    /// The same of a light whose penumbra is no wider in pixels than this.
+    /// The same of a light whose penumbra is no wider in pixels than this, and no hard edge.
     pub n_narrow_light_points: usize,
     /// Directions of ambient light, a multiple of 16 up to 64.
     pub n_ambient_directions: usize,

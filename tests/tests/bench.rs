@@ -99,7 +99,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
 }
 
 /// Steps of the governor's that change a setting.
-const N_TURNED_DOWN: usize = 5;
+const N_TURNED_DOWN: usize = 6;
 
 /// Programs find in the JSON what is in the table.
 fn assert_same(rows: &[Row], header: &[&str], lines: &[Vec<&str>]) {

@@ -217,10 +217,13 @@ fn toy_box(facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
     })
 }
 
-/// Points over a light: fewer where that still is one for each pixel of its penumbra.
+/// Width of a penumbra up to which its points smooth an edge rather than a slope, so that fewer show as steps of colour.
+const HARD_PX: f64 = 4.0;
+
+/// Points over a light: fewer of a soft one where that still is one for each pixel of its penumbra.
 fn n_light_points(penumbra_px: f64, settings: &ModelSettings) -> usize {
     #[allow(clippy::cast_precision_loss, reason = "at most 64")]
-    let is_narrow = penumbra_px <= settings.n_narrow_light_points as f64;
+    let is_narrow = penumbra_px > HARD_PX && penumbra_px <= settings.n_narrow_light_points as f64;
     if is_narrow {
         settings.n_narrow_light_points
     } else {

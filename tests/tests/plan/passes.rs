@@ -110,9 +110,11 @@ fn further_lights_are_left_out() {
 }
 
 #[test]
-fn a_wide_penumbra_is_drawn_from_more_points() {
-    let plan = plan_with([640, 360], vec![0.0, 32.0, 32.1, f64::INFINITY]);
-    assert_eq!(plan.n_light_points, [32, 32, 64, 64]);
+fn a_wide_penumbra_and_a_hard_edge_are_drawn_from_more_points() {
+    let plan = plan_with([640, 360], vec![4.0, 4.1, 32.0, 32.1]);
+    assert_eq!(plan.n_light_points, [64, 32, 32, 64]);
+    let plan = plan_with([640, 360], vec![0.0, f64::INFINITY]);
+    assert_eq!(plan.n_light_points, [64, 64]);
 }
 
 #[test]
