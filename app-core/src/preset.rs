@@ -153,11 +153,11 @@ pub enum Settings {
 /// Settings of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelSettings {
-    /// Points over each light, a multiple of 16 up to 64.
+    /// Points over each light: 16, 32 or 64.
     pub n_light_points: usize,
     /// The same of a light whose penumbra is no wider in pixels than this, and no hard edge.
     pub n_narrow_light_points: usize,
-    /// Directions of ambient light, a multiple of 16 up to 64.
+    /// Directions of ambient light: 16, 32 or 64.
     pub n_ambient_directions: usize,
     /// Region pixels per texel of the ambient map, along each side.
     pub ambient_divisor: u32,

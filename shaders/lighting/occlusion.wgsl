@@ -2,7 +2,7 @@
 //
 // Each instance flattens the mesh from one light point onto one receiver and draws it where the camera sees it, so a
 // contact edge is as sharp as the screen. Each point is drawn for its own position within the pixel, so that a hard edge has as many steps as a soft one;
-// blending adds up.
+// blending takes its share from the light's visibility.
 // Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it,
 // and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
@@ -12,13 +12,15 @@
 // Each triangle is drawn once a point, from whichever side; of a closed mesh only those that face the light: a ray that
 // enters it leaves it again.
 //
-// Reads: posed positions in anchor space. Writes: HIDDEN_POINT for each light point hidden.
+// Reads: posed positions in anchor space. Writes: visibility in [0, 1], in the light's channel.
 // CPU reference: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
 // Here the accumulation is done by the blending of one pass rather than by one pass per point.
 
 struct LightPoints {
   // Homogeneous: (position, 1) or (unit direction, 0); point k in the space of receiver r has index r n_points + k.
   points: array<vec4f, 256>,
+  // What each hidden point takes from the visibility, in the light's channel; of all of them at least 1.
+  share: vec4f,
   // Size of a target's texel in region pixels.
   texel_px: vec2f,
   n_points: u32,
@@ -117,7 +119,7 @@ fn vs_once(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32
 // All points of a light, in a pixel that no silhouette of a shadow comes near.
 @fragment
 fn fs_cover_all() -> @location(0) vec4f {
-  return vec4f(f32(light_points.n_points) * HIDDEN_POINT);
+  return f32(light_points.n_points) * light_points.share;
 }
 
 struct Hidden {
@@ -129,11 +131,11 @@ struct Hidden {
 @fragment
 fn fs_cover_plain(@location(0) height_m: f32) -> @location(0) vec4f {
   if height_m < 0.0 { discard; }
-  return vec4f(HIDDEN_POINT);
+  return light_points.share;
 }
 
 @fragment
 fn fs_cover(@location(0) height_m: f32, @location(1) @interpolate(flat, either) depth: f32) -> Hidden {
   // Parts under the receiver cast no shadow on it: their depth is above no point's.
-  return Hidden(vec4f(HIDDEN_POINT), select(0.0, depth, height_m >= 0.0));
+  return Hidden(light_points.share, select(0.0, depth, height_m >= 0.0));
 }

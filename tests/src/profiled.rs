@@ -60,7 +60,7 @@ pub fn task(name: &str) -> Option<&'static str> {
         // What is sampled of the real shadow: by a search there, by a fit and a residual here.
         "search" | "lit" | "fit" | "fit_solve" | "residual" | "fill" | "detail" => 4,
         "box_filter" => 5,
-        "pcss" | "visibility" => 6,
+        "pcss" => 6,
         "plate" | "estimate" => 7,
         "camera_planes" | "retarget" | "composite" | "present" | "screen" => 8,
         _ => return None,

@@ -295,7 +295,7 @@ fn view_of(
 
 /// The narrowest format of half floats that has so many channels, of up to four.
 #[must_use]
-pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
+pub(crate) const fn half_float(n_channels: usize) -> TextureFormat {
     match n_channels {
         0 | 1 => TextureFormat::R16Float,
         2 => TextureFormat::Rg16Float,
@@ -305,7 +305,7 @@ pub(crate) fn half_float(n_channels: usize) -> TextureFormat {
 
 /// The narrowest format of 8-bit fractions that has so many channels, of up to four.
 #[must_use]
-pub(crate) fn fractions(n_channels: usize) -> TextureFormat {
+pub(crate) const fn fractions(n_channels: usize) -> TextureFormat {
     match n_channels {
         0 | 1 => TextureFormat::R8Unorm,
         2 => TextureFormat::Rg8Unorm,

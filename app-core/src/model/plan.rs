@@ -73,7 +73,7 @@ pub struct Plan {
     pub toy_box: PixelRect,
     /// Lights whose shadows are moved, at most four.
     pub n_lights: usize,
-    /// Points over each of them, a multiple of 16: of a hard light as well, whose edge they antialias.
+    /// Points over each of them: of a hard light as well, whose edge they antialias.
     pub n_light_points: Vec<usize>,
     /// Directions of ambient light.
     pub n_ambient_directions: usize,

@@ -54,7 +54,7 @@ impl Model {
 
     /// Covered fractions of pixels, from the counts of `coverage`.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
-        let covered = &self.drawn.by_pass.coverage.covered.count;
+        let covered = &self.drawn.by_pass.coverage.covered;
         let mut map = self.read_box(gpu, covered, [0.0, 0.0, 0.0, 1.0])?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;

@@ -1,6 +1,6 @@
 //! What `occlusion` and `coverage` share: a target that counts, for each pixel, how many of a pass's instances show there.
 //!
-//! Blending adds up. Each instance has a depth of its own, above those before it, and what is not above what is there is
+//! Blending counts, up or down. Each instance has a depth of its own, above those before it, and what is not above what is there is
 //! rejected: so triangles of one instance that overlap count once.
 //!
 //! Where no silhouette comes near, all instances show the same: what is there is drawn once and counts in full.
@@ -15,7 +15,7 @@ use wgpu::{
 
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
-use crate::gpu::recorder::{Group, Recorder, Render, cleared};
+use crate::gpu::recorder::{Attachment, Group, Recorder, Render};
 use crate::gpu::shader::{Part, part};
 use crate::gpu::texture::Texture;
 use crate::passes::toy_mesh::{Corners, PoseBuffers};
@@ -23,30 +23,25 @@ use crate::passes::toy_mesh::{Corners, PoseBuffers};
 /// Tiles that are closed to what is drawn once.
 pub(crate) const TILES: Part = part!("common/tiles");
 
-/// Format of the count, in whole codes.
-const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Format of the depths that order the instances.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 
-/// What is counted, and in which order.
-pub(crate) struct CountingTargets {
-    /// Which instance was drawn last; never leaves the chip.
-    order: Texture,
-    pub(crate) count: Texture,
-}
+/// Depths that tell which instance was drawn last in each pixel; they never leave the chip.
+pub(crate) struct InstanceOrder(Texture);
 
-impl CountingTargets {
+impl InstanceOrder {
     pub(crate) fn new(gpu: &Gpu, label: &str, size_px: UVec2) -> Self {
-        Self {
-            order: Texture::samples(gpu, &format!("{label} order"), size_px, (ORDER_FORMAT, 1)),
-            count: Texture::target(gpu, label, size_px, COUNT_FORMAT),
-        }
+        Self(Texture::samples(gpu, label, size_px, (ORDER_FORMAT, 1)))
     }
 
-    /// Begins a pass that counts from nothing.
-    pub(crate) fn render<'a>(&self, recorder: &'a mut Recorder<'_>, pass: &'static str) -> Render<'a> {
-        let colors = [Some(cleared(&self.count.view))];
-        recorder.render(pass, &colors, Some(&self.order.view), StoreOp::Discard)
+    /// Begins a pass that counts, from what is in the target.
+    pub(crate) fn render<'a>(
+        &self,
+        recorder: &'a mut Recorder<'_>,
+        pass: &'static str,
+        count: Attachment<'_>,
+    ) -> Render<'a> {
+        recorder.render(pass, &[Some(count)], Some(&self.0.view), StoreOp::Discard)
     }
 }
 
@@ -73,13 +68,12 @@ impl CountingDraws {
         let once = DrawSpec {
             vertex: "vs_once",
             fragment: "fs_cover_all",
-            targets: vec![COUNT_FORMAT.into()],
             ..each.clone()
         };
         let tiles = DrawSpec {
             vertex: "vs_tile",
             fragment: "fs_tile",
-            targets: vec![not_counting()],
+            targets: each.targets.iter().map(not_counting).collect(),
             depth: Some(ordered(CompareFunction::Always)),
             ..each.clone()
         };
@@ -137,28 +131,28 @@ impl CountingDraws {
     }
 }
 
-/// The target that adds up what is drawn.
-pub(crate) fn counting() -> ColorTargetState {
-    let sum = BlendComponent {
+/// A target that adds up what is drawn, or takes it from what is there.
+pub(crate) fn counting(format: TextureFormat, operation: BlendOperation) -> ColorTargetState {
+    let count = BlendComponent {
         src_factor: BlendFactor::One,
         dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
+        operation,
     };
     ColorTargetState {
-        format: COUNT_FORMAT,
+        format,
         blend: Some(BlendState {
-            color: sum,
-            alpha: sum,
+            color: count,
+            alpha: count,
         }),
         write_mask: ColorWrites::ALL,
     }
 }
 
-/// A target that leaves what was counted.
-pub(crate) fn not_counting() -> ColorTargetState {
+/// One that leaves what was counted.
+pub(crate) fn not_counting(counting: &ColorTargetState) -> ColorTargetState {
     ColorTargetState {
         write_mask: ColorWrites::empty(),
-        ..COUNT_FORMAT.into()
+        ..counting.format.into()
     }
 }
 

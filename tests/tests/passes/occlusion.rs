@@ -1,4 +1,4 @@
-//! `occlusion` with `visibility`: flattened meshes against rays.
+//! `occlusion`: flattened meshes against rays.
 
 use app_core::toy::PosedMesh;
 use glam::DVec4;
@@ -19,9 +19,10 @@ const MAX_LIGHT_SHARE: f64 = 0.005;
 const MAX_AMBIENT_SHARE: f64 = 0.03;
 /// Light points that may fall on the other side of an edge in one texel. Measured: 1, and 2 of 32 before a wall.
 const MAX_POINTS: f64 = 2.0;
-/// What is stored of lights in 8 bits, and of the ambient light in 16-bit floats below 1, is off by so much at most.
-const LIGHTS_STORED: f64 = 0.5 / 255.0;
-const AMBIENT_STORED: f64 = 1.0 / 4096.0;
+/// What is stored of lights, of which each of 16, 32 or 64 points takes 16, 8 or 4 codes of 255, is off by so much at most; of the
+/// ambient light, in 16-bit floats, nothing is.
+const LIGHTS_STORED: f64 = 1.0 / 255.0;
+const AMBIENT_STORED: f64 = 0.0;
 
 fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share, stored): (&str, f64, f64)) {
     let expected = visibility_map(casters, &run.region, actual.size());

@@ -1,16 +1,17 @@
 //! `coverage`: fraction of each pixel that the posed toy covers, from many positions, in one pass.
 
-use wgpu::{CompareFunction, VertexFormat};
+use wgpu::{BlendOperation, CompareFunction, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{DrawSpec, Stream};
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
-use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, ordered};
+use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::BEHIND;
 use crate::passes::toy_mesh::{Detail, Saves, Side, SilhouetteTarget, ToyMesh};
@@ -29,6 +30,8 @@ const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Positions of the lattice within a pixel that the toy's coverage is counted over, all of them or every other. RMS error of the area that a straight edge of any
 /// direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
 pub(crate) const N_POSITIONS: u32 = 32;
+/// Format of the count, in whole codes.
+const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Increment per covered position, in 8-bit codes.
 pub(crate) const COVERED_CODES: u32 = 7;
 
@@ -51,13 +54,15 @@ pub(crate) struct Inputs<'a> {
 
 /// Of the toy box's size.
 pub(crate) struct Targets {
-    pub(crate) covered: CountingTargets,
+    order: InstanceOrder,
+    pub(crate) covered: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            covered: CountingTargets::new(gpu, "coverage", plan.toy_box.size_px),
+            order: InstanceOrder::new(gpu, "coverage order", plan.toy_box.size_px),
+            covered: Texture::target(gpu, "coverage", plan.toy_box.size_px, COUNT_FORMAT),
         }
     }
 }
@@ -68,7 +73,7 @@ impl Pass {
         let each = DrawSpec {
             vertex: "vs_move",
             streams: STREAMS,
-            targets: vec![counting()],
+            targets: vec![counting(COUNT_FORMAT, BlendOperation::Add)],
             depth: Some(ordered(CompareFunction::Greater)),
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
@@ -98,7 +103,8 @@ impl Pass {
             recorder.bind(any, GROUP_SCENE, &globals),
             recorder.bind_with(any, GROUP_PASS, &positions, &[Resource::PerUse]),
         ];
-        let mut render = targets.covered.render(recorder, SHADER.name);
+        let count = cleared(&targets.covered.view);
+        let mut render = targets.order.render(recorder, SHADER.name, count);
         render.part_of(inputs.region.plan.part_drawn());
         let drawn = (&corners, pose);
         // Before one receiver it is told from the vertices what is behind it.

@@ -157,7 +157,7 @@ impl FramePath<'_> {
                 visibility: &drawn.light.visibility.lights.view,
                 ambient: &drawn.light.visibility.ambient.view,
             },
-            coverage: &drawn.by_pass.coverage.covered.count.view,
+            coverage: &drawn.by_pass.coverage.covered.view,
             toy: &drawn.by_pass.toy,
             moved_mask: &drawn.by_pass.moved_mask.moved.view,
             detail: captured

@@ -7,25 +7,22 @@ use crate::geometry::light_points::ambient_directions;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
-use crate::model::lighting::occlusion::LightPointsBuffer;
+use crate::gpu::texture::{Texture, fractions};
+use crate::model::lighting::occlusion::{AMBIENT_FORMAT, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
-use crate::passes::counting::CountingTargets;
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
 
-passes!(occlusion, visibility, self_shadow);
+passes!(occlusion, self_shadow);
 
 /// One step of the visibility of lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// The toy's shadow on itself.
     SelfShadow,
-    /// Hidden points of one light.
+    /// Visibility of one light.
     Light(usize),
-    /// Visibility of the lights.
-    Lights,
     /// Visibility of the ambient light.
     Ambient,
 }
@@ -34,23 +31,21 @@ impl Step {
     /// The steps that compute the visibilities of a plan's lights.
     pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
         let lights = (0..plan.n_lights).map(Self::Light);
-        lights.chain([Self::Lights, Self::Ambient])
+        lights.chain([Self::Ambient])
     }
 
     /// The passes that it runs, in order.
     pub(crate) fn passes(self) -> &'static [&'static str] {
         match self {
             Self::SelfShadow => &["self_shadow"],
-            Self::Light(_) => &["occlusion"],
-            Self::Lights => &["visibility"],
-            Self::Ambient => &["occlusion", "visibility"],
+            Self::Light(_) | Self::Ambient => &["occlusion"],
         }
     }
 }
 
 /// Visibility and self-shadow maps of one pose.
 pub(crate) struct LightMaps {
-    pub(crate) visibility: visibility::Targets,
+    pub(crate) visibility: occlusion::Targets,
     pub(crate) self_shadow: self_shadow::Targets,
     /// Replaces the visibility of the lights that the passes compute.
     pub(crate) injected: Option<Texture>,
@@ -59,21 +54,21 @@ pub(crate) struct LightMaps {
 impl LightMaps {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            visibility: visibility::Targets::new(gpu, plan),
+            visibility: occlusion::Targets::new(gpu, plan),
             self_shadow: self_shadow::Targets::new(gpu, plan),
             injected: None,
         }
     }
 }
 
-/// Points over the lights, directions of the ambient light, and the targets that count them.
+/// Points over the lights, directions of the ambient light, and the order in which they are drawn.
 pub(crate) struct Lighting {
     lights: Vec<LightPointsBuffer>,
     ambient: LightPointsBuffer,
     n_receivers: u32,
     casters: Casters,
     atlas: ShadowAtlas,
-    occlusion: occlusion::Targets,
+    orders: occlusion::Orders,
 }
 
 /// A toy in a pose, in a view.
@@ -88,17 +83,27 @@ impl Lighting {
     /// `points` are those of each light, receiver by receiver.
     pub(crate) fn new(gpu: &Gpu, plan: &Plan, points: Vec<Vec<Vec4>>) -> Self {
         let (region_px, ambient_px, n_receivers) = (plan.region.size_px, plan.ambient_px, plan.n_receivers);
-        let on_device =
-            |points, map_px| LightPointsBuffer::new(gpu, points, n_receivers, (map_px, region_px));
+        let on_device = |points, part| LightPointsBuffer::new(gpu, points, n_receivers, part);
+        let part_of_light = |channel| PartOfMap {
+            sizes: (region_px, region_px),
+            format: fractions(plan.n_lights),
+            channel,
+        };
+        let ambient = PartOfMap {
+            sizes: (ambient_px, region_px),
+            format: AMBIENT_FORMAT,
+            channel: 0,
+        };
         // Each receiver has its own hemisphere.
         let directions = ambient_directions(plan.n_ambient_directions).repeat(n_receivers as usize);
         Self {
             lights: points
                 .into_iter()
-                .map(|points| on_device(points, region_px))
+                .enumerate()
+                .map(|(light, points)| on_device(points, part_of_light(light)))
                 .collect(),
-            ambient: on_device(directions, ambient_px),
-            occlusion: occlusion::Targets::new(gpu, plan),
+            ambient: on_device(directions, ambient),
+            orders: occlusion::Orders::new(gpu, plan),
             casters: plan.casters,
             atlas: plan.self_shadow.clone(),
             n_receivers,
@@ -128,43 +133,28 @@ impl Lighting {
         match step {
             Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
             Step::Light(index) => {
-                if let (Some(light), Some(counted)) =
-                    (self.lights.get(index), self.occlusion.lights.get(index))
-                {
+                if let Some(light) = self.lights.get(index) {
                     let light = (light, self.casters.light, Some(Side::Light(index)));
-                    self.count(recorder, passes, (posed, light), counted);
+                    self.encode_visibility(recorder, passes, (posed, light), maps);
                 }
-            }
-            Step::Lights => {
-                let counted: Vec<_> = (self.lights.iter().zip(&self.occlusion.lights))
-                    .map(|(light, counted)| (&counted.count.view, light.n_points))
-                    .collect();
-                let (inputs, map) = (visibility::Inputs { counted: &counted }, &maps.visibility.lights);
-                passes.visibility.encode(recorder, &inputs, map);
-                if let Some(injected) = &maps.injected {
-                    recorder.copy(injected, map);
+                let is_last = index + 1 == self.lights.len();
+                if let Some(injected) = maps.injected.as_ref().filter(|_| is_last) {
+                    recorder.copy(injected, &maps.visibility.lights);
                 }
             }
             Step::Ambient => {
-                let counted = &self.occlusion.ambient;
                 let light = (&self.ambient, self.casters.ambient, None);
-                self.count(recorder, passes, (posed, light), counted);
-                let counted = [(&counted.count.view, self.ambient.n_points)];
-                let inputs = visibility::Inputs { counted: &counted };
-                passes
-                    .visibility
-                    .encode(recorder, &inputs, &maps.visibility.ambient);
+                self.encode_visibility(recorder, passes, (posed, light), maps);
             }
         }
     }
 
-    /// Counts the hidden points of a light.
-    fn count(
+    fn encode_visibility(
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
         (posed, (light, caster, side)): (Posed<'_>, (&LightPointsBuffer, Detail, Option<Side>)),
-        counted: &CountingTargets,
+        maps: &LightMaps,
     ) {
         let Posed { globals, toy, pose } = posed;
         let inputs = occlusion::Inputs {
@@ -176,7 +166,8 @@ impl Lighting {
             caster,
             side,
         };
-        passes.occlusion.encode(recorder, &inputs, counted);
+        let targets = (&maps.visibility, &self.orders);
+        passes.occlusion.encode(recorder, &inputs, targets);
     }
 
     fn encode_self_shadow(

@@ -1,41 +1,42 @@
-//! `occlusion`: shadows of the posed toy on the receivers from many light points, in one pass.
+//! `occlusion`: visibility of a light behind the posed toy, from its shadows on the receivers from many points, in one pass.
+
+use std::sync::OnceLock;
 
 use glam::{UVec2, Vec4};
-use wgpu::{CompareFunction, VertexFormat};
+use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::recorder::{Recorder, cleared_to, loaded};
+use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::{Texture, fractions, half_float};
 use crate::model::plan::Plan;
-use crate::passes::counting::{CountingDraws, CountingTargets, TILES, counting, not_counting, ordered};
+use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
 use crate::passes::parts::FLATTEN;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
-use crate::scene::MAX_RECEIVERS;
+use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
-/// Increment per hidden light point.
-pub(crate) const HIDDEN: Part = part!("common/hidden");
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FLATTEN,
-    &HIDDEN,
     &TILES,
     &part!("lighting/occlusion", structs: [LightPoints]),
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Maximum number of light points of one pass: each adds three codes, and 255 is the last.
+/// Maximum number of light points of one pass.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
 
 shared_struct! {
     /// Points of a light, receiver by receiver.
     pub(crate) struct LightPoints {
         pub points: [[f32; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+        pub share: [f32; 4],
         pub texel_px: [f32; 2],
         pub n_points: u32,
         pub _pad: u32,
@@ -43,11 +44,12 @@ shared_struct! {
 }
 
 impl LightPoints {
-    /// For maps of `size_px` texels over a region of `region_px` pixels. `points` are a multiple of 16, up to 64, in the
-    /// space of the first receiver, then those of the next.
-    fn new(points: &[Vec4], n_points: u32, (size_px, region_px): (UVec2, UVec2)) -> Self {
+    /// `points` are 16, 32 or 64, in the space of the first receiver, then those of the next.
+    fn new(points: &[Vec4], n_points: u32, part: &PartOfMap) -> Self {
+        let (size_px, region_px) = part.sizes;
         let mut light_points = Self {
             points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+            share: part.share(n_points),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
             n_points,
             _pad: 0,
@@ -59,35 +61,61 @@ impl LightPoints {
     }
 }
 
+/// Where a light's visibility is written.
+#[derive(Clone, Copy)]
+pub(crate) struct PartOfMap {
+    /// Of the map in texels, and of the region in pixels.
+    pub(crate) sizes: (UVec2, UVec2),
+    pub(crate) format: TextureFormat,
+    pub(crate) channel: usize,
+}
+
+impl PartOfMap {
+    /// What each of so many points takes from the visibility, in the light's channel.
+    ///
+    /// In 8 bits whole codes, of which all points take all 255: of 16, 32 and 64 points it is off by less than 1/255. Floats of 16
+    /// bits are exact.
+    #[allow(clippy::cast_precision_loss, reason = "at most 255")]
+    fn share(&self, n_points: u32) -> [f32; 4] {
+        let n_points = n_points.max(1);
+        let of_each = if self.format == AMBIENT_FORMAT {
+            1.0 / n_points as f32
+        } else {
+            255_u32.div_ceil(n_points) as f32 / 255.0
+        };
+        let mut share = [0.0; 4];
+        if let Some(channel) = share.get_mut(self.channel) {
+            *channel = of_each;
+        }
+        share
+    }
+}
+
 /// The points of one light, on the device.
 pub(crate) struct LightPointsBuffer {
     /// Those in the space of the first receiver, then those of the next.
     pub(crate) points: Vec<Vec4>,
     /// Points of the light; each is in `points` once per receiver.
     pub(crate) n_points: u32,
-    /// Size of the maps and of the region, in texels and pixels.
-    sizes: (UVec2, UVec2),
+    part: PartOfMap,
     uniform: Buffer,
 }
 
 impl LightPointsBuffer {
-    /// `sizes` are those of the maps, in texels, and of the region, in pixels.
-    pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, sizes: (UVec2, UVec2)) -> Self {
+    pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, part: PartOfMap) -> Self {
         let n_points = u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1);
         Self {
-            uniform: gpu.uniform("light points", &LightPoints::new(&points, n_points, sizes)),
+            uniform: gpu.uniform("light points", &LightPoints::new(&points, n_points, &part)),
             points,
             n_points,
-            sizes,
+            part,
         }
     }
 
     /// Replaces the points by as many.
     pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>) {
-        gpu.write(
-            &self.uniform,
-            &[LightPoints::new(&points, self.n_points, self.sizes)],
-        );
+        let light_points = LightPoints::new(&points, self.n_points, &self.part);
+        gpu.write(&self.uniform, &[light_points]);
         self.points = points;
     }
 
@@ -97,27 +125,81 @@ impl LightPointsBuffer {
     }
 }
 
-/// Counts of hidden points, of each light and of the ambient light.
+/// Format of the ambient light's visibility, at a fraction of the resolution: drivers may filter 8 bits in no more than those.
+pub(crate) const AMBIENT_FORMAT: TextureFormat = half_float(1);
+
+/// Visibility maps of one pose.
 pub(crate) struct Targets {
-    pub(crate) lights: Vec<CountingTargets>,
-    pub(crate) ambient: CountingTargets,
+    /// One channel per light, in fractions of 8 bits: it has no more than 64 points.
+    pub(crate) lights: Texture,
+    pub(crate) ambient: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let format = fractions(plan.n_lights);
         Self {
-            lights: (0..plan.n_lights)
-                .map(|_| CountingTargets::new(gpu, "occlusion", plan.region.size_px))
-                .collect(),
-            ambient: CountingTargets::new(gpu, "occlusion", plan.ambient_px),
+            lights: Texture::target(gpu, "visibility", plan.region.size_px, format),
+            ambient: Texture::target(gpu, "ambient", plan.ambient_px, AMBIENT_FORMAT),
         }
     }
 }
 
+/// Which point was drawn last, over the region and over the ambient map.
+pub(crate) struct Orders {
+    lights: InstanceOrder,
+    ambient: InstanceOrder,
+}
+
+impl Orders {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let order = |size_px| InstanceOrder::new(gpu, "occlusion order", size_px);
+        Self {
+            lights: order(plan.region.size_px),
+            ambient: order(plan.ambient_px),
+        }
+    }
+}
+
+/// The formats of maps: of the ambient light, of one light, of two, of more.
+const FORMATS: [TextureFormat; 4] = [AMBIENT_FORMAT, fractions(1), fractions(2), fractions(MAX_LIGHTS)];
+/// Those that are compiled ahead.
+const N_COMMON: usize = 2;
+
 pub(crate) struct Pass {
+    /// In the order of [`FORMATS`], compiled once they are needed.
+    of_formats: [OnceLock<Draws>; FORMATS.len()],
+}
+
+struct Draws {
     cover: CountingDraws,
     /// Masks pixels that show another receiver, where there are several.
     route: Draw,
+}
+
+impl Draws {
+    fn new(gpu: &Gpu, format: TextureFormat) -> Self {
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let visibility = counting(format, BlendOperation::ReverseSubtract);
+        let route = DrawSpec {
+            vertex: "vs_route",
+            targets: vec![not_counting(&visibility)],
+            depth: Some(ordered(CompareFunction::Always)),
+            ..DrawSpec::fullscreen(&SHADER, "fs_route", groups, &[])
+        };
+        let cover = DrawSpec {
+            vertex: "vs_flatten",
+            streams: STREAMS,
+            targets: vec![visibility],
+            depth: Some(ordered(CompareFunction::Greater)),
+            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
+        };
+        Self {
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            cover: CountingDraws::new(gpu, &cover),
+            route: gpu.draw(&route),
+        }
+    }
 }
 
 /// A posed toy, and the points of a light whose occlusion is tested.
@@ -135,29 +217,36 @@ pub(crate) struct Inputs<'a> {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
-        let cover = DrawSpec {
-            vertex: "vs_flatten",
-            streams: STREAMS,
-            targets: vec![counting()],
-            depth: Some(ordered(CompareFunction::Greater)),
-            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
+        let pass = Self {
+            of_formats: FORMATS.map(|_| OnceLock::new()),
         };
-        let route = DrawSpec {
-            vertex: "vs_route",
-            targets: vec![not_counting()],
-            depth: Some(ordered(CompareFunction::Always)),
-            ..DrawSpec::fullscreen(&SHADER, "fs_route", groups, &[])
-        };
-        Self {
-            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
-            cover: CountingDraws::new(gpu, &cover),
-            route: gpu.draw(&route),
+        for format in &FORMATS[..N_COMMON] {
+            pass.draws(gpu, *format);
         }
+        pass
     }
 
-    /// Draws the caster from the light's points on each receiver, and counts the hidden points in the target.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &CountingTargets) {
+    fn draws(&self, gpu: &Gpu, format: TextureFormat) -> Option<&Draws> {
+        let mut of_formats = FORMATS.iter().zip(&self.of_formats);
+        let (_, draws) = of_formats.find(|(known, _)| **known == format)?;
+        Some(draws.get_or_init(|| Draws::new(gpu, format)))
+    }
+
+    /// Draws the caster from the light's points on each receiver, and takes the hidden points from the light's channel of its
+    /// map; the first channel starts all of them.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        (maps, orders): (&Targets, &Orders),
+    ) {
+        let (map, order) = match inputs.side {
+            Some(_) => (&maps.lights, &orders.lights),
+            None => (&maps.ambient, &orders.ambient),
+        };
+        let Some(draws) = self.draws(recorder.gpu, map.format()) else {
+            return;
+        };
         let of_pose = (inputs.pose, inputs.side);
         let points = (inputs.light.in_anchor(), inputs.caster);
         let projection = inputs.globals.uniform.onto_first_receiver(points.0);
@@ -167,27 +256,33 @@ impl Pass {
             projection,
             part: PixelRect {
                 origin_px: UVec2::ZERO,
-                size_px: targets.count.size_px(),
+                size_px: map.size_px(),
             },
             saves: Saves::Triangles,
         });
         let corners = inputs.toy.corners(recorder.gpu, of_pose, points, target);
-        let cover = self.cover.any();
+        let cover = draws.cover.any();
         let groups = [
             recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
             recorder.bind(cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
         ];
         let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
-        let mut render = targets.render(recorder, SHADER.name);
+        let visibility = if inputs.light.part.channel == 0 {
+            cleared_to(&map.view, Color::WHITE)
+        } else {
+            loaded(&map.view)
+        };
+        let mut render = order.render(recorder, SHADER.name, visibility);
         let drawn = (&corners, inputs.pose);
         for receiver in 0..n_receivers {
             if n_receivers > 1 {
-                render.begin(&self.route, &groups);
+                render.begin(&draws.route, &groups);
                 render.draw(0..3, receiver..receiver + 1);
             }
             let instances = receiver * n_points..(receiver + 1) * n_points;
             let n_plain = inputs.n_whole_shadows(receiver);
-            self.cover
+            draws
+                .cover
                 .count(&mut render, &groups, drawn, (instances, n_plain));
         }
     }
