@@ -81,9 +81,10 @@ fn the_sums_of_the_fit_have_room() {
     assert_eq!(workgroup % strided, 0, "as many in each strided sum");
     assert!(strided * part <= workgroup, "a lane for each");
     assert_eq!(n_sums % part, 0, "whole parts");
-    // One pixel more than a workgroup has invocations takes a second one.
+    // One pixel more than sixteen for each invocation of a workgroup takes a second one.
+    let full = 16 * workgroup;
     assert_eq!(
-        [plan(workgroup, 1), plan(workgroup + 1, 1)].map(|plan| plan.n_fit_rows(plan.fit_stride_px)),
+        [plan(full, 1), plan(full + 1, 1)].map(|plan| plan.n_fit_rows(plan.fit_stride_px)),
         [1, 2]
     );
 }
