@@ -75,9 +75,8 @@ fn seen_under(texel: vec2u) -> vec3f {
   return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
 }
 
-// Whether the camera's colour at `texel` is of another material of the model.
-fn is_other_material(texel: vec2u, base: vec3f) -> bool {
-  let other = textureLoad(appearance_base, texel, 0).rgb;
+// Whether a base colour is of another material of the model.
+fn is_other_material(other: vec3f, base: vec3f) -> bool {
   return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
 }
 
@@ -92,12 +91,14 @@ fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
 // colour `base`; alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
-// outline where `appearance` carried its colours.
+// outline where `appearance` carried its colours. Their mean is relit from the mean of the light they were seen under.
 fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
   var sum = vec4f(0.0);
+  var up = 0.0;
+  var received = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
     let corner = vec2f(f32(k & 1u), f32(k >> 1u));
     let tap = low + corner - globals.toy_box_origin_px;
@@ -105,14 +106,18 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
     let texel = vec2u(tap);
     let surface = textureLoad(gbuffer_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
-    if is_other_material(texel, base) { continue; }
+    let seen_base = textureLoad(appearance_base, texel, 0);
+    if is_other_material(seen_base.rgb, base) { continue; }
     let color = textureLoad(appearance, texel, 0);
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
-    sum += weight * vec4f(relit(color.rgb, lit, seen_under(texel)), 1.0);
+    sum += weight * vec4f(color.rgb, 1.0);
+    up += weight * seen_base.a;
+    received += weight * textureLoad(appearance_received, texel, 0);
   }
   if sum.a == 0.0 { return sum; }
-  return vec4f(sum.rgb / sum.a, 1.0);
+  let was_lit = toy_radiance_from(vec2f(up, sum.a - up) / sum.a, received / sum.a);
+  return vec4f(relit(sum.rgb / sum.a, lit, was_lit), 1.0);
 }
 
 // Cosine between the triangle's normal and the direction to the camera; `normal` selects its outer side.
