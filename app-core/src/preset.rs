@@ -70,10 +70,11 @@ pub const BALANCED: ModelSettings = ModelSettings {
     n_ambient_directions: 64,
     ambient_divisor: 4,
     n_toy_draws: 1,
+    n_toy_samples: 4,
     n_coverage_positions: 32,
     n_self_shadow_points: 4,
     self_shadow_tile_px: 256,
-    are_casters_simplified: true,
+    caster_px: Some(1),
     is_noise_removed: false,
     is_plate_fine: false,
     is_shadow_withheld: false,
@@ -101,6 +102,8 @@ pub const FAST: ModelSettings = ModelSettings {
     ambient_divisor: 8,
     n_coverage_positions: 16,
     n_self_shadow_points: 1,
+    n_toy_samples: 1,
+    caster_px: Some(4),
     ..BALANCED
 };
 
@@ -111,7 +114,7 @@ pub const BEST: ModelSettings = ModelSettings {
     n_toy_draws: 4,
     n_self_shadow_points: 16,
     self_shadow_tile_px: 512,
-    are_casters_simplified: false,
+    caster_px: None,
     is_noise_removed: true,
     is_plate_fine: true,
     ..BALANCED
@@ -161,18 +164,21 @@ pub struct ModelSettings {
     pub n_ambient_directions: usize,
     /// Region pixels per texel of the ambient map, along each side.
     pub ambient_divisor: u32,
-    /// Draws of the shown toy, 1 or 4, each of four samples a pixel.
+    /// Draws of the shown toy, 1 or 4.
     ///
     /// The outline has its samples from `coverage`: more draws smooth the edges within the toy.
     pub n_toy_draws: u32,
+    /// Samples a pixel of each draw: 4, or 1 of a single draw.
+    pub n_toy_samples: u32,
     /// Positions within a pixel that the shown toy's coverage is counted over, 32 or 16.
     pub n_coverage_positions: u32,
     /// Points of each light from which the toy's shadow on itself is drawn, of those on the receiver; up to 16.
     pub n_self_shadow_points: usize,
     /// Texels along each side of one such depth map.
     pub self_shadow_tile_px: u32,
-    /// Whether shadows are cast by shapes with fewer triangles, which are as near to the toy's as pixels tell.
-    pub are_casters_simplified: bool,
+    /// The farthest that what casts a light's shadow may be from the toy's shape, in pixels at the toy: a shadow is seen from farther
+    /// away. Without it the toy's own shape casts all shadows, that of the ambient light too.
+    pub caster_px: Option<u32>,
     /// Whether the real shadow is denoised, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
     /// Whether the plate is always kept finer than codes, not only where it was estimated or brought to another exposure.

@@ -27,8 +27,6 @@ const N_INTENSITY_STEPS: u32 = 2;
 const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Those that suffice for gain and intensities: on six sessions shadow, toy and edge change by at most .0004 codes.
 const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
-/// The farthest that what casts a light's shadow is from the toy's shape, in pixels at the toy: a shadow is seen from farther away.
-const CASTER_PX: f64 = 1.0;
 /// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
 const N_AMBIENT_TRIANGLES: u32 = 1000;
 /// Invocations of one workgroup of the fit.
@@ -50,16 +48,15 @@ pub struct Casters {
 
 impl Casters {
     fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
-        if settings.are_casters_simplified {
-            Self {
-                light: Detail::Within(CASTER_PX * facts.pixel_in_object),
+        match settings.caster_px {
+            Some(caster_px) => Self {
+                light: Detail::Within(f64::from(caster_px) * facts.pixel_in_object),
                 ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
-            }
-        } else {
-            Self {
+            },
+            None => Self {
                 light: Detail::Own,
                 ambient: Detail::Own,
-            }
+            },
         }
     }
 }
@@ -90,6 +87,8 @@ pub struct Plan {
     pub is_plate_fine: bool,
     /// Draws of the shown toy, each offset by a fraction of a pixel.
     pub n_toy_draws: u32,
+    /// Samples of a pixel in each of them.
+    pub n_toy_samples: u32,
     /// Positions within a pixel that the shown toy's coverage is counted over.
     pub n_coverage_positions: u32,
     /// Whether the real shadow is denoised.
@@ -132,6 +131,7 @@ impl Plan {
             is_plate_estimated: !facts.is_plate_complete,
             is_plate_fine: settings.is_plate_fine || !facts.is_plate_complete || facts.are_plates_scaled,
             n_toy_draws: settings.n_toy_draws,
+            n_toy_samples: settings.n_toy_samples,
             n_coverage_positions: settings.n_coverage_positions,
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,

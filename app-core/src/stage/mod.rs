@@ -114,7 +114,7 @@ struct MethodState {
 /// Shapes that cast shadows in place of the toy's; none with a preset that takes none.
 fn simplified(toy: &Toy, preset: Preset) -> &[Caster] {
     match preset.settings() {
-        Settings::Model(settings) if settings.are_casters_simplified => toy.casters(),
+        Settings::Model(settings) if settings.caster_px.is_some() => toy.casters(),
         _ => &[],
     }
 }

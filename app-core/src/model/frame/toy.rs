@@ -6,7 +6,7 @@ use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, discarded, resolved};
+use crate::gpu::recorder::{Attachment, Recorder, cleared, discarded, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
@@ -78,6 +78,8 @@ pub(crate) struct Pass {
     /// Draw both sides of each triangle, or the one that faces the camera.
     coded: [Draw; 2],
     fine: [Draw; 2],
+    /// Of one sample.
+    single: [Draw; 2],
 }
 
 pub(crate) struct Inputs<'a> {
@@ -92,29 +94,38 @@ pub(crate) struct Inputs<'a> {
     pub(crate) tints: &'a Tints,
 }
 
-/// Of the toy box's size: two multisampled ones that stay on the chip, and one for each draw.
+/// Of the toy box's size: one for each draw, and those that stay on the chip.
 pub(crate) struct Targets {
-    samples: Texture,
+    /// None where a pixel has one.
+    samples: Option<Samples>,
     depth: Texture,
     drawn: Vec<Texture>,
-    moved_samples: Texture,
     /// Where it shows what the camera did not see in that place.
     pub(crate) moved: Texture,
+}
+
+/// What is resolved into the targets.
+struct Samples {
+    drawn: Texture,
+    moved: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let size_px = plan.toy_box.size_px;
-        let samples = |label, format| Texture::samples(gpu, label, size_px, (format, N_SAMPLES));
+        let n_samples = if plan.n_toy_samples > 1 { N_SAMPLES } else { 1 };
+        let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         let n_draws = plan.n_toy_draws.max(1);
         let format = if n_draws > 1 { FINE_FORMAT } else { CODED_FORMAT };
         Self {
-            samples: samples("toy samples", format),
-            depth: samples("toy depth", TextureFormat::Depth32Float),
+            samples: (n_samples > 1).then(|| Samples {
+                drawn: on_chip("toy samples", format),
+                moved: on_chip("toy moved samples", MOVED_FORMAT),
+            }),
+            depth: on_chip("toy depth", TextureFormat::Depth32Float),
             drawn: (0..n_draws)
                 .map(|_| Texture::target(gpu, "toy", size_px, format))
                 .collect(),
-            moved_samples: samples("toy moved samples", MOVED_FORMAT),
             moved: Texture::target(gpu, "toy moved", size_px, MOVED_FORMAT),
         }
     }
@@ -123,6 +134,21 @@ impl Targets {
     #[allow(clippy::cast_possible_truncation, reason = "a handful")]
     pub(crate) fn n_draws(&self) -> u32 {
         self.drawn.len() as u32
+    }
+
+    /// Those of one draw: radiance, and where it has moved. The samples of the last draw show that well enough.
+    fn attachments<'a>(&'a self, drawn: &'a Texture, is_last: bool) -> [Attachment<'a>; 2] {
+        match &self.samples {
+            Some(samples) if is_last => [
+                resolved(&samples.drawn.view, &drawn.view),
+                resolved(&samples.moved.view, &self.moved.view),
+            ],
+            Some(samples) => [
+                resolved(&samples.drawn.view, &drawn.view),
+                discarded(&samples.moved.view),
+            ],
+            None => [cleared(&drawn.view), cleared(&self.moved.view)],
+        }
     }
 
     /// What was drawn; the first stands in for draws that there are not.
@@ -134,27 +160,31 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SCENE_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
-        let draw = |format, culled| {
+        let draw = |(format, n_samples), culled| {
             gpu.draw(&DrawSpec {
                 vertex: "vs_toy",
                 streams: STREAMS,
-                n_samples: N_SAMPLES,
+                n_samples,
                 depth: Some(nearest_surface()),
                 culled,
                 ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
             })
         };
-        let draws = |format| [None, Some(Face::Back)].map(|culled| draw(format, culled));
+        let draws = |target| [None, Some(Face::Back)].map(|culled| draw(target, culled));
         Self {
-            coded: draws(CODED_FORMAT),
-            fine: draws(FINE_FORMAT),
+            coded: draws((CODED_FORMAT, N_SAMPLES)),
+            fine: draws((FINE_FORMAT, N_SAMPLES)),
+            single: draws((CODED_FORMAT, 1)),
         }
     }
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let is_fine = targets.samples.format() == FINE_FORMAT;
-        let [draw, culled] = if is_fine { &self.fine } else { &self.coded };
+        let [draw, culled] = match targets.drawn.len() {
+            1 if targets.samples.is_none() => &self.single,
+            1 => &self.coded,
+            _ => &self.fine,
+        };
         let [shown, physical] = inputs.self_shadow;
         let maps = shown.resources(recorder.gpu, physical);
         let materials = inputs.toy.bind_materials(recorder, draw);
@@ -164,19 +194,12 @@ impl Pass {
             &OFFSETS_PX
         };
         for (index, (drawn, offset_px)) in targets.drawn.iter().zip(offsets).enumerate() {
-            // The samples of one draw show well enough where the surface has moved.
-            let moved_samples = &targets.moved_samples.view;
-            let moved = if index + 1 == targets.drawn.len() {
-                resolved(moved_samples, &targets.moved.view)
-            } else {
-                discarded(moved_samples)
-            };
             let groups = [
                 recorder.bind(draw, GROUP_SCENE, &inputs.scene.resources()),
                 recorder.bind_with(draw, GROUP_PASS, offset_px, &inputs.resources()),
                 recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
             ];
-            let colors = [Some(resolved(&targets.samples.view, &drawn.view)), Some(moved)];
+            let colors = targets.attachments(drawn, index + 1 == targets.drawn.len()).map(Some);
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn());
