@@ -103,7 +103,7 @@ pub const FAST: ModelSettings = ModelSettings {
     n_coverage_positions: 16,
     n_self_shadow_points: 1,
     n_toy_samples: 1,
-    caster_px: Some(4),
+    caster_px: Some(3),
     ..BALANCED
 };
 

@@ -10,7 +10,7 @@
 const EDGE_PX: i32 = 2;
 // The same for estimating a pixel's own plate, sampled in steps.
 const BLEED_PX: i32 = 8;
-const BLEED_STEP_PX: i32 = 2;
+const BLEED_STEP_PX: i32 = 4;
 
 fn depth_at(texel: vec2i) -> f32 {
   let last = vec2i(textureDimensions(gbuffer_depth)) - 1;

@@ -22,12 +22,13 @@ fn cores() -> Vec<Core> {
 
 /// Most that the error of a preset may be, RMSE in codes over the shadow's surroundings and over the moved toy.
 ///
-/// Measured: flat 4.25 and 15.6, paper 2.49 and 15.6, fast 1.00 and 5.39, balanced 0.83 and 5.50, best 0.84 and 4.29.
+/// Measured: flat 4.25 and 15.6, paper 2.49 and 15.6, fast 1.00 and 6.59, of one sample a pixel, balanced 0.83 and 5.50,
+/// best 0.84 and 4.29.
 fn ceilings(preset: Preset) -> [f64; 2] {
     match preset {
         Preset::Flat => [4.4, 16.0],
         Preset::Paper => [2.6, 16.0],
-        Preset::Fast => [1.1, 5.8],
+        Preset::Fast => [1.1, 7.0],
         Preset::Balanced => [0.9, 5.8],
         Preset::Best => [0.9, 4.5],
         _ => panic!("{preset}: give it a ceiling"),

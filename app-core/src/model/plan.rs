@@ -176,7 +176,9 @@ impl Plan {
     #[must_use]
     pub fn n_fit_rows(&self, stride_px: u32) -> u32 {
         let n_taken = (self.region.size_px / stride_px.max(1)).element_product();
-        n_taken.div_ceil(FIT_WORKGROUP * FIT_PIXELS_EACH).clamp(1, MAX_FIT_ROWS)
+        n_taken
+            .div_ceil(FIT_WORKGROUP * FIT_PIXELS_EACH)
+            .clamp(1, MAX_FIT_ROWS)
     }
 
     /// What drawing onto the toy box takes: its corner, and the size of the region that it is a part of.

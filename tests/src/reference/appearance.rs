@@ -6,8 +6,6 @@ use super::raster::Raster;
 
 /// Farthest that a pixel of one surface is looked for, in pixels along each side.
 pub const REACH_PX: i32 = 3;
-/// Weight of a colour at another depth, against one at its own: next to nothing, but it will do where there is no other.
-pub const OTHER_SURFACE: f64 = 1e-4;
 /// Difference of reversed depth, as a fraction of the larger, beyond which two pixels show two surfaces.
 const DEPTH_STEP: f64 = 0.005;
 
@@ -33,9 +31,8 @@ pub struct Seen {
     pub is_one_surface: bool,
 }
 
-/// What is found for `texel`: its own where it shows one surface, else the mean of those near that do, by the inverse
-/// fourth power of their distance, preferring those at its own depth; of a part too thin to have one its own; none
-/// beside the toy.
+/// What is found for `texel`: its own where it shows one surface, else that of the nearest that does, the first row by row of
+/// those as near, and of those at its own depth before others; of a part too thin to have one its own; none beside the toy.
 #[must_use]
 pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
     let here = seen.at(texel);
@@ -47,28 +44,20 @@ pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
     let offsets = reach
         .clone()
         .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
-    let (mut sum, mut total) = (ToyPixel::default(), 0.0);
-    for offset in offsets {
-        // Beyond the border the last pixel stands for those that are not there.
+    // Beyond the border the last pixel stands for those that are not there.
+    let near = offsets.map(|offset| {
         let other = seen.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
-        if !other.is_one_surface {
-            continue;
-        }
+        (offset.length_squared(), other)
+    });
+    let evident = near.filter(|(_, other)| other.is_one_surface);
+    let is_other_surface = |other: &Seen| {
         let larger = here.depth.max(other.depth);
-        let is_own = here.depth == 0.0 || (here.depth - other.depth).abs() <= DEPTH_STEP * larger;
-        let preference = if is_own { 1.0 } else { OTHER_SURFACE };
-        let weight = preference / f64::from(offset.length_squared().max(1)).powi(2);
-        sum.color += weight * other.pixel.color;
-        sum.received += weight * other.pixel.received;
-        sum.base += weight * other.pixel.base;
-        total += weight;
+        here.depth > 0.0 && (here.depth - other.depth).abs() > DEPTH_STEP * larger
+    };
+    let nearest =
+        evident.min_by_key(|(distance_squared, other)| (is_other_surface(other), *distance_squared));
+    match nearest {
+        Some((_, nearest)) => Some(nearest.pixel),
+        None => (here.depth > 0.0).then_some(here.pixel),
     }
-    if total > 0.0 {
-        return Some(ToyPixel {
-            color: sum.color / total,
-            received: sum.received / total,
-            base: sum.base / total,
-        });
-    }
-    (here.depth > 0.0).then_some(here.pixel)
 }

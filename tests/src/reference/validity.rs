@@ -9,7 +9,7 @@ const EDGE_PX: i32 = 2;
 /// The same, in pixels, where a pixel is to tell its own plate: a compressed picture's colours bleed.
 const BLEED_PX: i32 = 8;
 /// Pixels from one that is looked at to the next, over the larger distance.
-const BLEED_STEP_PX: usize = 2;
+const BLEED_STEP_PX: usize = 4;
 /// Second difference of reversed depth, as a fraction of that in the middle, up to which a surface goes on.
 const DEPTH_BEND: f64 = 0.002;
 

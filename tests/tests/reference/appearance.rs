@@ -1,7 +1,7 @@
 //! Colours of a toy where it is plain from which pixel they are.
 
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::appearance::{OTHER_SURFACE, REACH_PX, Seen, ToyPixel, clean};
+use harness::reference::appearance::{REACH_PX, Seen, ToyPixel, clean};
 use harness::reference::raster::Raster;
 
 const SIZE: UVec2 = UVec2::new(17, 11);
@@ -66,16 +66,18 @@ fn one_pixel_is_carried_as_far_as_it_reaches() {
 }
 
 #[test]
-fn the_nearer_counts_by_the_fourth_power_and_another_surface_next_to_nothing() {
+fn the_nearest_counts_of_its_own_surface_first() {
     let (near, far) = (UVec2::new(7, 5), UVec2::new(10, 5));
     let at = UVec2::new(8, 5);
-    // Beside the toy, at one and at two pixels: 16 to 1.
-    let found = color(&scene(0.0, &[(near, 0.0, 0.5), (far, 1.0, 0.5)]), at).unwrap();
-    assert!((found - 1.0 / 17.0).abs() < 1e-12, "{found}");
+    let beside_toy = scene(0.0, &[(near, 0.25, 0.5), (far, 1.0, 0.5)]);
+    assert_eq!(color(&beside_toy, at), Some(0.25));
     // The nearer one is of another surface.
-    let found = color(&scene(0.5, &[(near, 0.0, 0.4), (far, 1.0, 0.5)]), at).unwrap();
-    let other = 16.0 * OTHER_SURFACE;
-    assert!((found - 1.0 / (1.0 + other)).abs() < 1e-12, "{found}");
+    let two_surfaces = scene(0.5, &[(near, 0.25, 0.4), (far, 1.0, 0.5)]);
+    assert_eq!(color(&two_surfaces, at), Some(1.0));
     // Where there is no other it will do.
     assert_eq!(color(&scene(0.5, &[(near, 0.125, 0.4)]), at), Some(0.125));
+    // Of two that are as near the first one.
+    let opposite = UVec2::new(9, 5);
+    let as_near = scene(0.0, &[(opposite, 1.0, 0.5), (near, 0.25, 0.5)]);
+    assert_eq!(color(&as_near, at), Some(0.25));
 }

@@ -2,7 +2,7 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
@@ -22,8 +22,9 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &FULLSCREEN,
     &part!("capture/appearance", constants: [REACH_PX]),
 ]);
-/// Frame, validity and depth, of which colours are made, then what is the same for all pictures of a view.
+/// Frame and source, of which colours are made, then what is the same for all pictures of a view.
 const SLOTS: &[Slot] = &[
+    Slot::Texture,
     Slot::Texture,
     Slot::Texture,
     Slot::Depth,
@@ -33,8 +34,10 @@ const SLOTS: &[Slot] = &[
 ];
 /// Format of the colours: as the camera's, so that its codes come through unrounded.
 const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Format of the numbers of the pixels that they are from, in codes.
+const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Slots of what colours are made of.
-const N_COLOR_SLOTS: usize = 3;
+const N_COLOR_SLOTS: usize = 2;
 
 /// How far past the toy its colours are extrapolated.
 const REACH_PX: u32 = 3;
@@ -59,6 +62,8 @@ pub(crate) struct Targets {
     pub(crate) received: Texture,
     /// Base colour of these pixels, and how far they face upwards.
     pub(crate) base: Texture,
+    /// Which pixels they are.
+    source: Texture,
 }
 
 impl Targets {
@@ -68,6 +73,7 @@ impl Targets {
             color: target("appearance", COLOR_FORMAT),
             received: target("appearance received", RECEIVED_FORMAT),
             base: target("appearance base", BASE_FORMAT),
+            source: target("appearance source", SOURCE_FORMAT),
         }
     }
 }
@@ -79,7 +85,11 @@ impl Pass {
             gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, targets))
         };
         Self {
-            all: draw("fs_clean", SLOTS, &[COLOR_FORMAT, RECEIVED_FORMAT, BASE_FORMAT]),
+            all: draw(
+                "fs_clean",
+                SLOTS,
+                &[COLOR_FORMAT, RECEIVED_FORMAT, BASE_FORMAT, SOURCE_FORMAT],
+            ),
             colors: draw("fs_recolor", &SLOTS[..N_COLOR_SLOTS], &[COLOR_FORMAT]),
         }
     }
@@ -93,25 +103,29 @@ impl Pass {
         targets: &Targets,
     ) {
         let gbuffer = inputs.gbuffer;
-        let textures = [
+        let of_view = [
             inputs.frame,
+            // Of a new view the source is written, not read: the validity stands in its place.
+            inputs.validity,
             inputs.validity,
             &gbuffer.depth.view,
             &gbuffer.normal.view,
             &gbuffer.received.view,
             &gbuffer.base.view,
         ];
-        let written = [&targets.color, &targets.received, &targets.base];
-        let bound = |draw, n_textures: usize| {
-            [
-                recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]),
-                recorder.bind(draw, GROUP_PASS, &textures.map(Into::into)[..n_textures]),
-            ]
-        };
+        let of_picture: [_; N_COLOR_SLOTS] = [inputs.frame, &targets.source.view];
+        let written = [&targets.color, &targets.received, &targets.base, &targets.source];
+        let globals = |draw| recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]);
+        let bound =
+            |draw, textures: &[Resource<'_>]| [globals(draw), recorder.bind(draw, GROUP_PASS, textures)];
         // Of a new view as well, so that the pictures of it that follow make no objects.
-        let of_colors = bound(&self.colors, N_COLOR_SLOTS);
+        let of_colors = bound(&self.colors, &of_picture.map(Into::into));
         let (draw, groups, n_written) = if is_new_view {
-            (&self.all, bound(&self.all, textures.len()), written.len())
+            (
+                &self.all,
+                bound(&self.all, &of_view.map(Into::into)),
+                written.len(),
+            )
         } else {
             (&self.colors, of_colors, 1)
         };

@@ -199,7 +199,9 @@ impl Pass {
                 recorder.bind_with(draw, GROUP_PASS, offset_px, &inputs.resources()),
                 recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
             ];
-            let colors = targets.attachments(drawn, index + 1 == targets.drawn.len()).map(Some);
+            let colors = targets
+                .attachments(drawn, index + 1 == targets.drawn.len())
+                .map(Some);
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn());
