@@ -186,16 +186,17 @@ fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
   return part * toy_color(texel, n_draws);
 }
 
-// 1 where everything in and around a texel of the toy box is as the camera saw it.
+// How far a texel of the toy box shows what the camera did not see there, 0 to 1.
+fn change_at(texel: vec2i) -> f32 {
+  let clamped = clamped_to_box(texel);
+  return max(textureLoad(toy_moved, clamped, 0).r, textureLoad(moved_mask, clamped, 0).r);
+}
+
+// 1 where a texel of the toy box and those beside, above and below it are as the camera saw them.
 fn stillness(texel: vec2i) -> f32 {
-  var most = 0.0;
-  for (var y = -1; y <= 1; y++) {
-    for (var x = -1; x <= 1; x++) {
-      let other = clamped_to_box(texel + vec2i(x, y));
-      most = max(most, max(textureLoad(toy_moved, other, 0).r, textureLoad(moved_mask, other, 0).r));
-    }
-  }
-  return 1.0 - most;
+  let beside = max(change_at(texel - vec2i(1, 0)), change_at(texel + vec2i(1, 0)));
+  let above_and_below = max(change_at(texel - vec2i(0, 1)), change_at(texel + vec2i(0, 1)));
+  return 1.0 - max(change_at(texel), max(beside, above_and_below));
 }
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
