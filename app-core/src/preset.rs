@@ -61,7 +61,7 @@ impl Preset {
 /// Mean errors over four frames of six sessions with exact input, in 8-bit codes:
 ///
 /// - 64, 32, 16 points over each light: shadow 1.53, 1.60, 1.77, up to half as much again under a wide light; 64 where a
-///   penumbra is wider than 32 pixels, else 32: 1.55, and half of the triangles of four sessions' shadows;
+///   penumbra is wider than 32 pixels or no wider than 4, else 32: 1.55, and half of the triangles of four sessions' shadows;
 /// - 16, 8, 4 points for the toy's shadow on itself: toy 3.91, 3.93, 3.93, edge 4.54, 4.57, 4.57;
 /// - own shapes and simplified ones: shadow 1.53 and 1.53, toy 3.91 and 3.91, edge 4.56 and 4.54.
 pub const BALANCED: ModelSettings = ModelSettings {

@@ -8,9 +8,10 @@
 
 // Distance kept from the toy's outline on the receiver.
 const EDGE_PX: i32 = 2;
-// The same for estimating a pixel's own plate, sampled in steps.
+// The same for estimating a pixel's own plate. Rows and columns are sampled in steps, every other row between the columns
+// of the next, so that no part two pixels wide is missed.
 const BLEED_PX: i32 = 8;
-const BLEED_STEP_PX: i32 = 4;
+const BLEED_STEP_PX: i32 = 2;
 
 fn depth_at(texel: vec2i) -> f32 {
   let last = vec2i(textureDimensions(gbuffer_depth)) - 1;
@@ -28,7 +29,8 @@ fn is_clear_of_toy(texel: vec2i) -> bool {
 
 fn is_well_clear_of_toy(texel: vec2i) -> bool {
   for (var y = -BLEED_PX; y <= BLEED_PX; y += BLEED_STEP_PX) {
-    for (var x = -BLEED_PX; x <= BLEED_PX; x += BLEED_STEP_PX) {
+    let first = -BLEED_PX + ((BLEED_PX + y) % (2 * BLEED_STEP_PX));
+    for (var x = first; x <= BLEED_PX; x += 2 * BLEED_STEP_PX) {
       if depth_at(texel + vec2i(x, y)) > 0.0 { return false; }
     }
   }

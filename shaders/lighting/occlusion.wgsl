@@ -1,8 +1,8 @@
 // Shadows of the posed toy on the receivers, from many points of a light in one pass.
 //
 // Each instance flattens the mesh from one light point onto one receiver and draws it where the camera sees it, so a
-// contact edge is as sharp as the screen. Each point is drawn for its own position within the pixel, so that a hard edge has as many steps as a soft one;
-// blending takes its share from the light's visibility.
+// contact edge is as sharp as the screen. Each point is drawn for its own position within the pixel, so that a hard edge has
+// as many steps as a soft one; blending takes its share from the light's visibility.
 // Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it,
 // and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels

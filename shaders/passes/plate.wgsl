@@ -80,30 +80,24 @@ fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
   return false;
 }
 
-// How a point is seen by this camera.
-struct Seen {
-  point: ReceiverPoint,
-  // From the point to the camera.
-  direction: vec3f,
-  // Area on the receiver per pixel: a homography of determinant D scales areas by D / w^3.
-  area_scale: f32,
-}
+// How a point is seen by this camera: xyz is the direction to it; w the area on the receiver per pixel, since a homography
+// of determinant D scales areas by D / w^3.
+alias Sight = vec4f;
 
-fn seen_at(point: ReceiverPoint, region_px: vec2f) -> Seen {
+fn sight_of(point: ReceiverPoint, region_px: vec2f) -> Sight {
   let own = views.camera_in_plane[receiver_of(point)];
   let here = globals.receivers[receiver_of(point)].plane_from_region_px;
   let w = (here * vec3f(region_px, 1.0)).z;
-  return Seen(point, direction_to(own, point.xy), determinant(here) / (w * w * w));
+  return vec4f(direction_to(own, point.xy), determinant(here) / (w * w * w));
 }
 
 // Plate pixels per pixel here, by area, of which fewer than one lose detail.
-fn detail(seen: Seen, plate_px_from_plane: mat3x3f, plate_w: f32) -> f32 {
-  return min(abs(seen.area_scale * determinant(plate_px_from_plane) / (plate_w * plate_w * plate_w)), 1.0);
+fn detail(sight: Sight, plate_px_from_plane: mat3x3f, plate_w: f32) -> f32 {
+  return min(abs(sight.w * determinant(plate_px_from_plane) / (plate_w * plate_w * plate_w)), 1.0);
 }
 
 // What plate `k` has of a point.
-fn candidate(k: u32, seen: Seen) -> Candidate {
-  let point = seen.point;
+fn candidate(k: u32, point: ReceiverPoint, sight: Sight) -> Candidate {
   let plate_px_from_plane = views.plates[k].plate_px_from_plane[receiver_of(point)];
   let at = plate_px_from_plane * vec3f(point.xy, 1.0);
   if at.z <= 0.0 { return UNSEEN; }
@@ -112,10 +106,10 @@ fn candidate(k: u32, seen: Seen) -> Candidate {
   let to_border = min(px, size - px);
   let inside = saturate(min(to_border.x, to_border.y) / FEATHER_PX);
   let camera = views.plates[k].camera_in_plane[receiver_of(point)];
-  let is_same_side = camera.y * seen.direction.y > 0.0;
+  let is_same_side = camera.y * sight.y > 0.0;
   if inside == 0.0 || !is_same_side || is_hidden(k, point) { return UNSEEN; }
-  let cosine = dot(direction_to(camera, point.xy), seen.direction);
-  return vec4f(px, detail(seen, plate_px_from_plane, at.z) * angle_quality(max(cosine, LEAST_COSINE)), inside);
+  let cosine = dot(direction_to(camera, point.xy), sight.xyz);
+  return vec4f(px, detail(sight, plate_px_from_plane, at.z) * angle_quality(max(cosine, LEAST_COSINE)), inside);
 }
 
 // Weights of four texels around a position `t` past the second. Source: Catmull and Rom 1974.
@@ -162,17 +156,17 @@ fn fs_copy(@builtin(position) at: vec4f) -> @location(0) vec4f {
 fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let point = point_beyond(at.xy);
   if !is_hit(point) { return vec4f(0.0); }
-  let seen = seen_at(point, at.xy);
+  let sight = sight_of(point, at.xy);
   var x = vec4f(0.0);
   var y = vec4f(0.0);
   var quality = vec4f(0.0);
   var inside = vec4f(0.0);
   for (var k = 0u; k < views.n_plates; k++) {
-    let plate = candidate(k, seen);
-    x[k] = plate.x;
-    y[k] = plate.y;
-    quality[k] = plate.z;
-    inside[k] = plate.w;
+    let seen = candidate(k, point, sight);
+    x[k] = seen.x;
+    y[k] = seen.y;
+    quality[k] = seen.z;
+    inside[k] = seen.w;
   }
   let best_quality = max(max(quality.x, quality.y), max(quality.z, quality.w));
   if best_quality == 0.0 { return vec4f(0.0); }

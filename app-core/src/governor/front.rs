@@ -34,8 +34,8 @@ pub struct Step {
 /// The front of preset `balanced`.
 ///
 /// The order is that in which least error is gained for what is saved. What a step is expected to bring is the mean of what
-/// the ledger says of triangles and of bytes, for a new pose, one light and 10,000 triangles; where it was taken once, the
-/// governor knows better.
+/// the ledger says of triangles and of bytes, for a new pose, one light with a wide penumbra and 10,000 triangles; where it was
+/// taken once, the governor knows better. The step to 32 points brings nothing where all lights have as many.
 pub const BALANCED_FRONT: &[Step] = &[
     Step {
         knob: Knob::AmbientDivisor,

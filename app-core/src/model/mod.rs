@@ -134,6 +134,9 @@ impl Model {
             self.captured.light.injected = None;
             self.drawn.light.injected = None;
             self.lighting.cast_by(plan.casters);
+            if plan.n_light_points != self.region.plan.n_light_points {
+                self.lighting.relocate(gpu, light_points);
+            }
             self.region.follow(gpu, plan, globals);
             return self;
         }

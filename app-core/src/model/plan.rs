@@ -25,23 +25,28 @@ const N_INTENSITY_STEPS: u32 = 2;
 /// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
 /// where the real shadow is some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
-/// Those that suffice for gain and intensities: on six sessions shadow, toy and edge change by at most .0004 codes.
+/// Those that suffice for gain and intensities: on six sessions, whose shadows are some hundred pixels large, shadow, toy and edge
+/// change by at most .0004 codes.
 const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
+/// The farthest that what casts the toy's shadow on itself is from its shape, in pixels: what stands out would shade the surface.
+const OWN_CASTER_PX: f64 = 1.0;
 /// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
 const N_AMBIENT_TRIANGLES: u32 = 1000;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
 /// Pixels that each of them adds up before its workgroup does: what that takes is the same for one pixel as for many. With 1, 16 and
-/// 64 the fits of a view take 33, 12 and 12 ms on a processor of two cores.
+/// 64 the fits of a view take 33, 12 and 12 ms on a processor of two cores; no phone has been measured.
 const FIT_PIXELS_EACH: u32 = 16;
-/// Workgroups of one sum at most, enough to fill a phone's cores.
+/// Workgroups of one sum at most.
 pub(crate) const MAX_FIT_ROWS: u32 = MAX_FIT_PIXELS / (FIT_WORKGROUP * FIT_PIXELS_EACH);
 
 /// The shapes that cast shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Casters {
-    /// Of the lights, also on the toy itself.
+    /// Of the lights, on receivers.
     pub light: Detail,
+    /// The same on the toy itself.
+    pub own: Detail,
     /// Of the ambient light.
     pub ambient: Detail,
 }
@@ -51,10 +56,12 @@ impl Casters {
         match settings.caster_px {
             Some(caster_px) => Self {
                 light: Detail::Within(f64::from(caster_px) * facts.pixel_in_object),
+                own: Detail::Within(OWN_CASTER_PX * facts.pixel_in_object),
                 ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
             },
             None => Self {
                 light: Detail::Own,
+                own: Detail::Own,
                 ambient: Detail::Own,
             },
         }
@@ -73,6 +80,8 @@ pub struct Plan {
     pub toy_box: PixelRect,
     /// Lights whose shadows are moved, at most four.
     pub n_lights: usize,
+    /// Width in pixels of the widest penumbra of each of them.
+    pub penumbrae_px: Vec<f64>,
     /// Points over each of them: of a hard light as well, whose edge they antialias.
     pub n_light_points: Vec<usize>,
     /// Directions of ambient light.
@@ -119,7 +128,7 @@ impl Plan {
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
         let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS);
-        let penumbrae_px = facts.penumbrae_px.iter().take(MAX_LIGHTS);
+        let penumbrae_px = facts.penumbrae_px[..n_lights].to_vec();
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
@@ -144,23 +153,23 @@ impl Plan {
             intensity_fit_stride_px: stride_px(size_px, MAX_INTENSITY_PIXELS),
             n_lights,
             n_light_points: penumbrae_px
+                .iter()
                 .map(|width_px| n_light_points(*width_px, settings))
                 .collect(),
+            penumbrae_px,
         }
     }
 }
 
 impl Plan {
-    /// Whether its maps are of the sizes and formats of another's, and its lights of as many points.
+    /// Whether its maps are of the sizes and formats of another's.
     #[must_use]
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
             let counts = [plan.n_lights, plan.n_ambient_directions];
             (plan.region.size_px, plan.toy_box.size_px, plan.ambient_px, counts)
         };
-        let are_lights_alike =
-            self.n_light_points == other.n_light_points && self.self_shadow == other.self_shadow;
-        sizes(self) == sizes(other) && are_lights_alike
+        sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
     }
 
     /// Format of the plate.

@@ -27,6 +27,23 @@ pub struct SceneFacts {
     pub are_plates_scaled: bool,
 }
 
+/// Factor up to which a penumbra's width may change before it counts as another.
+const STEADY: f64 = 1.25;
+
+impl SceneFacts {
+    /// With the known widths of penumbrae in place of those that are nearly the same, so that lights keep their points while a
+    /// camera sways.
+    #[must_use]
+    pub fn steadied(mut self, known_px: &[f64]) -> Self {
+        for (width_px, known_px) in self.penumbrae_px.iter_mut().zip(known_px) {
+            if (known_px / STEADY..known_px * STEADY).contains(width_px) {
+                *width_px = *known_px;
+            }
+        }
+        self
+    }
+}
+
 /// Work that a scene does not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftOut {

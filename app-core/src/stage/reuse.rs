@@ -65,7 +65,7 @@ impl Stage {
             }
             Reuse::Region => Change::Scene,
             Reuse::SceneState => {
-                self.follow(gpu, footprint);
+                self.follow(gpu, footprint, true);
                 Change::View
             }
             Reuse::View => Change::Picture,
@@ -129,16 +129,21 @@ impl Stage {
         });
     }
 
-    /// Follows the camera to another view.
-    fn follow(&mut self, gpu: &Gpu, footprint: &Footprint) {
+    /// Follows the camera to another view, of toy and lights in the same place or not.
+    fn follow(&mut self, gpu: &Gpu, footprint: &Footprint, is_same_place: bool) {
         let Some(mut state) = self.state.take() else {
             return;
         };
         let region = region_in(&state.method, footprint);
         state.method = match (self.preset.settings(), state.method) {
             (Settings::Model(settings), Method::Model(model)) => {
-                let known_px = model.region.plan.toy_box.size_px;
-                let facts = self.facts(footprint, (region, known_px));
+                let known = &model.region.plan;
+                let facts = self.facts(footprint, (region, known.toy_box.size_px));
+                let facts = if is_same_place {
+                    facts.steadied(&known.penumbrae_px)
+                } else {
+                    facts
+                };
                 let plan = Plan::new(&facts, &self.settings(settings));
                 let globals = globals(&footprint.view, &region, &self.layout()).with_toy_box(&plan.toy_box);
                 let light_points = self.light_points(&plan);
@@ -169,7 +174,7 @@ impl Stage {
                 return self.start(gpu, input, footprint);
             }
         }
-        self.follow(gpu, footprint);
+        self.follow(gpu, footprint, false);
         if let Some(mut state) = self.state.take() {
             if let Method::Model(model) = &mut state.method {
                 let light_points = self.light_points(&model.region.plan);

@@ -9,7 +9,7 @@ const EDGE_PX: i32 = 2;
 /// The same, in pixels, where a pixel is to tell its own plate: a compressed picture's colours bleed.
 const BLEED_PX: i32 = 8;
 /// Pixels from one that is looked at to the next, over the larger distance.
-const BLEED_STEP_PX: usize = 4;
+const BLEED_STEP_PX: usize = 2;
 /// Second difference of reversed depth, as a fraction of that in the middle, up to which a surface goes on.
 const DEPTH_BEND: f64 = 0.002;
 
@@ -30,11 +30,11 @@ pub struct Marks {
 pub fn mark(depth: &Raster<f64>, texel: UVec2) -> Marks {
     let last = depth.size().as_ivec2() - 1;
     let at = |offset: IVec2| depth.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
-    let is_free = |reach_px: i32, step_px: usize| {
-        let steps = || (-reach_px..=reach_px).step_by(step_px);
-        let mut offsets = steps().flat_map(|y| steps().map(move |x| IVec2::new(x, y)));
-        offsets.all(|offset| at(offset) == 0.0)
+    let around = |reach_px: i32, step_px: usize| {
+        let steps = move || (-reach_px..=reach_px).step_by(step_px).enumerate();
+        steps().flat_map(move |row| steps().map(move |column| (column, row)))
     };
+    let is_free = |x: i32, y: i32| at(IVec2::new(x, y)) == 0.0;
     let here = at(IVec2::ZERO);
     // A slope is straight in reversed depth, a step between two surfaces is not.
     let is_straight = |side: IVec2| {
@@ -42,10 +42,13 @@ pub fn mark(depth: &Raster<f64>, texel: UVec2) -> Marks {
         before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= DEPTH_BEND * here
     };
     let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
-    let is_clear = is_free(EDGE_PX, 1);
+    let is_clear = around(EDGE_PX, 1).all(|((_, x), (_, y))| is_free(x, y));
+    // Like the dark squares of a chessboard.
+    let mut bleeding =
+        around(BLEED_PX, BLEED_STEP_PX).filter(|((column, _), (row, _))| (column + row) % 2 == 0);
     Marks {
         is_clear,
         is_one_surface: here > 0.0 && sides.into_iter().all(is_straight),
-        is_well_clear: is_clear && is_free(BLEED_PX, BLEED_STEP_PX),
+        is_well_clear: is_clear && bleeding.all(|((_, x), (_, y))| is_free(x, y)),
     }
 }

@@ -1,4 +1,4 @@
-//! CPU reference of `visibility.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
+//! CPU reference of the maps of `occlusion.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
 
 use glam::{DVec2, DVec3, UVec2};
 

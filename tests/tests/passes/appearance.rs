@@ -132,6 +132,7 @@ fn a_fault_in_the_appearance_is_found() {
         ("OTHER_SURFACE: i32 = 64", "OTHER_SURFACE: i32 = 4"),
         ("DEPTH_STEP: f32 = 0.005", "DEPTH_STEP: f32 = 0.001"),
         ("0).g == 1.0", "0).a == 1.0"),
+        ("marks.b == 1.0", "marks.a == 1.0"),
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
         ("far < least", "far <= least"),
         ("here > 0.0", "here > 9.0"),

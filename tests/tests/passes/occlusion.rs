@@ -6,8 +6,12 @@ use harness::reference::occlusion::Caster;
 use harness::reference::raster::Raster;
 use harness::reference::visibility::visibility_map;
 
+use crate::device::Device;
 use crate::errors::Errors;
+use crate::photo::photograph;
 use crate::run::{Run, runs};
+use crate::setups::{FOUR_LIGHTS, Setup};
+use crate::stand::Stand;
 
 /// Share of a region's texels that may differ by more than half a step of one light point.
 ///
@@ -42,27 +46,43 @@ fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share
     errors.check(&what, (0.5 * step, max_share), MAX_POINTS * step + stored);
 }
 
+fn compare_lights(run: &Run) {
+    let stand = &run.stand;
+    for i in 0..run.plan.n_lights {
+        let casters = |posed: &PosedMesh| stand.light_casters(posed, i, run.plan.n_light_points[i]);
+        let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
+        compare(
+            run,
+            &casters(&stand.physical),
+            &channel(&run.pictures.visibility),
+            ("physical light", MAX_LIGHT_SHARE, LIGHTS_STORED),
+        );
+        compare(
+            run,
+            &casters(&stand.shown),
+            &channel(&run.shown_visibility),
+            ("shown light", MAX_LIGHT_SHARE, LIGHTS_STORED),
+        );
+    }
+}
+
 #[test]
 fn visibility_of_each_light() {
-    for run in runs() {
-        let stand = &run.stand;
-        for i in 0..run.plan.n_lights {
-            let casters = |posed: &PosedMesh| stand.light_casters(posed, i, run.plan.n_light_points[i]);
-            let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
-            compare(
-                run,
-                &casters(&stand.physical),
-                &channel(&run.pictures.visibility),
-                ("physical light", MAX_LIGHT_SHARE, LIGHTS_STORED),
-            );
-            compare(
-                run,
-                &casters(&stand.shown),
-                &channel(&run.shown_visibility),
-                ("shown light", MAX_LIGHT_SHARE, LIGHTS_STORED),
-            );
-        }
-    }
+    runs().iter().for_each(compare_lights);
+}
+
+/// In all channels of one map.
+#[test]
+fn visibility_of_four_lights() {
+    // What is seen does not matter to visibility.
+    let two_lights = Setup {
+        lights: &FOUR_LIGHTS.lights[..2],
+        ..FOUR_LIGHTS
+    };
+    let pictures = photograph(&Stand::new(two_lights));
+    let run = Run::new(Stand::new(FOUR_LIGHTS), pictures, &Device::shared().decoded()).unwrap();
+    assert_eq!(run.plan.n_lights, 4);
+    compare_lights(&run);
 }
 
 #[test]

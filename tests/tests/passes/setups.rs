@@ -63,6 +63,14 @@ pub(crate) const WALL: Setup = Setup {
     has_wall: true,
     ..NEAR
 };
+/// As many lights as there can be.
+pub(crate) const FOUR_LIGHTS: Setup = Setup {
+    name: "four lights",
+    image_px: UVec2::new(131, 75),
+    lights: &[BULB, OTHER_BULB, SKY, POINT],
+    distance_m: 0.72,
+    ..NEAR
+};
 /// One light close by, two lights, a directional light on a sunken toy, the hard edge of a lifted one from afar, and a
 /// second receiver.
 pub(crate) const SETUPS: [Setup; 5] = [

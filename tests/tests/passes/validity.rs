@@ -57,7 +57,8 @@ fn a_fault_in_the_marks_is_found() {
     let faults = [
         ("EDGE_PX: i32 = 2", "EDGE_PX: i32 = 1"),
         ("BLEED_PX: i32 = 8", "BLEED_PX: i32 = 6"),
-        ("BLEED_STEP_PX: i32 = 4", "BLEED_STEP_PX: i32 = 2"),
+        ("BLEED_STEP_PX: i32 = 2", "BLEED_STEP_PX: i32 = 1"),
+        ("% (2 * BLEED_STEP_PX)", "% BLEED_STEP_PX"),
         ("DEPTH_BEND: f32 = 0.002", "DEPTH_BEND: f32 = 0.003"),
         ("vec2i(1, 1)", "vec2i(1, 0)"),
         ("vec2i(1, -1)", "vec2i(1, 0)"),

@@ -27,11 +27,15 @@ fn plan(size_px: [u32; 2], n_lights: usize) -> Plan {
 }
 
 fn plan_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> Plan {
+    Plan::new(&facts_with(size_px, penumbrae_px), &BALANCED)
+}
+
+fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
     let region = PixelRect {
         origin_px: UVec2::new(3, 7),
         size_px: size_px.into(),
     };
-    let facts = SceneFacts {
+    SceneFacts {
         region,
         physical_toy: Some(region),
         toy_box: Some(region),
@@ -40,8 +44,7 @@ fn plan_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> Plan {
         n_receivers: 2,
         is_plate_complete: false,
         are_plates_scaled: false,
-    };
-    Plan::new(&facts, &BALANCED)
+    }
 }
 
 fn leaves_out(plan: &Plan, what: &str) -> bool {
@@ -116,6 +119,26 @@ fn a_wide_penumbra_and_a_hard_edge_are_drawn_from_more_points() {
     assert_eq!(plan.n_light_points, [64, 64]);
 }
 
+/// A camera that sways about a threshold leaves a light as many points as it had.
+#[test]
+fn a_penumbra_that_is_nearly_as_wide_counts_as_it_was() {
+    let facts = |width_px| facts_with([640, 360], vec![width_px]);
+    let n_points = |known_px: f64, width_px| {
+        let steadied = facts(width_px).steadied(&[known_px]);
+        Plan::new(&steadied, &BALANCED).n_light_points[0]
+    };
+    assert_eq!([n_points(31.0, 33.0), n_points(33.0, 31.0)], [32, 64]);
+    assert_eq!([n_points(31.0, 40.0), n_points(33.0, 26.0)], [64, 32]);
+    assert_eq!(
+        [n_points(31.0, f64::INFINITY), n_points(f64::INFINITY, 31.0)],
+        [64, 32]
+    );
+    assert_eq!([n_points(0.0, 5.0), n_points(5.0, 0.0)], [32, 64]);
+    // And if not, nothing is made anew for it.
+    let [few, many] = [8.0, 80.0].map(|width_px| plan_with([640, 360], vec![width_px]));
+    assert!(few.has_sizes_of(&many));
+}
+
 #[test]
 fn a_scene_without_lights_has_nothing_to_overlap() {
     let plan = plan([640, 360], 0);
@@ -153,11 +176,14 @@ fn the_fit_takes_enough_pixels_and_not_many() {
             u64::from(n_rows - 1) * 16 * 256 < n_taken,
             "{size_px:?}: a workgroup without work"
         );
-        // To begin with, a quarter of them, but not of a small region.
+        // For gain and intensities a quarter of them, but not of a small region.
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.intensity_fit_stride_px));
-        let n_rough = width * height;
-        assert!(n_rough <= 1 << 14, "{size_px:?}: {n_rough}");
-        assert!(n_rough >= n_pixels.min(1 << 14) / 8, "{size_px:?}: {n_rough}");
+        let n_for_gain = width * height;
+        assert!(n_for_gain <= 1 << 14, "{size_px:?}: {n_for_gain}");
+        assert!(
+            n_for_gain >= n_pixels.min(1 << 14) / 8,
+            "{size_px:?}: {n_for_gain}"
+        );
         assert!(plan.n_fit_steps >= 2, "one to start from, one to reweight");
     }
 }

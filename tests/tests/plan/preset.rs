@@ -41,7 +41,8 @@ fn a_preset_spends_what_the_passes_can_take() {
             assert!([16, 32, 64].contains(&n_points), "{preset}: {n_points}");
         }
         assert!((1..=16).contains(&settings.ambient_divisor), "{preset}");
-        assert!([1, 4].contains(&settings.n_toy_draws), "{preset}");
+        let toy = [settings.n_toy_draws, settings.n_toy_samples];
+        assert!([[1, 1], [1, 4], [4, 4]].contains(&toy), "{preset}: {toy:?}");
         assert!([16, 32].contains(&settings.n_coverage_positions), "{preset}");
         assert!((1..=16).contains(&settings.n_self_shadow_points), "{preset}");
     }

@@ -1,12 +1,12 @@
 //! `appearance`: the toy's own colours from the camera frame, carried a little past its outline.
 
-use wgpu::TextureFormat;
+use wgpu::{Color, TextureFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::recorder::{Recorder, cleared, cleared_to};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer::{self, BASE_FORMAT, RECEIVED_FORMAT};
@@ -129,7 +129,10 @@ impl Pass {
         } else {
             (&self.colors, of_colors, 1)
         };
-        let written = written.map(|texture| Some(cleared(&texture.view)));
+        let [color, received, base, source] = written.map(|texture| &texture.view);
+        // Beyond what is drawn no colour has a source.
+        let no_source = cleared_to(source, Color::WHITE);
+        let written = [cleared(color), cleared(received), cleared(base), no_source].map(Some);
         let near = inputs.plan.near_physical_toy(REACH_PX);
         recorder.fullscreen_within(draw, &groups, &written[..n_written], near);
     }

@@ -27,8 +27,8 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 ]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Positions of the lattice within a pixel that the toy's coverage is counted over, all of them or every other. RMS error of the area that a straight edge of any
-/// direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
+/// Positions of the lattice within a pixel that the toy's coverage is counted over, all of them or every other. RMS error of
+/// the area that a straight edge of any direction cuts off a pixel: 0.020, where four multisample positions have 0.092.
 pub(crate) const N_POSITIONS: u32 = 32;
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
@@ -94,10 +94,9 @@ impl Pass {
         };
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
         let globals = [(&inputs.region.globals).into()];
-        let n_positions = inputs.region.plan.n_coverage_positions.clamp(1, N_POSITIONS);
-        let positions = Positions {
-            step: N_POSITIONS / n_positions,
-        };
+        let step = N_POSITIONS / inputs.region.plan.n_coverage_positions.clamp(1, N_POSITIONS);
+        let n_positions = N_POSITIONS / step;
+        let positions = Positions { step };
         let any = self.draws.any();
         let groups = [
             recorder.bind(any, GROUP_SCENE, &globals),

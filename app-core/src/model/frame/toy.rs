@@ -113,9 +113,13 @@ struct Samples {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let size_px = plan.toy_box.size_px;
-        let n_samples = if plan.n_toy_samples > 1 { N_SAMPLES } else { 1 };
-        let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         let n_draws = plan.n_toy_draws.max(1);
+        let n_samples = if n_draws > 1 || plan.n_toy_samples > 1 {
+            N_SAMPLES
+        } else {
+            1
+        };
+        let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         let format = if n_draws > 1 { FINE_FORMAT } else { CODED_FORMAT };
         Self {
             samples: (n_samples > 1).then(|| Samples {

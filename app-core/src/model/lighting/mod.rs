@@ -115,10 +115,10 @@ impl Lighting {
         self.casters = casters;
     }
 
-    /// Moves the lights: `points` are as many as before.
+    /// Moves the lights, as many as before, or takes other points of them.
     pub(crate) fn relocate(&mut self, gpu: &Gpu, points: Vec<Vec<Vec4>>) {
         for (light, points) in self.lights.iter_mut().zip(points) {
-            light.write(gpu, points);
+            light.write(gpu, points, self.n_receivers);
         }
     }
 
@@ -183,7 +183,7 @@ impl Lighting {
             pose: posed.pose,
             light_points: &light_points,
             atlas: &self.atlas,
-            caster: self.casters.light,
+            caster: self.casters.own,
         };
         passes.self_shadow.encode(recorder, &inputs, &maps.self_shadow);
     }

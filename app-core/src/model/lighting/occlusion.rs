@@ -1,7 +1,5 @@
 //! `occlusion`: visibility of a light behind the posed toy, from its shadows on the receivers from many points, in one pass.
 
-use std::sync::OnceLock;
-
 use glam::{UVec2, Vec4};
 use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
 
@@ -103,7 +101,7 @@ pub(crate) struct LightPointsBuffer {
 
 impl LightPointsBuffer {
     pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, part: PartOfMap) -> Self {
-        let n_points = u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1);
+        let n_points = n_each(&points, n_receivers);
         Self {
             uniform: gpu.uniform("light points", &LightPoints::new(&points, n_points, &part)),
             points,
@@ -112,8 +110,9 @@ impl LightPointsBuffer {
         }
     }
 
-    /// Replaces the points by as many.
-    pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>) {
+    /// Replaces the points, for as many receivers.
+    pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32) {
+        self.n_points = n_each(&points, n_receivers);
         let light_points = LightPoints::new(&points, self.n_points, &self.part);
         gpu.write(&self.uniform, &[light_points]);
         self.points = points;
@@ -123,6 +122,11 @@ impl LightPointsBuffer {
     pub(crate) fn in_anchor(&self) -> &[Vec4] {
         &self.points[..self.n_points as usize]
     }
+}
+
+/// Points of a light, of which there is one for each receiver.
+fn n_each(points: &[Vec4], n_receivers: u32) -> u32 {
+    u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1)
 }
 
 /// Format of the ambient light's visibility, at a fraction of the resolution: drivers may filter 8 bits in no more than those.
@@ -163,12 +167,9 @@ impl Orders {
 
 /// The formats of maps: of the ambient light, of one light, of two, of more.
 const FORMATS: [TextureFormat; 4] = [AMBIENT_FORMAT, fractions(1), fractions(2), fractions(MAX_LIGHTS)];
-/// Those that are compiled ahead.
-const N_COMMON: usize = 2;
 
 pub(crate) struct Pass {
-    /// In the order of [`FORMATS`], compiled once they are needed.
-    of_formats: [OnceLock<Draws>; FORMATS.len()],
+    of_formats: [(TextureFormat, Draws); FORMATS.len()],
 }
 
 struct Draws {
@@ -217,19 +218,9 @@ pub(crate) struct Inputs<'a> {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let pass = Self {
-            of_formats: FORMATS.map(|_| OnceLock::new()),
-        };
-        for format in &FORMATS[..N_COMMON] {
-            pass.draws(gpu, *format);
+        Self {
+            of_formats: FORMATS.map(|format| (format, Draws::new(gpu, format))),
         }
-        pass
-    }
-
-    fn draws(&self, gpu: &Gpu, format: TextureFormat) -> Option<&Draws> {
-        let mut of_formats = FORMATS.iter().zip(&self.of_formats);
-        let (_, draws) = of_formats.find(|(known, _)| **known == format)?;
-        Some(draws.get_or_init(|| Draws::new(gpu, format)))
     }
 
     /// Draws the caster from the light's points on each receiver, and takes the hidden points from the light's channel of its
@@ -244,7 +235,7 @@ impl Pass {
             Some(_) => (&maps.lights, &orders.lights),
             None => (&maps.ambient, &orders.ambient),
         };
-        let Some(draws) = self.draws(recorder.gpu, map.format()) else {
+        let Some((_, draws)) = self.of_formats.iter().find(|(format, _)| *format == map.format()) else {
             return;
         };
         let of_pose = (inputs.pose, inputs.side);
