@@ -17,6 +17,9 @@
 @group(1) @binding(5) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(6) var<storage, read> tints: array<vec4f>;
 
+// Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
+override IS_COARSE: bool = false;
+
 // Maximum factor by which a camera pixel is brightened or darkened for a turned surface.
 const MAX_TURN: f32 = 4.0;
 // Surface area per pixel, shown over physical pose, above which camera pixels are used in full, and below which not
@@ -140,7 +143,9 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
 // middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
 // either, and are done.
 fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
-  if moved == 1.0 || light_change(lit, seen_under(texel)) == 0.0 { return moved; }
+  let seen_change = light_change(lit, seen_under(texel));
+  if IS_COARSE { return max(moved, seen_change); }
+  if moved == 1.0 || seen_change == 0.0 { return moved; }
   let received = light_received(true, physical_normal, physical_in_anchor);
   return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
 }

@@ -6,7 +6,7 @@ use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, resolved};
+use crate::gpu::recorder::{Recorder, cleared, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
@@ -20,17 +20,20 @@ pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &MOVED, &BEHIND, &part
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
 /// Format of the mask, a fraction of each pixel.
 pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// Multisampling, so that parts thinner than a pixel count as well.
+/// Multisampling, so that parts thinner than a pixel count as well; where the toy is drawn of one sample, its mask is, too.
 const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Pass {
     /// Draws both sides of each triangle, or the one that faces the camera.
     draws: [Draw; 2],
+    /// Of one sample.
+    single: [Draw; 2],
 }
 
-/// Of the toy box's size: two multisampled ones that are never stored, and the mask.
+/// Of the toy box's size: the mask, and what is never stored.
 pub(crate) struct Targets {
-    samples: Texture,
+    /// None where a pixel has one.
+    samples: Option<Texture>,
     depth: Texture,
     pub(crate) moved: Texture,
 }
@@ -38,10 +41,11 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let size_px = plan.toy_box.size_px;
-        let samples = |label, format| Texture::samples(gpu, label, size_px, (format, N_SAMPLES));
+        let n_samples = if plan.n_toy_samples > 1 { N_SAMPLES } else { 1 };
+        let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         Self {
-            samples: samples("moved_mask samples", MOVED_FORMAT),
-            depth: samples("moved_mask depth", TextureFormat::Depth32Float),
+            samples: (n_samples > 1).then(|| on_chip("moved_mask samples", MOVED_FORMAT)),
+            depth: on_chip("moved_mask depth", TextureFormat::Depth32Float),
             moved: Texture::target(gpu, "moved_mask", size_px, MOVED_FORMAT),
         }
     }
@@ -50,16 +54,18 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [GLOBALS_GROUP, &[], &[], &[]];
-        let spec = |culled| DrawSpec {
+        let spec = |n_samples, culled| DrawSpec {
             vertex: "vs_physical",
             streams: STREAMS,
-            n_samples: N_SAMPLES,
+            n_samples,
             depth: Some(nearest_surface()),
             culled,
             ..DrawSpec::fullscreen(&SHADER, "fs_moved", groups, &[MOVED_FORMAT])
         };
+        let draws = |n_samples| [None, Some(Face::Back)].map(|culled| gpu.draw(&spec(n_samples, culled)));
         Self {
-            draws: [None, Some(Face::Back)].map(|culled| gpu.draw(&spec(culled))),
+            draws: draws(N_SAMPLES),
+            single: draws(1),
         }
     }
 
@@ -72,11 +78,14 @@ impl Pass {
         let seen = (&toy.physical, Some(Side::Camera));
         let camera = Vec3::from(region.uniform.camera_in_anchor).extend(1.0);
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), None);
-        let draw = &self.draws[usize::from(corners.is_culled)];
+        let (draws, mask) = match &targets.samples {
+            Some(samples) => (&self.draws, resolved(&samples.view, &targets.moved.view)),
+            None => (&self.single, cleared(&targets.moved.view)),
+        };
+        let draw = &draws[usize::from(corners.is_culled)];
         let group = recorder.bind(draw, GROUP_SCENE, &[(&region.globals).into()]);
-        let colors = [Some(resolved(&targets.samples.view, &targets.moved.view))];
         let depth = Some(&targets.depth.view);
-        let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
+        let mut render = recorder.render(SHADER.name, &[Some(mask)], depth, StoreOp::Discard);
         render.part_of(region.plan.part_drawn());
         render.begin(draw, &[group]);
         corners.bind(&mut render, &toy.physical);

@@ -169,6 +169,7 @@ impl Pass {
                 vertex: "vs_toy",
                 streams: STREAMS,
                 n_samples,
+                constants: vec![("IS_COARSE", u32::from(n_samples == 1))],
                 depth: Some(nearest_surface()),
                 culled,
                 ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
