@@ -12,14 +12,13 @@
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
 struct Positions {
-  // From one that is drawn for to the next, of the lattice's.
-  step: u32,
+  // How many are drawn for, all or a part of N_POSITIONS: each stands for as many.
+  n: u32,
+  // Rows from one column's position to the next.
+  row_step: u32,
 }
 
 @group(1) @binding(0) var<uniform> positions: Positions;
-
-// Row step from one column's position to the next: of all lattices of 32 it has the least error at a straight edge.
-const LATTICE_STEP: u32 = 9u;
 
 struct Moved {
   @builtin(position) clip: vec4f,
@@ -28,7 +27,7 @@ struct Moved {
 
 // Offset from the pixel's centre.
 fn position_px(index: u32) -> vec2f {
-  return (vec2f(vec2u(index, index * LATTICE_STEP % N_POSITIONS)) + 0.5) / f32(N_POSITIONS) - 0.5;
+  return (vec2f(vec2u(index, index * positions.row_step % positions.n)) + 0.5) / f32(positions.n) - 0.5;
 }
 
 // Of a corner at `clip`, drawn for a position.
@@ -38,8 +37,7 @@ fn moved_clip(clip: vec4f, index: u32) -> vec4f {
 }
 
 @vertex
-fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Moved {
-  let index = positions.step * instance;
+fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Moved {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
   return Moved(moved_clip(clip, index), index);
 }
@@ -51,9 +49,9 @@ struct Plain {
 
 // Before one receiver.
 @vertex
-fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> Plain {
+fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Plain {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Plain(moved_clip(clip, positions.step * instance), on_first_receiver(clip));
+  return Plain(moved_clip(clip, index), on_first_receiver(clip));
 }
 
 @fragment
@@ -70,9 +68,9 @@ fn vs_once(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   return vec4f(clip.xy, clip.w * depth, clip.w);
 }
 
-// By a position that is drawn for, which stands for those up to the next.
+// By one position.
 fn covered() -> vec4f {
-  return vec4f(f32(positions.step) * COVERED_POSITION);
+  return vec4f(f32(N_POSITIONS / positions.n) * COVERED_POSITION);
 }
 
 // All positions of a pixel that no silhouette comes near.

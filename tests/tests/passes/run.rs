@@ -73,12 +73,18 @@ pub(crate) fn runs() -> &'static [Run] {
 
 impl Run {
     /// Of a plate and a frame; `decoded` are the linear values of all codes, as the device decodes them.
-    pub(crate) fn new(
+    pub(crate) fn new(stand: Stand, pictures: [Arc<Image>; 2], decoded: &[f64]) -> Result<Self, CoreError> {
+        Self::by(Preset::Balanced, stand, pictures, decoded)
+    }
+
+    /// The same, by a preset.
+    pub(crate) fn by(
+        preset: Preset,
         stand: Stand,
         [plate, frame]: [Arc<Image>; 2],
         decoded: &[f64],
     ) -> Result<Self, CoreError> {
-        let mut core = core_on(scene(&stand, &plate), Preset::Balanced)?;
+        let mut core = core_on(scene(&stand, &plate), preset)?;
         let report = core.frame(&input(&stand, &frame))?;
         assert!(report.warnings.is_empty(), "{:?}", report.warnings);
         let plan = core.plan().expect("the toy moves").clone();
