@@ -94,9 +94,9 @@ pub const BALANCED: ModelSettings = ModelSettings {
 ///
 /// Of these 32, 32 and 8 are taken. Two frames of each session, with 32 positions of the outline and 4 points for the toy's shadow
 /// on itself: 1.66, 3.73, 4.57, and 283,249 triangles; with 16 and 1, which are taken: 1.66, 3.84, 5.02, and 216,840. Casters
-/// within 3 pixels rather than 1, too: the same errors, and 180,472. Of one sample a pixel rather than four: 1.66, 4.62, 5.33, and 5.22 with 16 positions that are a lattice of their own; the
-/// toy's flicker 5.8 rather than 4.6, and half of the time that the toy's draw takes on a processor. Casters within 4 pixels: the
-/// bundled session's shadow 1.2 in place of 1.0.
+/// within 3 pixels rather than 1, too: the same errors, and 180,472. Of one sample a pixel rather than four: 1.66, 4.62, 5.33, and
+/// 5.22 with 16 positions that are a lattice of their own; the toy's flicker 5.8 rather than 4.6, and half of the time that the
+/// toy's draw takes on a processor. Casters within 4 pixels: the bundled session's shadow 1.2 in place of 1.0.
 ///
 /// Of 16 points too few fall into each quarter of a pixel to be a sample of the light, and soft shadows have steps.
 pub const FAST: ModelSettings = ModelSettings {

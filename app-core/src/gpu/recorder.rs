@@ -473,6 +473,11 @@ pub(crate) fn resolved<'a>(view: &'a TextureView, target: &'a TextureView) -> At
     }
 }
 
+/// A target that starts at zero and is resolved from its samples, or has one of its own.
+pub(crate) fn sampled<'a>(samples: Option<&'a TextureView>, target: &'a TextureView) -> Attachment<'a> {
+    samples.map_or_else(|| cleared(target), |samples| resolved(samples, target))
+}
+
 /// A multisampled attachment that starts at zero and is forgotten.
 pub(crate) fn discarded(view: &TextureView) -> Attachment<'_> {
     Attachment {

@@ -29,7 +29,7 @@ const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// change by at most .0004 codes.
 const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
 /// The farthest that what casts the toy's shadow on itself is from its shape, in pixels: what stands out would shade the surface.
-const OWN_CASTER_PX: f64 = 1.0;
+const SELF_CASTER_PX: f64 = 1.0;
 /// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
 const N_AMBIENT_TRIANGLES: u32 = 1000;
 /// Invocations of one workgroup of the fit.
@@ -46,7 +46,7 @@ pub struct Casters {
     /// Of the lights, on receivers.
     pub light: Detail,
     /// The same on the toy itself.
-    pub own: Detail,
+    pub self_shadow: Detail,
     /// Of the ambient light.
     pub ambient: Detail,
 }
@@ -56,12 +56,12 @@ impl Casters {
         match settings.caster_px {
             Some(caster_px) => Self {
                 light: Detail::Within(f64::from(caster_px) * facts.pixel_in_object),
-                own: Detail::Within(OWN_CASTER_PX * facts.pixel_in_object),
+                self_shadow: Detail::Within(SELF_CASTER_PX * facts.pixel_in_object),
                 ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
             },
             None => Self {
                 light: Detail::Own,
-                own: Detail::Own,
+                self_shadow: Detail::Own,
                 ambient: Detail::Own,
             },
         }
@@ -96,7 +96,7 @@ pub struct Plan {
     pub is_plate_fine: bool,
     /// Draws of the shown toy, each offset by a fraction of a pixel.
     pub n_toy_draws: u32,
-    /// Samples of a pixel in each of them.
+    /// Samples of a pixel in each of them, 4 or 1.
     pub n_toy_samples: u32,
     /// Positions within a pixel that the shown toy's coverage is counted over.
     pub n_coverage_positions: u32,

@@ -29,9 +29,6 @@ const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Positions of the lattice within a pixel that the toy's coverage is counted over.
 pub(crate) const N_POSITIONS: u32 = 32;
-/// Row steps of the lattices of 32 and of 16 positions. RMS error of the area that a straight edge of any direction cuts off a
-/// pixel: 0.020 and 0.035, the least of all steps or nearly, where four multisample positions have 0.092.
-const ROW_STEPS: [u32; 2] = [9, 5];
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Increment per covered position, in 8-bit codes.
@@ -45,23 +42,16 @@ shared_struct! {
     }
 }
 
-impl Positions {
-    /// All of them, or half.
-    fn of(n_positions: u32) -> Self {
-        let [of_all, of_half] = ROW_STEPS;
-        if n_positions < N_POSITIONS {
-            Self {
-                n: N_POSITIONS / 2,
-                row_step: of_half,
-            }
-        } else {
-            Self {
-                n: N_POSITIONS,
-                row_step: of_all,
-            }
-        }
-    }
-}
+/// All of them, and half. RMS error of the area that a straight edge of any direction cuts off a pixel: 0.020 and 0.035, the
+/// least of all row steps or nearly, where four multisample positions have 0.092.
+const ALL: Positions = Positions {
+    n: N_POSITIONS,
+    row_step: 9,
+};
+const HALF: Positions = Positions {
+    n: N_POSITIONS / 2,
+    row_step: 5,
+};
 
 pub(crate) struct Pass {
     draws: CountingDraws,
@@ -115,7 +105,8 @@ impl Pass {
         };
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
         let globals = [(&inputs.region.globals).into()];
-        let positions = Positions::of(inputs.region.plan.n_coverage_positions);
+        let is_half = inputs.region.plan.n_coverage_positions < N_POSITIONS;
+        let positions = if is_half { HALF } else { ALL };
         let n_positions = positions.n;
         let any = self.draws.any();
         let groups = [

@@ -6,7 +6,7 @@ use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, cleared, resolved};
+use crate::gpu::recorder::{Recorder, sampled};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
@@ -41,7 +41,7 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let size_px = plan.toy_box.size_px;
-        let n_samples = if plan.n_toy_samples > 1 { N_SAMPLES } else { 1 };
+        let n_samples = plan.n_toy_samples;
         let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         Self {
             samples: (n_samples > 1).then(|| on_chip("moved_mask samples", MOVED_FORMAT)),
@@ -78,9 +78,12 @@ impl Pass {
         let seen = (&toy.physical, Some(Side::Camera));
         let camera = Vec3::from(region.uniform.camera_in_anchor).extend(1.0);
         let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), None);
-        let (draws, mask) = match &targets.samples {
-            Some(samples) => (&self.draws, resolved(&samples.view, &targets.moved.view)),
-            None => (&self.single, cleared(&targets.moved.view)),
+        let samples = targets.samples.as_ref().map(|samples| &samples.view);
+        let mask = sampled(samples, &targets.moved.view);
+        let draws = if samples.is_some() {
+            &self.draws
+        } else {
+            &self.single
         };
         let draw = &draws[usize::from(corners.is_culled)];
         let group = recorder.bind(draw, GROUP_SCENE, &[(&region.globals).into()]);

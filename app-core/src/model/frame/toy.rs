@@ -6,7 +6,7 @@ use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Attachment, Recorder, cleared, discarded, resolved};
+use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
@@ -114,11 +114,7 @@ impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let size_px = plan.toy_box.size_px;
         let n_draws = plan.n_toy_draws.max(1);
-        let n_samples = if n_draws > 1 || plan.n_toy_samples > 1 {
-            N_SAMPLES
-        } else {
-            1
-        };
+        let n_samples = plan.n_toy_samples;
         let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
         let format = if n_draws > 1 { FINE_FORMAT } else { CODED_FORMAT };
         Self {
@@ -142,17 +138,16 @@ impl Targets {
 
     /// Those of one draw: radiance, and where it has moved. The samples of the last draw show that well enough.
     fn attachments<'a>(&'a self, drawn: &'a Texture, is_last: bool) -> [Attachment<'a>; 2] {
-        match &self.samples {
-            Some(samples) if is_last => [
-                resolved(&samples.drawn.view, &drawn.view),
-                resolved(&samples.moved.view, &self.moved.view),
-            ],
-            Some(samples) => [
-                resolved(&samples.drawn.view, &drawn.view),
-                discarded(&samples.moved.view),
-            ],
-            None => [cleared(&drawn.view), cleared(&self.moved.view)],
-        }
+        let samples = self.samples.as_ref();
+        let moved_samples = samples.map(|samples| &samples.moved.view);
+        let moved = match moved_samples {
+            Some(forgotten) if !is_last => discarded(forgotten),
+            _ => sampled(moved_samples, &self.moved.view),
+        };
+        [
+            sampled(samples.map(|samples| &samples.drawn.view), &drawn.view),
+            moved,
+        ]
     }
 
     /// What was drawn; the first stands in for draws that there are not.

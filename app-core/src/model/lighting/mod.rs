@@ -7,8 +7,8 @@ use crate::geometry::light_points::ambient_directions;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::{Texture, fractions};
-use crate::model::lighting::occlusion::{AMBIENT_FORMAT, LightPointsBuffer, PartOfMap};
+use crate::gpu::texture::Texture;
+use crate::model::lighting::occlusion::{LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
@@ -82,27 +82,17 @@ pub(crate) struct Posed<'a> {
 impl Lighting {
     /// `points` are those of each light, receiver by receiver.
     pub(crate) fn new(gpu: &Gpu, plan: &Plan, points: Vec<Vec<Vec4>>) -> Self {
-        let (region_px, ambient_px, n_receivers) = (plan.region.size_px, plan.ambient_px, plan.n_receivers);
+        let n_receivers = plan.n_receivers;
         let on_device = |points, part| LightPointsBuffer::new(gpu, points, n_receivers, part);
-        let part_of_light = |channel| PartOfMap {
-            sizes: (region_px, region_px),
-            format: fractions(plan.n_lights),
-            channel,
-        };
-        let ambient = PartOfMap {
-            sizes: (ambient_px, region_px),
-            format: AMBIENT_FORMAT,
-            channel: 0,
-        };
         // Each receiver has its own hemisphere.
         let directions = ambient_directions(plan.n_ambient_directions).repeat(n_receivers as usize);
         Self {
             lights: points
                 .into_iter()
                 .enumerate()
-                .map(|(light, points)| on_device(points, part_of_light(light)))
+                .map(|(light, points)| on_device(points, PartOfMap::of_light(plan, light)))
                 .collect(),
-            ambient: on_device(directions, ambient),
+            ambient: on_device(directions, PartOfMap::of_ambient(plan)),
             orders: occlusion::Orders::new(gpu, plan),
             casters: plan.casters,
             atlas: plan.self_shadow.clone(),
@@ -183,7 +173,7 @@ impl Lighting {
             pose: posed.pose,
             light_points: &light_points,
             atlas: &self.atlas,
-            caster: self.casters.own,
+            caster: self.casters.self_shadow,
         };
         passes.self_shadow.encode(recorder, &inputs, &maps.self_shadow);
     }

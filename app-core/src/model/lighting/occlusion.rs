@@ -63,12 +63,35 @@ impl LightPoints {
 #[derive(Clone, Copy)]
 pub(crate) struct PartOfMap {
     /// Of the map in texels, and of the region in pixels.
-    pub(crate) sizes: (UVec2, UVec2),
-    pub(crate) format: TextureFormat,
-    pub(crate) channel: usize,
+    sizes: (UVec2, UVec2),
+    format: TextureFormat,
+    channel: usize,
 }
 
 impl PartOfMap {
+    /// A light's own channel, in fractions of 8 bits: it has no more than 64 points.
+    pub(crate) fn of_light(plan: &Plan, channel: usize) -> Self {
+        Self {
+            sizes: (plan.region.size_px, plan.region.size_px),
+            format: fractions(plan.n_lights),
+            channel,
+        }
+    }
+
+    /// The ambient light's map.
+    pub(crate) fn of_ambient(plan: &Plan) -> Self {
+        Self {
+            sizes: (plan.ambient_px, plan.region.size_px),
+            format: AMBIENT_FORMAT,
+            channel: 0,
+        }
+    }
+
+    /// The map that it is a part of.
+    fn map(&self, gpu: &Gpu, label: &str) -> Texture {
+        Texture::target(gpu, label, self.sizes.0, self.format)
+    }
+
     /// What each of so many points takes from the visibility, in the light's channel.
     ///
     /// In 8 bits whole codes, of which all points take all 255: of 16, 32 and 64 points it is off by less than 1/255. Floats of 16
@@ -130,21 +153,20 @@ fn n_each(points: &[Vec4], n_receivers: u32) -> u32 {
 }
 
 /// Format of the ambient light's visibility, at a fraction of the resolution: drivers may filter 8 bits in no more than those.
-pub(crate) const AMBIENT_FORMAT: TextureFormat = half_float(1);
+const AMBIENT_FORMAT: TextureFormat = half_float(1);
 
 /// Visibility maps of one pose.
 pub(crate) struct Targets {
-    /// One channel per light, in fractions of 8 bits: it has no more than 64 points.
+    /// One channel per light.
     pub(crate) lights: Texture,
     pub(crate) ambient: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let format = fractions(plan.n_lights);
         Self {
-            lights: Texture::target(gpu, "visibility", plan.region.size_px, format),
-            ambient: Texture::target(gpu, "ambient", plan.ambient_px, AMBIENT_FORMAT),
+            lights: PartOfMap::of_light(plan, 0).map(gpu, "visibility"),
+            ambient: PartOfMap::of_ambient(plan).map(gpu, "ambient"),
         }
     }
 }
