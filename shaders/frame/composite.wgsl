@@ -15,27 +15,28 @@ struct Drawing {
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var frame: texture_2d<f32>;
-@group(1) @binding(3) var plate: texture_2d<f32>;
-@group(1) @binding(4) var physical_visibility: texture_2d<f32>;
-@group(1) @binding(5) var physical_ambient: texture_2d<f32>;
-@group(1) @binding(6) var visibility: texture_2d<f32>;
-@group(1) @binding(7) var ambient: texture_2d<f32>;
-@group(1) @binding(8) var linear_sampler: sampler;
-// Each pixel's own residual, in plates.
-@group(1) @binding(9) var detail: texture_2d<f32>;
-@group(1) @binding(10) var<uniform> drawing: Drawing;
+@group(1) @binding(3) var physical_ambient: texture_2d<f32>;
+@group(1) @binding(4) var ambient: texture_2d<f32>;
+@group(1) @binding(5) var linear_sampler: sampler;
 
-@group(2) @binding(0) var validity: texture_2d<f32>;
+@group(2) @binding(0) var plate: texture_2d<f32>;
+@group(2) @binding(1) var physical_visibility: texture_2d<f32>;
+@group(2) @binding(2) var visibility: texture_2d<f32>;
+// Each pixel's own residual, in plates.
+@group(2) @binding(3) var detail: texture_2d<f32>;
+@group(2) @binding(4) var<uniform> drawing: Drawing;
+
+@group(3) @binding(0) var validity: texture_2d<f32>;
 // Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
-@group(2) @binding(1) var toy_0: texture_2d<f32>;
-@group(2) @binding(2) var toy_1: texture_2d<f32>;
-@group(2) @binding(3) var toy_2: texture_2d<f32>;
-@group(2) @binding(4) var toy_3: texture_2d<f32>;
+@group(3) @binding(1) var toy_0: texture_2d<f32>;
+@group(3) @binding(2) var toy_1: texture_2d<f32>;
+@group(3) @binding(3) var toy_2: texture_2d<f32>;
+@group(3) @binding(4) var toy_3: texture_2d<f32>;
 // Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
-@group(2) @binding(5) var toy_moved: texture_2d<f32>;
-@group(2) @binding(6) var moved_mask: texture_2d<f32>;
+@group(3) @binding(5) var toy_moved: texture_2d<f32>;
+@group(3) @binding(6) var moved_mask: texture_2d<f32>;
 // COVERED_POSITION for each position that the shown toy covers.
-@group(2) @binding(7) var covered: texture_2d<f32>;
+@group(3) @binding(7) var covered: texture_2d<f32>;
 
 // Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
 const KEEP_ALL: f32 = 0.02;
@@ -181,6 +182,7 @@ fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
 
 // The toy over what is behind it: premultiplied colour, and its coverage.
 fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
+  if !is_in_toy_box(texel) { return vec4f(0.0); }
   let part = coverage(texel);
   if part == 0.0 { return vec4f(0.0); }
   return part * toy_color(texel, n_draws);
@@ -216,6 +218,23 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let still = stillness(in_box);
   return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
+}
+
+// Clear of the toy in either pose, and of its shadows: there the ambient light alone changes.
+@fragment
+fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let at = position.xy;
+  let f = textureLoad(frame, vec2u(at), 0).rgb;
+  let uv = at / globals.region_size_px;
+  let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
+  let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
+  let point = receiver_point(at);
+  if a_before == a_after || !is_hit(point) { return vec4f(f, 1.0); }
+  let models = receiver_models(point, vec2f(a_before, a_after), vec4f(1.0), vec4f(1.0));
+  let ratio = select(vec3f(1.0), models[1] / models[0], models[0] > vec3f(0.0));
+  let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
+  let shown = select(ratio, mix(ratio, vec3f(1.0), clipped), f > vec3f(BRIGHTEST_USABLE));
+  return vec4f(f * mix(vec3f(1.0), shown, inside_border(at)), 1.0);
 }
 
 // Clear of the toy in either pose.

@@ -16,11 +16,13 @@ pub fn mark_seen(
     let Some(landings) = landings(positions, corners, camera) else {
         return tiles.mark_all();
     };
-    let at_px = |corner: u32| landings.get(corner as usize).map(|landing| landing.at_px);
+    let land = |corner: u32| landings.get(corner as usize);
     for [a, b, c] in corners.as_chunks().0 {
-        if let (Some(a), Some(b), Some(c)) = (at_px(*a), at_px(*b), at_px(*c)) {
-            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            tiles.mark_box([low - Vec2::splat(reach_px), high + Vec2::splat(reach_px)]);
+        if let (Some(a), Some(b), Some(c)) = (land(*a), land(*b), land(*c)) {
+            let reach = Vec2::splat(reach_px);
+            let low = [a, b, c].map(|one| one.at_px - one.within_px - reach);
+            let high = [a, b, c].map(|one| one.at_px + one.within_px + reach);
+            tiles.mark_box([low[0].min(low[1]).min(low[2]), high[0].max(high[1]).max(high[2])]);
         }
     }
 }

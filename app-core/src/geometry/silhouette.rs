@@ -110,10 +110,12 @@ impl Projection for ByCamera {
     }
 }
 
-/// From the points of a light, as shadows on the first receiver.
+/// From the points of a light, as shadows on a receiver.
 #[derive(Clone, Debug)]
 pub struct OntoReceiver {
-    /// A ball that holds the light's points, in anchor space: the plane is y = 0.
+    /// The receiver's plane is y = 0 there.
+    pub plane_from_anchor: glam::Mat4,
+    /// A ball that holds the light's points, in that space.
     pub light: Viewers,
     /// Homography: clip (x, y, w) of the plane's point (x, z, 1).
     pub clip_from_plane: glam::Mat3,
@@ -128,14 +130,15 @@ const NEAR_RECEIVER_M: f32 = 1e-5;
 
 impl Projection for OntoReceiver {
     fn land(&self, in_anchor: Vec3) -> Option<Landing> {
-        let (height, light) = (in_anchor.y, self.light.centre.extend(self.light.w));
+        let in_plane = self.plane_from_anchor.transform_point3(in_anchor);
+        let (height, light) = (in_plane.y, self.light.centre.extend(self.light.w));
         let below = light.y - light.w * height;
-        let aside = light.w * in_anchor.xz() - light.xz();
+        let aside = light.w * in_plane.xz() - light.xz();
         let least_below = below - self.light.radius;
         if least_below <= 0.0 {
             return None;
         }
-        let shadow = in_anchor.xz() + aside * (height / below);
+        let shadow = in_plane.xz() + aside * (height / below);
         // Of (aside / below), where either moves by the radius.
         let within_m = height.abs() * self.light.radius / least_below * (1.0 + aside.length() / below);
         let clip = self.clip_from_plane * shadow.extend(1.0);

@@ -39,6 +39,25 @@ impl Tiles {
         }
     }
 
+    /// Marks those as well that another marks, which is of the same size.
+    pub fn join(&mut self, other: &Self) {
+        for (is_marked, of_other) in self.is_marked.iter_mut().zip(&other.is_marked) {
+            *is_marked |= of_other;
+        }
+    }
+
+    /// Those alone that another of the same size does not mark.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Self {
+        let pairs = self.is_marked.iter().zip(&other.is_marked);
+        Self {
+            is_marked: pairs
+                .map(|(is_marked, of_other)| *is_marked && !of_other)
+                .collect(),
+            ..*self
+        }
+    }
+
     /// Marks all of them.
     pub fn mark_all(&mut self) {
         self.is_marked.fill(true);

@@ -16,10 +16,9 @@ use crate::geometry::bounds::Sphere;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::{FramePath, FrameTargets};
-use crate::model::lighting::Lighting;
+use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
@@ -30,7 +29,7 @@ use crate::passes::plate;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, News};
 use crate::readback::FloatMap;
-use crate::readback::inject::{InjectedVisibility, upload};
+use crate::readback::inject::InjectedVisibility;
 
 /// The additive model of one scene.
 pub(crate) struct Model {
@@ -221,8 +220,12 @@ impl Model {
 
     /// Replaces visibilities from the next frame on.
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
-        let upload = |map: &Option<FloatMap>, like: &Texture| map.as_ref().map(|map| upload(gpu, map, like));
-        self.captured.light.injected = upload(&maps.physical, &self.captured.light.visibility.lights);
-        self.drawn.light.injected = upload(&maps.shown, &self.drawn.light.visibility.lights);
+        let n_lights = self.region.plan.n_lights;
+        let upload = |map: &Option<FloatMap>, light: &LightMaps| {
+            let map = map.as_ref();
+            map.map(|map| InjectedLights::new(gpu, (map, n_lights), &light.visibility.lights))
+        };
+        self.captured.light.injected = upload(&maps.physical, &self.captured.light);
+        self.drawn.light.injected = upload(&maps.shown, &self.drawn.light);
     }
 }

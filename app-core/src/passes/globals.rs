@@ -97,11 +97,13 @@ impl Globals {
         points.iter().take_while(is_whole).count()
     }
 
-    /// How shadows from the points of a light fall on the first receiver; none of a light that has none, or not all alike.
-    pub(crate) fn onto_first_receiver(&self, points_in_anchor: &[Vec4]) -> Option<OntoReceiver> {
-        let columns = self.receivers[0].clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
+    /// How shadows from the points of a light, in a receiver's space, fall on it; none of a light that has none, or not all alike.
+    pub(crate) fn onto_receiver(&self, receiver: usize, points_in_plane: &[Vec4]) -> Option<OntoReceiver> {
+        let receiver = self.receivers.get(receiver)?;
+        let columns = receiver.clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
         Some(OntoReceiver {
-            light: Viewers::around(points_in_anchor)?,
+            plane_from_anchor: Mat4::from_cols_array_2d(&receiver.plane_from_anchor),
+            light: Viewers::around(points_in_plane)?,
             clip_from_plane: Mat3::from_cols_array_2d(&columns),
             region_size_px: self.region_size_px.into(),
             near_m: self.near_m,

@@ -219,16 +219,16 @@ impl ToyMesh {
         }
     }
 
-    /// Marks the tiles of a target within `reach_px` of what a camera may see of a pose.
+    /// Marks the tiles of a target within `reach_px` of where a shape in a pose may be seen.
     pub(crate) fn mark_seen(
         &self,
         tiles: &mut Tiles,
-        pose: &PoseBuffers,
-        (camera, reach_px): (&dyn Projection, f32),
+        (pose, detail): (&PoseBuffers, Detail),
+        (projection, reach_px): (&dyn Projection, f32),
     ) {
-        let (closed, open) = self.split_caster(Detail::Own);
+        let (closed, open) = self.split_caster(detail);
         for corners in [closed, open] {
-            mark_seen(tiles, (&pose.mesh.positions, corners), camera, reach_px);
+            mark_seen(tiles, (&pose.mesh.positions, corners), projection, reach_px);
         }
     }
 

@@ -137,6 +137,7 @@ fn clip_xy(px: DVec2) -> DVec2 {
 
 fn look_by_light(name: &'static str, points: Vec<Vec4>, check: &dyn Fn(&Look<'_>)) {
     let projection = OntoReceiver {
+        plane_from_anchor: Mat4::IDENTITY,
         light: Viewers::around(&points).expect("points of one kind"),
         clip_from_plane: homography(),
         region_size_px: SIZE_PX.as_vec2(),
@@ -269,6 +270,7 @@ fn a_shadow_without_bounds_has_no_outline() {
     let light = lamp(0.05);
     let viewers = Viewers::around(&light).expect("points of one kind");
     let projection = OntoReceiver {
+        plane_from_anchor: Mat4::IDENTITY,
         light: viewers,
         clip_from_plane: homography(),
         region_size_px: SIZE_PX.as_vec2(),
@@ -281,4 +283,43 @@ fn a_shadow_without_bounds_has_no_outline() {
         edges: &edges,
     };
     assert!(find_silhouette(shape, (&viewers, &projection), &mesh.1, SIZE_PX).is_none());
+}
+
+/// Where a line from each point of a lamp through a corner meets a shelf that is lifted and tilted.
+#[test]
+fn shadows_land_on_any_receiver() {
+    let shelf_from_anchor = Mat4::from_rotation_z(0.2)
+        * Mat4::from_rotation_x(-0.1)
+        * Mat4::from_translation(Vec3::new(0.1, -0.3, 0.2));
+    let light = lamp(0.3);
+    let in_shelf: Vec<Vec4> = light.iter().map(|point| shelf_from_anchor * *point).collect();
+    let projection = |plane_from_anchor| OntoReceiver {
+        plane_from_anchor,
+        light: Viewers::around(&in_shelf).expect("points of one kind"),
+        clip_from_plane: homography(),
+        region_size_px: SIZE_PX.as_vec2(),
+        near_m: 0.1,
+    };
+    let anchor_from_shelf = shelf_from_anchor.as_dmat4().inverse();
+    let (origin, up) = (anchor_from_shelf.w_axis.xyz(), anchor_from_shelf.y_axis.xyz());
+    let shadow_px = |corner: DVec3, point: DVec3| {
+        let along = corner - point;
+        let met = point + along * ((origin - point).dot(up) / along.dot(up));
+        let in_shelf = shelf_from_anchor.as_dmat4().transform_point3(met);
+        let clip = homography().as_dmat3() * DVec3::new(in_shelf.x, in_shelf.z, 1.0);
+        (clip.truncate() / clip.z * DVec2::new(0.5, -0.5) + 0.5) * SIZE_PX.as_dvec2()
+    };
+    let (corners, _) = ball(Vec3::new(0.1, 0.9, -0.1), 0.4, 6, true);
+    let is_held = |projection: &OntoReceiver, corner: &Vec3| {
+        let landing = projection.land(*corner).expect("it is under the lamp");
+        light.iter().all(|point| {
+            let off = shadow_px(corner.as_dvec3(), point.xyz().as_dvec3()) - landing.at_px.as_dvec2();
+            off.abs().cmple(landing.within_px.as_dvec2() + 1e-3).all()
+        })
+    };
+    let on_shelf = projection(shelf_from_anchor);
+    assert!(corners.iter().all(|corner| is_held(&on_shelf, corner)));
+    // As if the shelf lay on the table.
+    let on_table = projection(Mat4::IDENTITY);
+    assert!(!corners.iter().all(|corner| is_held(&on_table, corner)));
 }

@@ -123,3 +123,24 @@ fn rectangles_fill_each_pixel_once() {
     all.mark_all();
     assert_eq!((all.rects(true).len(), all.rects(false).len()), (1, 0));
 }
+
+#[test]
+fn tiles_are_joined_and_taken_away() {
+    let mark = |low: [f32; 2], high: [f32; 2]| {
+        let mut tiles = Tiles::over(SIZE_PX, TILE_PX);
+        tiles.mark_box([Vec2::from(low), Vec2::from(high)]);
+        tiles
+    };
+    let (first, second) = (mark([3.0, 3.0], [30.0, 20.0]), mark([20.0, 10.0], [60.0, 45.0]));
+    let mut joined = first.clone();
+    joined.join(&second);
+    let rest = first.without(&second);
+    let mut n_shared = 0;
+    for px in pixels() {
+        let marks = (first.is_marked_at(px), second.is_marked_at(px));
+        n_shared += usize::from(marks == (true, true));
+        assert_eq!(joined.is_marked_at(px), marks.0 || marks.1, "at {px}");
+        assert_eq!(rest.is_marked_at(px), marks.0 && !marks.1, "at {px}");
+    }
+    assert!(n_shared > 0);
+}

@@ -1,21 +1,24 @@
 //! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
-use glam::UVec2;
+use glam::{UVec2, Vec2};
 use wgpu::StoreOp;
 
 use crate::geometry::rect::PixelRect;
+use crate::geometry::silhouette::ByCamera;
 use crate::geometry::tiles::Tiles;
-use crate::gpu::bindings::{GROUP_DRAW, GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, Render, cleared, n_pixels};
+use crate::gpu::samplers::Sampler;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::coverage::COVERED;
 use crate::model::frame::toy;
+use crate::model::lighting::{LightMaps, Lighting, Posed, SHADED_TILE_PX};
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
@@ -25,7 +28,7 @@ use crate::passes::finished::Picture;
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
 use crate::passes::present::REGION_FORMAT;
-use crate::passes::toy_mesh::ToyMesh;
+use crate::passes::toy_mesh::{Detail, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -45,19 +48,23 @@ const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,
     Slot::Texture,
-    Slot::Texture,
-    Slot::Texture,
     Slot::Filtered,
-    Slot::Texture,
     Slot::Filtered,
     Slot::Sampler,
+];
+/// Groups of what is read where shadows fall, and near the toy.
+const GROUP_SHADOW: usize = 2;
+const GROUP_TOY: usize = 3;
+/// What is read where shadows fall.
+const SHADOW_SLOTS: &[Slot] = &[
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
     Slot::Texture,
     Slot::per_use::<Drawing>(),
 ];
 /// What is read near a toy alone.
 const TOY_SLOTS: &[Slot] = &[Slot::Texture; 8];
-/// Pixels along each side of the tiles in which a toy is looked for.
-const TILE_PX: u32 = 16;
 /// Farthest that the validity and what is drawn of a toy tell of it, in pixels beyond its triangles.
 const AROUND_TOY_PX: f32 = 10.0;
 
@@ -69,6 +76,8 @@ shared_struct! {
 }
 
 pub(crate) struct Pass {
+    /// Clear of the toy in either pose, and of its shadows.
+    open: Draw,
     /// Clear of the toy in either pose.
     beside: Draw,
     /// Near it, where the toy was drawn once.
@@ -76,24 +85,18 @@ pub(crate) struct Pass {
     drawn_four_times: Draw,
 }
 
-/// Visibility maps of one pose.
-#[derive(Clone, Copy)]
-pub(crate) struct Light<'a> {
-    pub(crate) visibility: &'a TextureView,
-    pub(crate) ambient: &'a TextureView,
-}
-
 pub(crate) struct Inputs<'a> {
     pub(crate) region: &'a Region,
     pub(crate) mesh: &'a ToyMesh,
+    pub(crate) lighting: &'a Lighting,
     pub(crate) scene: Scene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) cells: &'a Buffer,
     pub(crate) frame: &'a TextureView,
     pub(crate) plate: &'a TextureView,
     pub(crate) validity: &'a TextureView,
-    pub(crate) physical: Light<'a>,
-    pub(crate) shown: Light<'a>,
+    pub(crate) physical: &'a LightMaps,
+    pub(crate) shown: &'a LightMaps,
     pub(crate) coverage: &'a TextureView,
     pub(crate) toy: &'a toy::Targets,
     pub(crate) moved_mask: &'a TextureView,
@@ -128,52 +131,48 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let draw = |fragment, of_toy| {
-            let groups = [SCENE_SLOTS, SLOTS, of_toy, &[]];
+        let draw = |fragment, of_shadow, of_toy| {
+            let groups = [SCENE_SLOTS, SLOTS, of_shadow, of_toy];
             gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT]))
         };
         Self {
-            beside: draw("fs_beside", &[]),
-            drawn_once: draw("fs_drawn_once", TOY_SLOTS),
-            drawn_four_times: draw("fs_drawn_four_times", TOY_SLOTS),
+            open: draw("fs_open", &[], &[]),
+            beside: draw("fs_beside", SHADOW_SLOTS, &[]),
+            drawn_once: draw("fs_drawn_once", SHADOW_SLOTS, TOY_SLOTS),
+            drawn_four_times: draw("fs_drawn_four_times", SHADOW_SLOTS, TOY_SLOTS),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let resources = [
-            inputs.grids.into(),
-            inputs.cells.into(),
-            inputs.frame.into(),
-            inputs.plate.into(),
-            inputs.physical.visibility.into(),
-            inputs.physical.ambient.into(),
-            inputs.shown.visibility.into(),
-            inputs.shown.ambient.into(),
-            (&recorder.gpu.samplers.linear).into(),
-            // A placeholder that is not read where there is none.
-            inputs.detail.unwrap_or(inputs.plate).into(),
-            Resource::PerUse,
-        ];
-        let drawing = Drawing {
-            has_detail: u32::from(inputs.detail.is_some()),
-        };
         let near_toy = match inputs.toy.n_draws() {
             1 => &self.drawn_once,
             _ => &self.drawn_four_times,
         };
-        let groups = [
-            recorder.bind(&self.beside, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind_with(&self.beside, GROUP_PASS, &drawing, &resources),
+        let open = [
+            recorder.bind(&self.open, GROUP_SCENE, &inputs.scene.resources()),
+            recorder.bind(
+                &self.open,
+                GROUP_PASS,
+                &inputs.of_all(&recorder.gpu.samplers.linear),
+            ),
         ];
-        let of_toy = recorder.bind(near_toy, GROUP_DRAW, &inputs.of_toy());
+        let drawing = Drawing {
+            has_detail: u32::from(inputs.detail.is_some()),
+        };
+        let shaded = recorder.bind_with(&self.beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
+        let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
         let target = &targets.picture.view;
-        let [near, beside] = inputs.parts(target.size_px());
+        let parts = inputs.parts(target.size_px());
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
-        render.begin(&self.beside, &groups);
-        beside.iter().for_each(|part| fill(&mut render, part));
-        render.narrow(near.iter().map(|part| n_pixels(part.size_px)).sum());
+        render.begin(&self.open, &open);
+        parts.open.iter().for_each(|part| fill(&mut render, part));
+        let n = |parts: &[PixelRect]| -> u64 { parts.iter().map(|part| n_pixels(part.size_px)).sum() };
+        render.narrow(n(&parts.shaded) + n(&parts.near));
+        render.begin(&self.beside, &[shaded]);
+        parts.shaded.iter().for_each(|part| fill(&mut render, part));
+        render.narrow(n(&parts.near));
         render.begin(near_toy, &[of_toy]);
-        near.iter().for_each(|part| fill(&mut render, part));
+        parts.near.iter().for_each(|part| fill(&mut render, part));
     }
 }
 
@@ -182,7 +181,39 @@ fn fill(render: &mut Render<'_>, part: &PixelRect) {
     render.draw(0..3, 0..1);
 }
 
+/// Rectangles of the region.
+struct Parts {
+    /// Clear of the toy and of its shadows.
+    open: Vec<PixelRect>,
+    /// Where shadows may fall.
+    shaded: Vec<PixelRect>,
+    /// Near the toy in either pose.
+    near: Vec<PixelRect>,
+}
+
 impl<'a> Inputs<'a> {
+    fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 6] {
+        [
+            self.grids.into(),
+            self.cells.into(),
+            self.frame.into(),
+            (&self.physical.visibility.ambient.view).into(),
+            (&self.shown.visibility.ambient.view).into(),
+            sampler.into(),
+        ]
+    }
+
+    fn of_shadow(&self) -> [Resource<'a>; 5] {
+        [
+            self.plate.into(),
+            (&self.physical.visibility.lights.view).into(),
+            (&self.shown.visibility.lights.view).into(),
+            // A placeholder that is not read where there is none.
+            self.detail.unwrap_or(self.plate).into(),
+            Resource::PerUse,
+        ]
+    }
+
     fn of_toy(&self) -> [Resource<'a>; 8] {
         let [toy_0, toy_1, toy_2, toy_3] = self.toy.views();
         [
@@ -197,29 +228,34 @@ impl<'a> Inputs<'a> {
         ]
     }
 
-    /// Rectangles of a region of `size_px`: those near the toy in either pose, and the others.
-    fn parts(&self, size_px: UVec2) -> [Vec<PixelRect>; 2] {
-        let toy_box = self.region.plan.toy_box;
-        let mut tiles = Tiles::over(toy_box.size_px, TILE_PX);
+    fn parts(&self, size_px: UVec2) -> Parts {
+        let mut near = Tiles::over(size_px, SHADED_TILE_PX);
+        let mut shaded = near.clone();
+        let globals = self.region.globals_on_device();
         if self.region.plan.is_shadow_withheld {
             // The validity then tells of shadows, too.
-            tiles.mark_all();
+            near.mark_all();
         } else {
-            let camera = self.region.uniform.by_camera();
-            for pose in [&self.mesh.physical, &self.mesh.shown] {
-                self.mesh.mark_seen(&mut tiles, pose, (&camera, AROUND_TOY_PX));
+            let camera = ByCamera {
+                origin_px: Vec2::ZERO,
+                ..globals.uniform.by_camera()
+            };
+            let toy = self.mesh;
+            for (pose, maps) in [(&toy.physical, self.physical), (&toy.shown, self.shown)] {
+                toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
+                let posed = Posed { globals, toy, pose };
+                self.lighting.mark_shadows(&mut shaded, (posed, maps));
             }
         }
-        let in_region = |is_near| {
-            let rects = tiles.rects(is_near).into_iter();
-            rects.map(|rect| PixelRect {
-                origin_px: rect.origin_px + toy_box.origin_px,
-                ..rect
-            })
-        };
-        [
-            in_region(true).collect(),
-            in_region(false).chain(toy_box.around(size_px)).collect(),
-        ]
+        if self.detail.is_some() {
+            shaded.mark_all();
+        }
+        let shaded_alone = shaded.without(&near).rects(true);
+        shaded.join(&near);
+        Parts {
+            open: shaded.rects(false),
+            shaded: shaded_alone,
+            near: near.rects(true),
+        }
     }
 }

@@ -4,7 +4,6 @@ use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::CaptureTargets;
-use crate::model::frame::composite::Light;
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
@@ -143,20 +142,15 @@ impl FramePath<'_> {
         composite::Inputs {
             region: self.region,
             mesh: self.toy,
+            lighting: self.lighting.1,
             scene: self.scene(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,
             frame: self.frame,
             plate: &captured.plate.view,
             validity: &captured.by_pass.validity.marks.view,
-            physical: Light {
-                visibility: &captured.light.visibility.lights.view,
-                ambient: &captured.light.visibility.ambient.view,
-            },
-            shown: Light {
-                visibility: &drawn.light.visibility.lights.view,
-                ambient: &drawn.light.visibility.ambient.view,
-            },
+            physical: &captured.light,
+            shown: &drawn.light,
             coverage: &drawn.by_pass.coverage.covered.view,
             toy: &drawn.by_pass.toy,
             moved_mask: &drawn.by_pass.moved_mask.moved.view,

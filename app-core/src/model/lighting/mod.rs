@@ -1,10 +1,11 @@
 //! Visibility of the lights in a pose: points over the lights, the passes that draw from them, and the resulting
 //! maps.
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 
 use crate::geometry::light_points::ambient_directions;
 use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::geometry::tiles::Tiles;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
@@ -13,6 +14,8 @@ use crate::model::plan::{Casters, Plan};
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
+use crate::readback::FloatMap;
+use crate::readback::inject::upload;
 
 passes!(occlusion, self_shadow);
 
@@ -43,12 +46,46 @@ impl Step {
     }
 }
 
+/// Pixels along each side of the tiles by which shadows, and the toy, are told from what is clear of them.
+pub(crate) const SHADED_TILE_PX: u32 = 16;
+/// Pixels beyond a shadow's triangles that it may reach by rounding.
+const AROUND_SHADOW_PX: f32 = 1.0;
+
 /// Visibility and self-shadow maps of one pose.
 pub(crate) struct LightMaps {
     pub(crate) visibility: occlusion::Targets,
     pub(crate) self_shadow: self_shadow::Targets,
     /// Replaces the visibility of the lights that the passes compute.
-    pub(crate) injected: Option<Texture>,
+    pub(crate) injected: Option<InjectedLights>,
+}
+
+/// Visibility of the lights from outside.
+pub(crate) struct InjectedLights {
+    visibility: Texture,
+    /// In which any light is hidden.
+    shaded: Tiles,
+}
+
+impl InjectedLights {
+    /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
+    pub(crate) fn new(gpu: &Gpu, (map, n_lights): (&FloatMap, usize), like: &Texture) -> Self {
+        let size_px = UVec2::new(map.width, map.height);
+        let mut shaded = Tiles::over(size_px, SHADED_TILE_PX);
+        let rows = (0..map.height).flat_map(|y| (0..map.width).map(move |x| UVec2::new(x, y)));
+        for (at, visibilities) in rows.zip(&map.texels) {
+            if visibilities
+                .iter()
+                .take(n_lights)
+                .any(|visibility| *visibility < 1.0)
+            {
+                shaded.mark_box([at.as_vec2(), (at + 1).as_vec2()]);
+            }
+        }
+        Self {
+            visibility: upload(gpu, map, like),
+            shaded,
+        }
+    }
 }
 
 impl LightMaps {
@@ -112,6 +149,27 @@ impl Lighting {
         }
     }
 
+    /// Marks the tiles of the region, of `SHADED_TILE_PX`, in which a toy in a pose may hide any part of any light.
+    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, (posed, maps): (Posed<'_>, &LightMaps)) {
+        if let Some(injected) = &maps.injected {
+            tiles.join(&injected.shaded);
+        }
+        for light in &self.lights {
+            for (receiver, points) in light.by_receiver().enumerate() {
+                // A light behind a receiver casts no shadow on it.
+                if points.iter().all(|point| point.y <= 0.0) {
+                    continue;
+                }
+                let Some(onto) = posed.globals.uniform.onto_receiver(receiver, points) else {
+                    return tiles.mark_all();
+                };
+                posed
+                    .toy
+                    .mark_seen(tiles, (posed.pose, self.casters.light), (&onto, AROUND_SHADOW_PX));
+            }
+        }
+    }
+
     /// Encodes one step for a toy in a pose.
     pub(crate) fn encode(
         &self,
@@ -129,7 +187,7 @@ impl Lighting {
                 }
                 let is_last = index + 1 == self.lights.len();
                 if let Some(injected) = maps.injected.as_ref().filter(|_| is_last) {
-                    recorder.copy(injected, &maps.visibility.lights);
+                    recorder.copy(&injected.visibility, &maps.visibility.lights);
                 }
             }
             Step::Ambient => {

@@ -141,6 +141,11 @@ impl LightPointsBuffer {
         self.points = points;
     }
 
+    /// The points in the space of each receiver in turn.
+    pub(crate) fn by_receiver(&self) -> impl Iterator<Item = &[Vec4]> {
+        self.points.chunks(self.n_points.max(1) as usize)
+    }
+
     /// The points in anchor space, which is that of the first receiver.
     pub(crate) fn in_anchor(&self) -> &[Vec4] {
         &self.points[..self.n_points as usize]
@@ -262,7 +267,7 @@ impl Pass {
         };
         let of_pose = (inputs.pose, inputs.side);
         let points = (inputs.light.in_anchor(), inputs.caster);
-        let projection = inputs.globals.uniform.onto_first_receiver(points.0);
+        let projection = inputs.globals.uniform.onto_receiver(0, points.0);
         // Each receiver would have silhouettes of its own.
         let projection = projection.filter(|_| inputs.n_receivers == 1);
         let target = projection.as_ref().map(|projection| SilhouetteTarget {
