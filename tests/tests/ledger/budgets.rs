@@ -120,7 +120,7 @@ fn a_planted_budget_is_broken() {
     use FrameKind::{Picture, Pose, View};
     let planted = [
         (Pose, 869_000, 2.2),
-        (Picture, 869_000, 2.2),
+        (Picture, 869_000, 1.5),
         (View, 1_408_000, 4.2),
     ];
     assert_held(1, Preset::Balanced, planted, 41.0);
