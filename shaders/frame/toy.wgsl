@@ -143,9 +143,10 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
 // middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
 // either, and are done.
 fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
+  if moved == 1.0 { return 1.0; }
   let seen_change = light_change(lit, seen_under(texel));
   if IS_COARSE { return max(moved, seen_change); }
-  if moved == 1.0 || seen_change == 0.0 { return moved; }
+  if seen_change == 0.0 { return moved; }
   let received = light_received(true, physical_normal, physical_in_anchor);
   return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
 }

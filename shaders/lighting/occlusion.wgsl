@@ -1,10 +1,10 @@
-// Shadows of the posed toy on the receivers, from many points of a light in one pass.
+// Shadows of the posed toy on the receivers, from many points of each light in one pass.
 //
 // Each instance flattens the mesh from one light point onto one receiver and draws it where the camera sees it, so a
 // contact edge is as sharp as the screen. Each point is drawn for its own position within the pixel, so that a hard edge has
 // as many steps as a soft one; blending takes its share from the light's visibility.
-// Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it,
-// and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
+// Overlapping triangles of one point must not count twice: each point has a constant depth, above those before it and all of
+// the lights before, and the depth test rejects what is not above the stored depth. No depth of the scene, hence no bias and no acne.
 // A pixel shows one receiver, so that all of them share the target: before each is drawn, `fs_route` masks pixels
 // that show another by depth.
 // Where no silhouette comes near all points see the same: there the toy is drawn but once, and tiles that a silhouette does come
@@ -24,8 +24,12 @@ struct LightPoints {
   // Size of a target's texel in region pixels.
   texel_px: vec2f,
   n_points: u32,
-  _pad: u32,
+  // Points that the lights before it in the map may have.
+  n_before: u32,
 }
+
+// Points that all lights may have.
+const MOST_POINTS: u32 = 256u;
 
 // Column and row step from one point's position within a pixel to the next one's: each point is in a row and a column of
 // its own, and neighbours on the light are far apart. Of all odd steps these have the least RMS error of the part that a
@@ -81,8 +85,13 @@ fn moved_clip(instance: u32, in_plane: vec3f) -> vec4f {
   return clip + vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
 }
 
+// Below 1 for a number of points, one of which is half; above 0, where there are any.
+fn depth_above(n_points: f32) -> f32 {
+  return (f32(light_points.n_before) + n_points) / f32(MOST_POINTS + 1u);
+}
+
 fn depth_of(instance: u32) -> f32 {
-  return f32(instance % light_points.n_points + 1u) / f32(light_points.n_points + 1u);
+  return depth_above(f32(instance % light_points.n_points + 1u));
 }
 
 @vertex
@@ -112,8 +121,7 @@ fn vs_once(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32
   let receiver = instance / light_points.n_points;
   let clip =
     clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane_of(instance, in_anchor)));
-  let depth = (f32(light_points.n_points) + 0.5) / f32(light_points.n_points + 1u);
-  return vec4f(clip.xy, clip.w * depth, clip.w);
+  return vec4f(clip.xy, clip.w * depth_above(f32(light_points.n_points) + 0.5), clip.w);
 }
 
 // All points of a light, in a pixel that no silhouette of a shadow comes near.

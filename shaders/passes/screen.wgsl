@@ -26,8 +26,8 @@ struct ScreenMap {
 @group(1) @binding(1) var region: texture_2d<f32>;
 @group(1) @binding(2) var linear_sampler: sampler;
 // A picture, or luma.
-@group(2) @binding(0) var frame: texture_2d<f32>;
-@group(2) @binding(1) var chroma: texture_2d<f32>;
+@group(1) @binding(3) var frame: texture_2d<f32>;
+@group(1) @binding(4) var chroma: texture_2d<f32>;
 
 const BLACK = vec4f(0.0, 0.0, 0.0, 1.0);
 

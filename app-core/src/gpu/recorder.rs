@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use glam::UVec2;
 
-use super::bindings::{Layout, Resource, Slot};
+use super::bindings::{Resource, Slot};
 use super::buffer::Buffer;
-use super::context::{Gpu, Opened};
+use super::context::Gpu;
 use super::pass_run::{PassRun, Path};
 use super::pipeline::{Compute, Draw, Pipeline};
 use super::stages::{StageTime, Stages};
@@ -76,7 +76,12 @@ impl<'g> Recorder<'g> {
 
     /// Binds resources to a pipeline's group, in the order of its slots.
     pub(crate) fn bind<T>(&self, pipeline: &Pipeline<T>, index: usize, resources: &[Resource<'_>]) -> Group {
-        self.group((pipeline, index), resources, Opened::bind)
+        Group {
+            index: u32::try_from(index).unwrap_or(u32::MAX),
+            raw: self.group(pipeline, index, resources),
+            offset: None,
+            bound: bound(pipeline.slots[index], resources),
+        }
     }
 
     /// The same with `uniform`, for this use alone, in place of [`Resource::PerUse`].
@@ -102,20 +107,17 @@ impl<'g> Recorder<'g> {
         uniform: &U,
         resources: &[Resource<'_>],
     ) -> Group {
+        let opened = self.gpu.opened.as_ref();
+        let raw = opened.and_then(|opened| {
+            let layout = pipeline.compiled.as_ref()?.layouts[index].clone();
+            opened.bind_once(&layout.unwrap_or_else(|| opened.layout(&[])), resources)
+        });
         Group {
+            index: u32::try_from(index).unwrap_or(u32::MAX),
+            raw,
             offset: Some(self.uniforms.add(uniform)),
-            ..self.bind_once(pipeline, index, resources)
+            bound: bound(pipeline.slots[index], resources),
         }
-    }
-
-    /// The same without a uniform.
-    pub(crate) fn bind_once<T>(
-        &self,
-        pipeline: &Pipeline<T>,
-        index: usize,
-        resources: &[Resource<'_>],
-    ) -> Group {
-        self.group((pipeline, index), resources, Opened::bind_once)
     }
 
     /// Begins a render pass under the name of its shader.
@@ -275,21 +277,15 @@ impl<'g> Recorder<'g> {
 
     fn group<T>(
         &self,
-        (pipeline, index): (&Pipeline<T>, usize),
+        pipeline: &Pipeline<T>,
+        index: usize,
         resources: &[Resource<'_>],
-        bind: fn(&Opened, &Layout, &[Resource<'_>]) -> Option<wgpu::BindGroup>,
-    ) -> Group {
-        let raw = self.gpu.opened.as_ref().and_then(|opened| {
-            let layout = pipeline.compiled.as_ref()?.layouts[index].clone();
-            // A group that the pipeline lacks is refused by the device, which names it.
-            bind(opened, &layout.unwrap_or_else(|| opened.layout(&[])), resources)
-        });
-        Group {
-            index: u32::try_from(index).unwrap_or(u32::MAX),
-            raw,
-            offset: None,
-            bound: bound(pipeline.slots[index], resources),
-        }
+    ) -> Option<wgpu::BindGroup> {
+        let (opened, compiled) = self.gpu.opened.as_ref().zip(pipeline.compiled.as_ref())?;
+        let layout = compiled.layouts[index].clone();
+        // A group that the pipeline lacks is refused by the device, which names it.
+        let layout = layout.unwrap_or_else(|| opened.layout(&[]));
+        opened.bind(&layout, resources)
     }
 }
 
@@ -422,11 +418,6 @@ impl Render<'_> {
     /// What is set next is looked at by so many pixels alone.
     pub(crate) fn narrow(&mut self, n_pixels: u64) {
         self.tally.narrow(n_pixels);
-    }
-
-    /// Of what is set next as much is looked at as so many pixels are of a picture.
-    pub(crate) fn look_at_part(&mut self, n_pixels: u64, n_of_picture: u64) {
-        self.tally.look_at_part(n_pixels, n_of_picture);
     }
 
     /// Draws next in a part of the attachments; others are drawn in the rest of them.

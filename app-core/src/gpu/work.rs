@@ -9,7 +9,7 @@ use super::shape::Shape;
 ///
 /// Bytes are those that a tiler moves at least: an attachment that is loaded or stored counts whole, whatever is drawn to
 /// it; of a texture that is read each texel counts once a pass, and no more texels a layer than the pass has pixels, or
-/// than it says that it looks at, nor a larger part; buffers count whole, indices as far as they are drawn. What stays on the chip costs
+/// than it says that it looks at; buffers count whole, indices as far as they are drawn. What stays on the chip costs
 /// nothing, nor does what a tiler writes of its own accord for the triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Work {
@@ -108,8 +108,6 @@ pub(super) struct Tally<'a> {
     work: &'a mut Work,
     /// Pixels that it looks at in each layer.
     n_pixels: u64,
-    /// Pixels that it looks at, of how many of a picture.
-    part: (u64, u64),
     /// What was counted already.
     counted: Vec<Id>,
 }
@@ -119,7 +117,6 @@ impl<'a> Tally<'a> {
         Self {
             work,
             n_pixels,
-            part: (1, 1),
             counted: Vec::new(),
         }
     }
@@ -134,11 +131,6 @@ impl<'a> Tally<'a> {
     /// Narrows what it looks at to so many pixels.
     pub(super) fn narrow(&mut self, n_pixels: u64) {
         self.n_pixels = self.n_pixels.min(n_pixels);
-    }
-
-    /// Of what is bound next it looks at no more than at so many pixels of a picture, and as much of each layer.
-    pub(super) fn look_at_part(&mut self, n_pixels: u64, n_of_picture: u64) {
-        self.part = (n_pixels.min(n_of_picture), n_of_picture.max(1));
     }
 
     /// Resources that its shaders see from here on.
@@ -158,9 +150,7 @@ impl<'a> Tally<'a> {
                 Bound::View { id, shape } => {
                     if self.is_new(id) {
                         let most = self.n_pixels.saturating_mul(u64::from(shape.n_layers));
-                        let (part, whole) = self.part;
-                        let n_texels = (shape.n_texels() * part).div_ceil(whole);
-                        self.work.read(n_texels.min(most) * shape.texel_bytes());
+                        self.work.read(shape.n_texels().min(most) * shape.texel_bytes());
                     }
                 }
             }

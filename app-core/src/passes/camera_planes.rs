@@ -1,13 +1,13 @@
 //! `camera_planes`: the camera's planes of luma and chroma, or a part of them, as sRGB codes.
 
 use glam::UVec2;
-use wgpu::{StoreOp, TextureFormat};
+use wgpu::TextureFormat;
 
 use crate::camera_frame::{PlanarImage, YcbcrEncoding, half_size_px};
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Recorder, cleared, n_pixels};
+use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::{Texture, TextureView};
@@ -84,9 +84,6 @@ impl Pass {
         };
         let resources = [Resource::PerUse, luma.into(), chroma.into()];
         let own = recorder.bind_once_with(&self.draw, GROUP_PASS, &encoding, &resources);
-        let mut render = recorder.render(SHADER.name, &[Some(cleared(frame_codes))], None, StoreOp::Discard);
-        render.look_at_part(n_pixels(frame_codes.size_px()), n_pixels(luma.size_px()));
-        render.begin(&self.draw, &[own]);
-        render.draw(0..3, 0..1);
+        recorder.fullscreen(&self.draw, &[own], &[frame_codes]);
     }
 }

@@ -4,7 +4,6 @@ use glam::UVec2;
 
 use crate::camera_frame::YcbcrEncoding;
 use crate::geometry::rect::PixelRect;
-use crate::gpu::recorder::n_pixels;
 use crate::gpu::texture::TextureView;
 
 /// A picture that was made or taken.
@@ -47,12 +46,4 @@ pub(crate) struct Laid<'a> {
     pub(crate) rect: PixelRect,
     /// Part of it that is shown, the rest being the camera image: from 0 to 1.
     pub(crate) effect: f32,
-}
-
-impl Finished<'_> {
-    /// Pixels of the camera image that are seen beside the region's picture, or through it.
-    pub(crate) fn n_seen(&self) -> u64 {
-        let hiding = self.region.filter(|laid| laid.effect >= 1.0);
-        n_pixels(self.size_px).saturating_sub(hiding.map_or(0, |laid| n_pixels(laid.rect.size_px)))
-    }
 }

@@ -1,15 +1,13 @@
 //! `screen`: the camera image with the work region laid over it, on a screen, turned and cropped.
 
-use std::slice::from_ref;
-
 use bytemuck::Zeroable;
 use glam::{DAffine2, DVec2, UVec2};
-use wgpu::{StoreOp, TextureFormat};
+use wgpu::TextureFormat;
 
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Recorder, cleared, n_pixels};
+use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
@@ -18,11 +16,19 @@ use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
     Shader::new(&[&SRGB, &FULLSCREEN, &part!("passes/screen", structs: [ScreenMap])]);
-const SLOTS: &[Slot] = &[Slot::per_use::<ScreenMap>(), Slot::Filtered, Slot::Sampler];
-/// Group of the camera image.
-const GROUP_FRAME: usize = 2;
-const FRAME_SLOTS: &[Slot] = &[Slot::Filtered];
-const PLANES_SLOTS: &[Slot] = &[Slot::Filtered, Slot::Filtered];
+const SLOTS: &[Slot] = &[
+    Slot::per_use::<ScreenMap>(),
+    Slot::Filtered,
+    Slot::Sampler,
+    Slot::Filtered,
+];
+const SLOTS_OF_PLANES: &[Slot] = &[
+    Slot::per_use::<ScreenMap>(),
+    Slot::Filtered,
+    Slot::Sampler,
+    Slot::Filtered,
+    Slot::Filtered,
+];
 
 shared_struct! {
     /// Map from pixels of the screen to those of the picture, the picture's size, and where and how much of the region's picture
@@ -82,13 +88,13 @@ pub(crate) struct Pass {
 impl Pass {
     /// For a screen of `format`, which takes sRGB codes as they are.
     pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
-        let draw = |entry, of_frame| {
-            let groups = [&[][..], SLOTS, of_frame, &[]];
+        let draw = |entry, slots| {
+            let groups = [&[][..], slots, &[], &[]];
             gpu.draw(&DrawSpec::fullscreen(&SHADER, entry, groups, &[format]))
         };
         Self {
-            of_picture: draw("fs_show", FRAME_SLOTS),
-            of_planes: draw("fs_show_planes", PLANES_SLOTS),
+            of_picture: draw("fs_show", SLOTS),
+            of_planes: draw("fs_show_planes", SLOTS_OF_PLANES),
         }
     }
 
@@ -101,32 +107,34 @@ impl Pass {
     ) {
         let map = ScreenMap::new(image_from_screen, finished);
         let region = finished.region.map(|laid| laid.picture.light);
-        let sampler = (&recorder.gpu.samplers.linear).into();
-        let (draw, groups) = match &finished.frame {
+        let sampler = &recorder.gpu.samplers.linear;
+        match &finished.frame {
             Frame::Picture(frame) => {
-                let draw = &self.of_picture;
-                let own = [Resource::PerUse, region.unwrap_or(frame.light).into(), sampler];
-                let own = recorder.bind_with(draw, GROUP_PASS, &map, &own);
-                (
-                    draw,
-                    [own, recorder.bind(draw, GROUP_FRAME, &[frame.light.into()])],
-                )
+                let region = region.unwrap_or(frame.light);
+                let resources = [
+                    Resource::PerUse,
+                    region.into(),
+                    sampler.into(),
+                    frame.light.into(),
+                ];
+                let own = recorder.bind_with(&self.of_picture, GROUP_PASS, &map, &resources);
+                recorder.fullscreen(&self.of_picture, &[own], &[screen]);
             }
             Frame::Planes(planes) => {
-                let draw = &self.of_planes;
                 let [luma, chroma] = planes.views;
-                let own = [Resource::PerUse, region.unwrap_or(luma).into(), sampler];
+                let region = region.unwrap_or(luma);
+                let map = map.with_planes(planes);
+                let resources = [
+                    Resource::PerUse,
+                    region.into(),
+                    sampler.into(),
+                    luma.into(),
+                    chroma.into(),
+                ];
                 // They may be the platform's: no cache keeps them.
-                let own = recorder.bind_once_with(draw, GROUP_PASS, &map.with_planes(planes), &own);
-                let planes = recorder.bind_once(draw, GROUP_FRAME, &[luma.into(), chroma.into()]);
-                (draw, [own, planes])
+                let own = recorder.bind_once_with(&self.of_planes, GROUP_PASS, &map, &resources);
+                recorder.fullscreen(&self.of_planes, &[own], &[screen]);
             }
-        };
-        let [own, of_frame] = &groups;
-        let mut render = recorder.render(SHADER.name, &[Some(cleared(screen))], None, StoreOp::Discard);
-        render.begin(draw, from_ref(own));
-        render.look_at_part(finished.n_seen(), n_pixels(finished.size_px));
-        render.set(of_frame);
-        render.draw(0..3, 0..1);
+        }
     }
 }

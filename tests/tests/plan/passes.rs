@@ -55,8 +55,8 @@ fn leaves_out(plan: &Plan, what: &str) -> bool {
 #[test]
 fn a_new_pose_costs_the_frame_path_alone() {
     let plan = plan([640, 360], 2);
-    // Both lights, and the ambient light.
-    let light = ["occlusion"; 3];
+    // Both lights at once, and the ambient light.
+    let light = ["occlusion"; 2];
     let drawn = ["self_shadow", "moved_mask", "toy", "coverage", "composite"];
     let frame = light.into_iter().chain(drawn);
     let frame: Vec<_> = frame.map(|pass| (Path::Frame, pass)).collect();

@@ -9,8 +9,9 @@ use crate::geometry::tiles::Tiles;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
-use crate::model::lighting::occlusion::{LightPointsBuffer, PartOfMap};
+use crate::model::lighting::occlusion::{LightPointsBuffer, PartOfMap, Tested};
 use crate::model::plan::{Casters, Plan};
+use crate::passes::counting::InstanceOrder;
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
@@ -24,8 +25,8 @@ passes!(occlusion, self_shadow);
 pub(crate) enum Step {
     /// The toy's shadow on itself.
     SelfShadow,
-    /// Visibility of one light.
-    Light(usize),
+    /// Visibility of the lights.
+    Lights,
     /// Visibility of the ambient light.
     Ambient,
 }
@@ -33,15 +34,15 @@ pub(crate) enum Step {
 impl Step {
     /// The steps that compute the visibilities of a plan's lights.
     pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
-        let lights = (0..plan.n_lights).map(Self::Light);
-        lights.chain([Self::Ambient])
+        let lights = (plan.n_lights > 0).then_some(Self::Lights);
+        lights.into_iter().chain([Self::Ambient])
     }
 
     /// The passes that it runs, in order.
     pub(crate) fn passes(self) -> &'static [&'static str] {
         match self {
             Self::SelfShadow => &["self_shadow"],
-            Self::Light(_) | Self::Ambient => &["occlusion"],
+            Self::Lights | Self::Ambient => &["occlusion"],
         }
     }
 }
@@ -180,19 +181,23 @@ impl Lighting {
     ) {
         match step {
             Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
-            Step::Light(index) => {
-                if let Some(light) = self.lights.get(index) {
-                    let light = (light, self.casters.light, Some(Side::Light(index)));
-                    self.encode_visibility(recorder, passes, (posed, light), maps);
-                }
-                let is_last = index + 1 == self.lights.len();
-                if let Some(injected) = maps.injected.as_ref().filter(|_| is_last) {
+            Step::Lights => {
+                let lights: Vec<_> = self
+                    .lights
+                    .iter()
+                    .enumerate()
+                    .map(|(index, light)| (light, Some(Side::Light(index))))
+                    .collect();
+                let onto = (&maps.visibility.lights, &self.orders.lights);
+                self.encode_visibility(recorder, passes, (posed, self.casters.light), (&lights, onto));
+                if let Some(injected) = &maps.injected {
                     recorder.copy(&injected.visibility, &maps.visibility.lights);
                 }
             }
             Step::Ambient => {
-                let light = (&self.ambient, self.casters.ambient, None);
-                self.encode_visibility(recorder, passes, (posed, light), maps);
+                let onto = (&maps.visibility.ambient, &self.orders.ambient);
+                let lights = [(&self.ambient, None)];
+                self.encode_visibility(recorder, passes, (posed, self.casters.ambient), (&lights, onto));
             }
         }
     }
@@ -201,21 +206,17 @@ impl Lighting {
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
-        (posed, (light, caster, side)): (Posed<'_>, (&LightPointsBuffer, Detail, Option<Side>)),
-        maps: &LightMaps,
+        (posed, caster): (Posed<'_>, Detail),
+        (lights, onto): (&[Tested<'_>], (&Texture, &InstanceOrder)),
     ) {
-        let Posed { globals, toy, pose } = posed;
         let inputs = occlusion::Inputs {
-            globals,
+            globals: posed.globals,
             n_receivers: self.n_receivers,
-            toy,
-            pose,
-            light,
+            toy: posed.toy,
+            pose: posed.pose,
             caster,
-            side,
         };
-        let targets = (&maps.visibility, &self.orders);
-        passes.occlusion.encode(recorder, &inputs, targets);
+        passes.occlusion.encode(recorder, &inputs, lights, onto);
     }
 
     fn encode_self_shadow(

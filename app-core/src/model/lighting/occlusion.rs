@@ -1,4 +1,5 @@
-//! `occlusion`: visibility of a light behind the posed toy, from its shadows on the receivers from many points, in one pass.
+//! `occlusion`: visibility of lights behind the posed toy, from its shadows on the receivers from many points of each, in one
+//! pass.
 
 use glam::{UVec2, Vec4};
 use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
@@ -8,7 +9,7 @@ use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
-use crate::gpu::recorder::{Recorder, cleared_to, loaded};
+use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, fractions, half_float};
@@ -16,19 +17,22 @@ use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
 use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::toy_mesh::{Corners, Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
 use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FLATTEN,
     &TILES,
-    &part!("lighting/occlusion", structs: [LightPoints]),
+    &part!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]),
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of light points of one pass.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
+/// Maximum number of points of all lights, which a map is drawn from in one pass.
+#[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
+const MOST_POINTS: u32 = (MAX_LIGHTS * MAX_LIGHT_POINTS) as u32;
 
 shared_struct! {
     /// Points of a light, receiver by receiver.
@@ -37,7 +41,7 @@ shared_struct! {
         pub share: [f32; 4],
         pub texel_px: [f32; 2],
         pub n_points: u32,
-        pub _pad: u32,
+        pub n_before: u32,
     }
 }
 
@@ -50,7 +54,7 @@ impl LightPoints {
             share: part.share(n_points),
             texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
             n_points,
-            _pad: 0,
+            n_before: part.n_before(),
         };
         for (slot, point) in light_points.points.iter_mut().zip(points) {
             *slot = point.to_array();
@@ -85,6 +89,12 @@ impl PartOfMap {
             format: AMBIENT_FORMAT,
             channel: 0,
         }
+    }
+
+    /// Most that the points of the lights before it in its map may be.
+    #[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
+    const fn n_before(&self) -> u32 {
+        (MAX_LIGHT_POINTS * self.channel) as u32
     }
 
     /// The map that it is a part of.
@@ -178,8 +188,8 @@ impl Targets {
 
 /// Which point was drawn last, over the region and over the ambient map.
 pub(crate) struct Orders {
-    lights: InstanceOrder,
-    ambient: InstanceOrder,
+    pub(crate) lights: InstanceOrder,
+    pub(crate) ambient: InstanceOrder,
 }
 
 impl Orders {
@@ -230,18 +240,18 @@ impl Draws {
     }
 }
 
-/// A posed toy, and the points of a light whose occlusion is tested.
+/// A posed toy that casts shadows.
 pub(crate) struct Inputs<'a> {
     pub(crate) globals: GlobalsOnDevice<'a>,
     pub(crate) n_receivers: u32,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
-    pub(crate) light: &'a LightPointsBuffer,
     /// What casts the shadow.
     pub(crate) caster: Detail,
-    /// Which light it is; none of what comes from all sides.
-    pub(crate) side: Option<Side>,
 }
+
+/// A light whose occlusion is tested, and which one it is; none of what comes from all sides.
+pub(crate) type Tested<'a> = (&'a LightPointsBuffer, Option<Side>);
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -250,70 +260,70 @@ impl Pass {
         }
     }
 
-    /// Draws the caster from the light's points on each receiver, and takes the hidden points from the light's channel of its
-    /// map; the first channel starts all of them.
+    /// Draws the caster from the lights' points on each receiver, and takes the hidden points from each light's channel of the
+    /// map.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
-        (maps, orders): (&Targets, &Orders),
+        lights: &[Tested<'_>],
+        (map, order): (&Texture, &InstanceOrder),
     ) {
-        let (map, order) = match inputs.side {
-            Some(_) => (&maps.lights, &orders.lights),
-            None => (&maps.ambient, &orders.ambient),
-        };
         let Some((_, draws)) = self.of_formats.iter().find(|(format, _)| *format == map.format()) else {
             return;
         };
-        let of_pose = (inputs.pose, inputs.side);
-        let points = (inputs.light.in_anchor(), inputs.caster);
-        let projection = inputs.globals.uniform.onto_receiver(0, points.0);
-        // Each receiver would have silhouettes of its own.
-        let projection = projection.filter(|_| inputs.n_receivers == 1);
-        let target = projection.as_ref().map(|projection| SilhouetteTarget {
-            projection,
-            part: PixelRect {
-                origin_px: UVec2::ZERO,
-                size_px: map.size_px(),
-            },
-            saves: Saves::Triangles,
-        });
-        let corners = inputs.toy.corners(recorder.gpu, of_pose, points, target);
         let cover = draws.cover.any();
-        let groups = [
-            recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
-            recorder.bind(cover, GROUP_PASS, &[(&inputs.light.uniform).into()]),
-        ];
-        let (n_receivers, n_points) = (inputs.n_receivers, inputs.light.n_points);
-        let visibility = if inputs.light.part.channel == 0 {
-            cleared_to(&map.view, Color::WHITE)
-        } else {
-            loaded(&map.view)
+        let bound = |light: &LightPointsBuffer| {
+            [
+                recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
+                recorder.bind(cover, GROUP_PASS, &[(&light.uniform).into()]),
+            ]
         };
-        let mut render = order.render(recorder, SHADER.name, visibility);
-        let drawn = (&corners, inputs.pose);
-        for receiver in 0..n_receivers {
-            if n_receivers > 1 {
-                render.begin(&draws.route, &groups);
-                render.draw(0..3, receiver..receiver + 1);
+        let corners = |light| inputs.corners(recorder.gpu, light, map.size_px());
+        let drawn: Vec<_> = lights
+            .iter()
+            .map(|light| (light.0, bound(light.0), corners(*light)))
+            .collect();
+        let mut render = order.render(recorder, SHADER.name, cleared_to(&map.view, Color::WHITE));
+        for (light, groups, corners) in drawn {
+            for receiver in 0..inputs.n_receivers {
+                if inputs.n_receivers > 1 {
+                    render.begin(&draws.route, &groups);
+                    render.draw(0..3, receiver..receiver + 1);
+                }
+                let instances = receiver * light.n_points..(receiver + 1) * light.n_points;
+                let n_plain = inputs.n_whole_shadows(light, receiver);
+                let drawn = (&corners, inputs.pose);
+                draws
+                    .cover
+                    .count(&mut render, &groups, drawn, (instances, n_plain));
             }
-            let instances = receiver * n_points..(receiver + 1) * n_points;
-            let n_plain = inputs.n_whole_shadows(receiver);
-            draws
-                .cover
-                .count(&mut render, &groups, drawn, (instances, n_plain));
         }
     }
 }
 
-impl Inputs<'_> {
-    /// Points of the light, from the first on, whose shadows of the toy on a receiver need not be cut off.
-    fn n_whole_shadows(&self, receiver: u32) -> u32 {
-        let points = self
-            .light
-            .points
-            .chunks(self.light.n_points.max(1) as usize)
-            .nth(receiver as usize);
+impl<'a> Inputs<'a> {
+    /// Corners to draw for a light onto a map of so many texels.
+    fn corners(&self, gpu: &Gpu, (light, side): Tested<'_>, map_px: UVec2) -> Corners<'a> {
+        let points = light.in_anchor();
+        let projection = self.globals.uniform.onto_receiver(0, points);
+        // Each receiver would have silhouettes of its own.
+        let projection = projection.filter(|_| self.n_receivers == 1);
+        let target = projection.as_ref().map(|projection| SilhouetteTarget {
+            projection,
+            part: PixelRect {
+                origin_px: UVec2::ZERO,
+                size_px: map_px,
+            },
+            saves: Saves::Triangles,
+        });
+        self.toy
+            .corners(gpu, (self.pose, side), (points, self.caster), target)
+    }
+
+    /// Points of a light, from the first on, whose shadows of the toy on a receiver need not be cut off.
+    fn n_whole_shadows(&self, light: &LightPointsBuffer, receiver: u32) -> u32 {
+        let points = light.by_receiver().nth(receiver as usize);
         let globals = self.globals.uniform;
         let n_whole =
             globals.n_whole_shadows(receiver as usize, points.unwrap_or_default(), &self.pose.around);
