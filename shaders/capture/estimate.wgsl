@@ -1,8 +1,7 @@
 // The plate, completed by an estimate where no plate covers the pixel.
 //
-// The first estimate is smooth, so that the fit can find the shadow in it. The final one is B = frame / (gain M) per
-// pixel of the receiver, with all its texture, as far as enough light is left; pixels that the toy hides, or bleeds
-// into, stay smooth.
+// Where the fits have found the shadow it is B = frame / (gain M) per pixel of the receiver, with all its texture, as far as
+// enough light is left; pixels that the toy hides, or bleeds into, stay smooth, as the fits see all of them.
 // Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate. CPU reference: reference/estimate.rs.
 
@@ -14,10 +13,6 @@
 @group(1) @binding(6) var ambient: texture_2d<f32>;
 @group(1) @binding(7) var ambient_sampler: sampler;
 
-override IS_FINAL: bool = false;
-
-// Alpha of an estimated pixel: marks it as such, and is its weight in the fit.
-const ESTIMATED: f32 = 0.25;
 // Light left, in plates, above which a pixel's own estimate is used in full, and below which not at all.
 const TELLS_ALL: f32 = 0.3;
 const TELLS_NONE: f32 = 0.1;
@@ -28,13 +23,13 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let photographed = textureLoad(plate, texel, 0);
   let point = receiver_point(position.xy);
   if photographed.a == 1.0 || !is_hit(point) { return photographed; }
-  let smooth_color = cell_at(point).rgb;
-  if !IS_FINAL || marks_at(vec2i(texel)).b == 0.0 { return vec4f(smooth_color, ESTIMATED); }
+  let smooth_color = completed(photographed, point);
+  if marks_at(vec2i(texel)).b == 0.0 { return smooth_color; }
   let f = textureLoad(frame, texel, 0).rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   let left = smallest(model);
-  if left <= TELLS_NONE { return vec4f(smooth_color, ESTIMATED); }
+  if left <= TELLS_NONE { return smooth_color; }
   let own = f / (fit.gain.rgb * model);
-  return vec4f(mix(smooth_color, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), ESTIMATED);
+  return vec4f(mix(smooth_color.rgb, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), smooth_color.a);
 }

@@ -9,22 +9,25 @@
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
 //
-// Reads: frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums, one per workgroup and
+// Reads: lit cells, frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums, one per workgroup and
 // channel.
 // CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
 
-@group(1) @binding(0) var<uniform> step: FitStep;
-@group(1) @binding(1) var<storage, read_write> rows: array<f32>;
-@group(1) @binding(2) var frame: texture_2d<f32>;
-@group(1) @binding(3) var plate: texture_2d<f32>;
-@group(1) @binding(4) var validity: texture_2d<f32>;
-@group(1) @binding(5) var visibility: texture_2d<f32>;
-@group(1) @binding(6) var ambient: texture_2d<f32>;
-@group(1) @binding(7) var ambient_sampler: sampler;
-@group(1) @binding(8) var gbuffer_base: texture_2d<f32>;
-@group(1) @binding(9) var gbuffer_normal: texture_2d<f32>;
+// Where the plate is to be completed.
+@group(1) @binding(1) var<storage, read> cells: array<vec4f>;
+
+@group(2) @binding(0) var<uniform> step: FitStep;
+@group(2) @binding(1) var<storage, read_write> rows: array<f32>;
+@group(2) @binding(2) var frame: texture_2d<f32>;
+@group(2) @binding(3) var plate: texture_2d<f32>;
+@group(2) @binding(4) var validity: texture_2d<f32>;
+@group(2) @binding(5) var visibility: texture_2d<f32>;
+@group(2) @binding(6) var ambient: texture_2d<f32>;
+@group(2) @binding(7) var ambient_sampler: sampler;
+@group(2) @binding(8) var gbuffer_base: texture_2d<f32>;
+@group(2) @binding(9) var gbuffer_normal: texture_2d<f32>;
 // Each light's cosine times its visibility.
-@group(1) @binding(10) var gbuffer_received: texture_2d<f32>;
+@group(2) @binding(10) var gbuffer_received: texture_2d<f32>;
 
 const WORKGROUP: u32 = 256u;
 // Upper triangle of the symmetric matrix row by row, then the right-hand side, then the clipped pixels' part of the
@@ -82,13 +85,24 @@ struct Observation {
   is_estimated: bool,
 }
 
-fn observe(texel: vec2u) -> Observation {
+fn plate_at(texel: vec2u) -> vec4f {
+  return textureLoad(plate, texel, 0);
+}
+
+// The same, where none was photographed an estimate: all that is known before the fits.
+fn completed_at(texel: vec2u) -> vec4f {
+  let photographed = plate_at(texel);
+  let point = receiver_point(vec2f(texel) + 0.5);
+  if !is_hit(point) { return photographed; }
+  return completed(photographed, point);
+}
+
+fn observe(texel: vec2u, plate_texel: vec4f) -> Observation {
   var seen: Observation;
   let at = vec2f(texel) + 0.5;
   let evident = marks_at(vec2i(texel)).r;
   seen.point = receiver_point(at);
   if evident == 0.0 || !is_hit(seen.point) { return seen; }
-  let plate_texel = textureLoad(plate, texel, 0);
   seen.frame = frame_at(texel);
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
@@ -244,11 +258,21 @@ fn sampled_texel(index: u32) -> vec2u {
   return vec2u(index % width, index / width) * step.stride_px;
 }
 
-// An entry point for each subject, since some processors take all branches of a shader.
+// An entry point for each subject, and for each kind of plate, since some processors take all branches of a shader.
 @compute @workgroup_size(WORKGROUP)
 fn cs_receiver(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
-    add(receiver_equation(observe(sampled_texel(index))));
+    let texel = sampled_texel(index);
+    add(receiver_equation(observe(texel, plate_at(texel))));
+  }
+  reduce(group.x, lane);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cs_receiver_completing(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
+    let texel = sampled_texel(index);
+    add(receiver_equation(observe(texel, completed_at(texel))));
   }
   reduce(group.x, lane);
 }
@@ -269,7 +293,17 @@ fn cs_toy(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
 @compute @workgroup_size(WORKGROUP)
 fn cs_intensities(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
-    add(intensity_equation(observe(sampled_texel(index))));
+    let texel = sampled_texel(index);
+    add(intensity_equation(observe(texel, plate_at(texel))));
+  }
+  reduce(group.x, lane);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cs_intensities_completing(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+  for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
+    let texel = sampled_texel(index);
+    add(intensity_equation(observe(texel, completed_at(texel))));
   }
   reduce(group.x, lane);
 }

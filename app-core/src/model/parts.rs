@@ -6,6 +6,8 @@ use crate::gpu::shader::{Part, part};
 pub(crate) const BETWEEN_CELLS: Part = part!("common/between_cells");
 /// The value of a grid at a receiver's point.
 pub(crate) const CELLS: Part = part!("common/cells");
+/// A plate with an estimate where none was photographed.
+pub(crate) const COMPLETED: Part = part!("common/completed");
 /// Accumulation of a cell over frames.
 pub(crate) const ACCUMULATED: Part = part!("common/accumulated");
 /// The model of a receiver: the frame as a fraction of the plate.

@@ -27,7 +27,7 @@ pub struct Known<'a> {
     pub lit: &'a [(PlaneGrid, Raster<DVec3>)],
 }
 
-/// Linear colour and alpha of the plate at `texel`: smooth at first, at last each seen pixel's own.
+/// Linear colour and alpha of the plate at `texel`: smooth as the fits read it, and at last each seen pixel's own.
 #[must_use]
 pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2) -> DVec4 {
     let (at, pictures) = (centre_px(texel), known.pictures);

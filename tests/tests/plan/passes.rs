@@ -90,7 +90,7 @@ fn the_capture_path_reads_what_was_made_before() {
                 "appearance",
             ][..],
             &["occlusion", "fit", "fit_solve", "residual", "tint"],
-            &["plate", "estimate", "fit"],
+            &["plate", "lit", "fill", "estimate", "residual"],
             &["plate", "lit"],
             &["tint", "tint_fill"],
         ] {

@@ -8,7 +8,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::observed::Observed;
-use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
+use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
@@ -24,6 +24,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &GRID,
     &BETWEEN_CELLS,
     &CELLS,
+    &COMPLETED,
     &FULLSCREEN,
     &MARKS,
     &part!("capture/estimate"),
@@ -44,18 +45,8 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_plate_estimated
 }
 
-/// Spatial detail of an estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fineness {
-    /// Smooth, so that the fit can find the shadow in it.
-    Smooth,
-    /// Per pixel, once the shadow is fitted.
-    Full,
-}
-
 pub(crate) struct Pass {
-    smooth: Draw,
-    full: Draw,
+    complete: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -84,29 +75,18 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
-        let draw = |is_final| {
-            gpu.draw(&DrawSpec {
-                constants: vec![("IS_FINAL", is_final)],
-                ..DrawSpec::fullscreen(&SHADER, "fs_complete", groups, &[FINE_FORMAT])
-            })
-        };
         Self {
-            smooth: draw(0),
-            full: draw(1),
+            complete: gpu.draw(&DrawSpec::fullscreen(
+                &SHADER,
+                "fs_complete",
+                groups,
+                &[FINE_FORMAT],
+            )),
         }
     }
 
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        inputs: &Inputs<'_>,
-        fineness: Fineness,
-        target: &TextureView,
-    ) {
-        let draw = match fineness {
-            Fineness::Smooth => &self.smooth,
-            Fineness::Full => &self.full,
-        };
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
+        let draw = &self.complete;
         let observed = &inputs.observed;
         let resources = [
             inputs.grids.into(),

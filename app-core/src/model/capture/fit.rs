@@ -12,8 +12,9 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
 use crate::model::capture::observed::Observed;
-use crate::model::parts::{HEMISPHERES, MODEL, TOY_RADIANCE};
+use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, HEMISPHERES, MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
+use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{MARKS, PIXEL};
@@ -33,8 +34,16 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &TOY_RADIANCE,
     &PIXEL,
     &MARKS,
+    &GRID,
+    &BETWEEN_CELLS,
+    &CELLS,
+    &COMPLETED,
     &part!("capture/fit"),
 ]);
+/// Grids and lit cells, of which a plate is completed.
+const LIT_SLOTS: &[Slot] = &[Slot::uniform::<Grids>(), Slot::Read];
+/// Group of all else.
+const GROUP_FIT: usize = 2;
 /// Step, sums, and what is seen of receivers; then what is seen of the toy.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
@@ -49,8 +58,8 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
 ];
-/// Entry point of each [`Subject`], and how many of the slots it looks at.
-const SUBJECTS: [(&str, usize); 3] = [("cs_receiver", 8), ("cs_toy", SLOTS.len()), ("cs_intensities", 8)];
+/// Slots of what is seen of receivers.
+const N_RECEIVER_SLOTS: usize = 8;
 const SUBJECT_RECEIVER: u32 = Subject::Receiver as u32;
 const SUBJECT_TOY: u32 = Subject::Toy as u32;
 const SUBJECT_INTENSITIES: u32 = Subject::Intensities as u32;
@@ -90,6 +99,8 @@ pub(crate) struct Task {
     pub(crate) n_steps: u32,
     /// The solution so far is good enough to down-weight outliers.
     pub(crate) is_refinement: bool,
+    /// The plate is not yet completed where none was photographed: it is, by a smooth estimate, as it is read.
+    pub(crate) completes_plate: bool,
 }
 
 impl Task {
@@ -117,13 +128,19 @@ impl Task {
 }
 
 pub(crate) struct Pass {
-    /// In the order of [`Subject`].
-    of_subjects: [Compute; 3],
+    /// Of a plate as it is, and of one that is completed.
+    receiver: [Compute; 2],
+    /// The same.
+    intensities: [Compute; 2],
+    toy: Compute,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: Scene<'a>,
+    pub(crate) grids: &'a Buffer,
+    pub(crate) lit_cells: &'a Buffer,
     pub(crate) observed: Observed<'a>,
+    /// Photographed alone for a task that completes it.
     pub(crate) plate: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
@@ -148,15 +165,23 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let of_subject = |(entry_point, n_slots): (_, usize)| {
+        let compute = |entry_point, lit_slots: &'static [Slot], n_slots| {
             gpu.compute(&ComputeSpec {
                 shader: &SHADER,
                 entry_point,
-                groups: [SCENE_SLOTS, &SLOTS[..n_slots], &[], &[]],
+                groups: [SCENE_SLOTS, lit_slots, &SLOTS[..n_slots], &[]],
             })
         };
+        let by_plate = |[complete, completing]: [_; 2]| {
+            [
+                compute(complete, &[], N_RECEIVER_SLOTS),
+                compute(completing, LIT_SLOTS, N_RECEIVER_SLOTS),
+            ]
+        };
         Self {
-            of_subjects: SUBJECTS.map(of_subject),
+            receiver: by_plate(["cs_receiver", "cs_receiver_completing"]),
+            intensities: by_plate(["cs_intensities", "cs_intensities_completing"]),
+            toy: compute("cs_toy", &[], SLOTS.len()),
         }
     }
 
@@ -164,7 +189,7 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
-        step: &FitStep,
+        (task, step): (&Task, &FitStep),
         targets: &Targets,
     ) {
         let gbuffer = inputs.gbuffer;
@@ -182,12 +207,20 @@ impl Pass {
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
         ];
-        let subject = step.subject as usize;
-        let (compute, (_, n_slots)) = (&self.of_subjects[subject], SUBJECTS[subject]);
-        let groups = [
+        let by_plate = usize::from(task.completes_plate);
+        let (compute, n_slots) = match task.subject {
+            Subject::Receiver => (&self.receiver[by_plate], N_RECEIVER_SLOTS),
+            Subject::Intensities => (&self.intensities[by_plate], N_RECEIVER_SLOTS),
+            Subject::Toy => (&self.toy, SLOTS.len()),
+        };
+        let mut groups = vec![
             recorder.bind(compute, GROUP_SCENE, &inputs.scene.resources()),
-            recorder.bind_with(compute, GROUP_PASS, step, &resources[..n_slots]),
+            recorder.bind_with(compute, GROUP_FIT, step, &resources[..n_slots]),
         ];
+        if task.completes_plate {
+            let lit = [inputs.grids.into(), inputs.lit_cells.into()];
+            groups.push(recorder.bind(compute, GROUP_PASS, &lit));
+        }
         let workgroups = [step.n_rows, 1, 1];
         let n_sampled = n_pixels(inputs.plate.size_px() / step.stride_px.max(1));
         recorder.compute_over(compute, &groups, workgroups, n_sampled);

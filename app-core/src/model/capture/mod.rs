@@ -7,7 +7,6 @@ pub(crate) mod pool;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::estimate::Fineness;
 use crate::model::capture::fit::Task;
 use crate::model::capture::observed::Observed;
 use crate::model::capture::order::Step;
@@ -88,7 +87,7 @@ impl CapturePath<'_> {
             }
             Step::Lit => passes.lit.encode(recorder, &self.lit_inputs()),
             Step::FillLit => self.fill(recorder, &self.state.lit),
-            Step::Estimate(fineness) => self.estimate(recorder, fineness),
+            Step::Estimate => self.estimate(recorder),
             Step::Fit(task) => self.fit(recorder, task),
             Step::Residual { is_first } => {
                 let inputs = self.residual_inputs(is_first);
@@ -126,7 +125,7 @@ impl CapturePath<'_> {
             plates: self.pictures.plates,
             is_same_view: self.pictures.is_same_view,
         };
-        // If `estimate` completes the plate, it reads this photographed one.
+        // If `estimate` completes the plate, it reads this photographed one, and so do the fits before it.
         let is_completed = estimate::is_needed(&self.region.plan);
         let photographed = self.captured.by_pass.estimate.photographed.as_ref();
         let target = photographed
@@ -135,7 +134,7 @@ impl CapturePath<'_> {
         self.plate.encode(recorder, &inputs, target);
     }
 
-    fn estimate(&self, recorder: &mut Recorder<'_>, fineness: Fineness) {
+    fn estimate(&self, recorder: &mut Recorder<'_>) {
         let Some(photographed) = &self.captured.by_pass.estimate.photographed else {
             return;
         };
@@ -148,15 +147,19 @@ impl CapturePath<'_> {
         };
         self.passes
             .estimate
-            .encode(recorder, &inputs, fineness, &self.captured.plate.view);
+            .encode(recorder, &inputs, &self.captured.plate.view);
     }
 
     fn fit(&self, recorder: &mut Recorder<'_>, task: Task) {
         let (captured, targets) = (self.captured, &self.captured.by_pass.fit);
+        let photographed = captured.by_pass.estimate.photographed.as_ref();
+        let photographed = photographed.filter(|_| task.completes_plate);
         let inputs = fit::Inputs {
             scene: self.scene(),
+            grids: &self.state.grids,
+            lit_cells: &self.state.lit.cells,
             observed: self.observed(),
-            plate: &captured.plate.view,
+            plate: &photographed.unwrap_or(&captured.plate).view,
             gbuffer: &captured.by_pass.gbuffer,
         };
         let to_solve = fit_solve::Inputs {
@@ -165,7 +168,7 @@ impl CapturePath<'_> {
         };
         for index in 0..task.n_steps {
             let step = task.step(&self.region.plan, index, self.pictures.exposure_ratio);
-            self.passes.fit.encode(recorder, &inputs, &step, targets);
+            self.passes.fit.encode(recorder, &inputs, (&task, &step), targets);
             self.passes
                 .fit_solve
                 .encode(recorder, &to_solve, &step, self.state);

@@ -1,6 +1,6 @@
 //! The order of the capture path's steps: the same list is planned and run.
 
-use crate::model::capture::estimate::{self, Fineness};
+use crate::model::capture::estimate;
 use crate::model::capture::fit::{Subject, Task};
 use crate::model::capture::{detail, lit, withhold};
 use crate::model::lighting;
@@ -25,7 +25,7 @@ pub(crate) enum Step {
     Withhold,
     Lit,
     FillLit,
-    Estimate(Fineness),
+    Estimate,
     Fit(Task),
     Residual {
         is_first: bool,
@@ -51,7 +51,7 @@ impl Step {
             Self::Withhold => &["withhold"],
             Self::Lit => &["lit"],
             Self::FillLit | Self::FillResidual => &["fill"],
-            Self::Estimate(_) => &["estimate"],
+            Self::Estimate => &["estimate"],
             Self::Fit(_) => &["fit", "fit_solve"],
             Self::Residual { .. } => &["residual"],
             Self::Detail => &["detail"],
@@ -76,16 +76,11 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
     let mut steps = Vec::new();
     match change {
         Change::Pose => return steps,
-        Change::Picture => steps.push(fit_intensities(plan)),
+        Change::Picture => steps.push(fit_intensities(plan, false)),
         Change::View => {
             add_view(&mut steps, plan);
             add_if(&mut steps, withhold::is_needed(plan), [Step::Withhold]);
-            add_if(
-                &mut steps,
-                estimate::is_needed(plan),
-                [Step::Estimate(Fineness::Smooth)],
-            );
-            steps.push(fit_intensities(plan));
+            steps.push(fit_intensities(plan, estimate::is_needed(plan)));
             add_light(&mut steps, plan, false);
             add_rest_of_fits(&mut steps, plan, false);
         }
@@ -124,33 +119,29 @@ fn add_view(steps: &mut Vec<Step>, plan: &Plan) {
     steps.push(Step::Plate);
 }
 
-/// Fits each receiver in turn, the first as prior of the others; before it, a smooth estimate where plates are
+/// Fits each receiver in turn, the first as prior of the others; before it, what they look like in the light where plates are
 /// missing.
 fn add_light(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
     add_if(steps, lit::is_needed(plan), [Step::Lit, Step::FillLit]);
-    add_if(
-        steps,
-        estimate::is_needed(plan),
-        [Step::Estimate(Fineness::Smooth)],
-    );
     let fit = |receiver| fit(plan, Subject::Receiver, receiver, is_first);
     steps.extend((0..plan.n_receivers).map(fit));
 }
 
-/// Steps that need the receivers' fits: the estimate in full, and the light on the toy.
+/// Steps that need the receivers' fits: the estimate, and the light on the toy.
 fn add_rest_of_fits(steps: &mut Vec<Step>, plan: &Plan, is_first: bool) {
-    add_if(steps, estimate::is_needed(plan), [Step::Estimate(Fineness::Full)]);
+    add_if(steps, estimate::is_needed(plan), [Step::Estimate]);
     steps.push(fit(plan, Subject::Toy, 0, is_first));
 }
 
 /// Fits exposure and intensities of this picture. A jump of the exposure makes every pixel an outlier, so that
 /// weights start anew.
-fn fit_intensities(plan: &Plan) -> Step {
+fn fit_intensities(plan: &Plan, completes_plate: bool) -> Step {
     Step::Fit(Task {
         subject: Subject::Intensities,
         receiver: 0,
         n_steps: plan.n_intensity_steps,
         is_refinement: false,
+        completes_plate,
     })
 }
 
@@ -164,6 +155,7 @@ fn fit(plan: &Plan, subject: Subject, receiver: u32, is_first: bool) -> Step {
             plan.n_refine_steps
         },
         is_refinement: !is_first,
+        completes_plate: subject == Subject::Receiver && estimate::is_needed(plan),
     })
 }
 
