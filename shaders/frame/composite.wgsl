@@ -3,6 +3,7 @@
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
 //   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
 //                                     passes; also where the frame shows what the model cannot explain
+//   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r): no plate is read there
 //
 // Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes:
 // linear
@@ -86,6 +87,11 @@ fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
+// How far a pooled residual shows something unknown.
+fn outlier(pooled: vec3f) -> f32 {
+  return smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
+}
+
 // Whether a residual may be a shadow: all channels are darker, and none much more than the others.
 fn shadow_likeness(residual: vec3f) -> f32 {
   let least = -largest(residual);
@@ -136,7 +142,7 @@ fn receiver(position: vec4f, evident: vec4f, has_moved: bool, change: ptr<functi
   let most = largest(abs(after - before));
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
-  let is_outlier = smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
+  let is_outlier = outlier(pooled);
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
   let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
   let seen = own_share(evident, has_moved, deviation);
@@ -220,6 +226,12 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
 }
 
+// The plate that a pixel shows under a model and the pooled residual, no brighter than white.
+fn shown_plate(f: vec3f, model: vec3f) -> vec3f {
+  let lit = fit.gain.rgb * model;
+  return select(vec3f(1.0), min(f / lit, vec3f(1.0)), lit > vec3f(0.0));
+}
+
 // Clear of the toy in either pose, and of its shadows: there the ambient light alone changes.
 @fragment
 fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -228,13 +240,17 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let uv = at / globals.region_size_px;
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
+  if a_before == a_after { return vec4f(f, 1.0); }
   let point = receiver_point(at);
-  if a_before == a_after || !is_hit(point) { return vec4f(f, 1.0); }
+  if !is_hit(point) { return vec4f(f, 1.0); }
   let models = receiver_models(point, vec2f(a_before, a_after), vec4f(1.0), vec4f(1.0));
-  let ratio = select(vec3f(1.0), models[1] / models[0], models[0] > vec3f(0.0));
+  let pooled = cell_at(point).rgb;
+  let b = shown_plate(f, models[0] + pooled);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
-  let shown = select(ratio, mix(ratio, vec3f(1.0), clipped), f > vec3f(BRIGHTEST_USABLE));
-  return vec4f(f * mix(vec3f(1.0), shown, inside_border(at)), 1.0);
+  let change = shown_model(b, clipped, models[1]) - shown_model(b, clipped, models[0]);
+  let is_object = outlier(pooled) * (1.0 - shadow_likeness(pooled));
+  let relit = f + (1.0 - is_object) * fit.gain.rgb * b * change;
+  return vec4f(max(mix(f, relit, inside_border(at)), vec3f(0.0)), 1.0);
 }
 
 // Clear of the toy in either pose.

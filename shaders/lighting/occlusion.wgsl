@@ -85,13 +85,13 @@ fn moved_clip(instance: u32, in_plane: vec3f) -> vec4f {
   return clip + vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
 }
 
-// Below 1 for a number of points, one of which is half; above 0, where there are any.
-fn depth_above(n_points: f32) -> f32 {
-  return (f32(light_points.n_before) + n_points) / f32(MOST_POINTS + 1u);
+// Depth of a rank among all lights' points, from 1 on, in (0, 1). Ranks that are no whole number lie between points.
+fn depth_of_rank(rank: f32) -> f32 {
+  return (f32(light_points.n_before) + rank) / f32(MOST_POINTS + 1u);
 }
 
 fn depth_of(instance: u32) -> f32 {
-  return depth_above(f32(instance % light_points.n_points + 1u));
+  return depth_of_rank(f32(instance % light_points.n_points + 1u));
 }
 
 @vertex
@@ -121,7 +121,8 @@ fn vs_once(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32
   let receiver = instance / light_points.n_points;
   let clip =
     clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane_of(instance, in_anchor)));
-  return vec4f(clip.xy, clip.w * depth_above(f32(light_points.n_points) + 0.5), clip.w);
+  // Whole and quarter ranks are no halves of the 65,535 steps of depth, which might be rounded either way.
+  return vec4f(clip.xy, clip.w * depth_of_rank(f32(light_points.n_points) + 0.25), clip.w);
 }
 
 // All points of a light, in a pixel that no silhouette of a shadow comes near.

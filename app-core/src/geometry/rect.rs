@@ -41,21 +41,6 @@ impl PixelRect {
                 .all()
     }
 
-    /// Rectangles that fill what it leaves of a picture that holds it: above, below, to its left, to its right.
-    pub fn around(&self, image_px: UVec2) -> impl Iterator<Item = Self> + use<> {
-        let (origin, end) = (self.origin_px, self.origin_px + self.size_px);
-        let parts = [
-            [UVec2::ZERO, UVec2::new(image_px.x, origin.y)],
-            [UVec2::new(0, end.y), image_px],
-            [UVec2::new(0, origin.y), UVec2::new(origin.x, end.y)],
-            [UVec2::new(end.x, origin.y), UVec2::new(image_px.x, end.y)],
-        ];
-        parts.into_iter().filter_map(|[origin_px, end_px]| {
-            let size_px = end_px.saturating_sub(origin_px);
-            (size_px.min_element() > 0).then_some(Self { origin_px, size_px })
-        })
-    }
-
     /// A rectangle of `size_px` within the image that holds this one, which is no larger, as near its middle as can be.
     #[must_use]
     pub fn within(&self, size_px: UVec2, image_px: UVec2) -> Self {

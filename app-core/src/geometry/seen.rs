@@ -1,19 +1,22 @@
-//! Where a shape may be seen, or looked up from beside it.
+//! Where a shape may be seen, or its shadow fall, or either be looked up from beside it.
 
 use glam::{Vec2, Vec3};
 
 use crate::geometry::silhouette::{Projection, landings};
 use crate::geometry::tiles::Tiles;
 
-/// Marks the tiles within `reach_px`, along either axis, of what a camera may see of a shape: all of them where that has no
-/// bounds. `corners` are those of its triangles.
+/// Marks the tiles within `reach_px`, along either axis, of where a shape may be seen, or its shadow fall: all of them where that
+/// has no bounds. `corners` are those of its triangles.
 pub fn mark_seen(
     tiles: &mut Tiles,
     (positions, corners): (&[Vec3], &[u32]),
-    camera: &dyn Projection,
+    projection: &dyn Projection,
     reach_px: f32,
 ) {
-    let Some(landings) = landings(positions, corners, camera) else {
+    if corners.is_empty() {
+        return;
+    }
+    let Some(landings) = landings(positions, corners, projection) else {
         return tiles.mark_all();
     };
     let land = |corner: u32| landings.get(corner as usize);

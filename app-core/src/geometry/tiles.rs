@@ -41,6 +41,7 @@ impl Tiles {
 
     /// Marks those as well that another marks, which is of the same size.
     pub fn join(&mut self, other: &Self) {
+        debug_assert_eq!(self.is_marked.len(), other.is_marked.len());
         for (is_marked, of_other) in self.is_marked.iter_mut().zip(&other.is_marked) {
             *is_marked |= of_other;
         }
@@ -49,6 +50,7 @@ impl Tiles {
     /// Those alone that another of the same size does not mark.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {
+        debug_assert_eq!(self.is_marked.len(), other.is_marked.len());
         let pairs = self.is_marked.iter().zip(&other.is_marked);
         Self {
             is_marked: pairs

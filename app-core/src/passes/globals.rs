@@ -67,7 +67,7 @@ pub(crate) struct GlobalsOnDevice<'a> {
 }
 
 impl Globals {
-    /// How the camera sees what is drawn in the toy box.
+    /// How the camera sees what is drawn in a target of the toy box.
     pub(crate) fn by_camera(&self) -> ByCamera {
         let receivers = self.receivers.iter().take(self.n_receivers as usize);
         ByCamera {

@@ -5,9 +5,10 @@ use app_core::frame::Path;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::Preset;
+use glam::{DVec2, DVec3};
 
 use crate::cores::core_on;
-use crate::photo::photograph;
+use crate::photo::{Photo, photograph};
 use crate::run::{input, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
@@ -70,4 +71,67 @@ fn injected_visibility_takes_the_place_of_the_devices_own() {
             "{preset}: an injection stayed"
         );
     }
+}
+
+/// Where no shadow falls `composite` reads no visibility. Tiles that an injected map says to hide something are composed as all
+/// others: so they look when they are not.
+#[test]
+fn clear_of_shadows_all_is_composed_as_elsewhere() {
+    // What rounds to the code of 1.
+    let hides_nothing = |map: &FloatMap| FloatMap {
+        texels: map
+            .texels
+            .iter()
+            .map(|texel| texel.map(|v| v.min(0.999)))
+            .collect(),
+        ..map.clone()
+    };
+    let mut n_apart = 0;
+    for setup in SETUPS {
+        let stand = Stand::new(Setup {
+            image_px: 2 * setup.image_px + 1,
+            ..setup
+        });
+        // Something lies there.
+        let photo = Photo {
+            unmodelled: |point| {
+                let is_there = point.in_plane.distance(DVec2::new(0.1, 0.08)) < 0.03;
+                if is_there {
+                    DVec3::new(0.4, 0.1, 0.0)
+                } else {
+                    DVec3::ZERO
+                }
+            },
+            ..Photo::plain(setup.lights.len())
+        };
+        let (plate, image) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
+        let mut core = core_on(scene(&stand, &plate), Preset::Balanced).unwrap();
+        let mut picture = |maps: Option<&InjectedVisibility>| {
+            if let Some(maps) = maps {
+                core.inject_visibility(maps).unwrap();
+            }
+            core.frame(&input(&stand, &image)).unwrap();
+            let own =
+                [Map::PhysicalVisibility, Map::Visibility].map(|map| core.read_map(map).unwrap().unwrap());
+            (core.read_picture().unwrap(), own)
+        };
+        let (before, [physical, shown]) = picture(None);
+        let injected = |of: &dyn Fn(&FloatMap) -> FloatMap| InjectedVisibility {
+            physical: Some(of(&physical)),
+            shown: Some(of(&shown)),
+        };
+        let (same, _) = picture(Some(&injected(&FloatMap::clone)));
+        assert!(
+            same == before,
+            "{}: a shadow falls where none is looked for",
+            setup.name
+        );
+        let (all, maps) = picture(Some(&injected(&hides_nothing)));
+        assert!(maps == [physical, shown], "{}: other maps", setup.name);
+        let codes = all.rgba8.iter().zip(&before.rgba8);
+        let most = codes.clone().map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(most <= Some(1), "{}: {most:?} codes apart", setup.name);
+        n_apart += codes.filter(|(a, b)| a != b).count();
+    }
+    assert!(n_apart > 0, "no light changed clear of shadows");
 }

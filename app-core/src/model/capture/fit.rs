@@ -25,6 +25,8 @@ pub(crate) const FIT_STEP: Part = part!(
     structs: [FitStep],
     constants: [SUBJECT_RECEIVER, SUBJECT_TOY, SUBJECT_INTENSITIES],
 );
+/// Sums of normal equations.
+const FIT_SUMS: Part = part!("common/fit_sums");
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
@@ -38,6 +40,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &BETWEEN_CELLS,
     &CELLS,
     &COMPLETED,
+    &FIT_SUMS,
     &part!("capture/fit"),
 ]);
 /// Grids and lit cells, of which a plate is completed.

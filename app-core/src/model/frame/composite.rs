@@ -18,7 +18,7 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::coverage::COVERED;
 use crate::model::frame::toy;
-use crate::model::lighting::{LightMaps, Lighting, Posed, SHADED_TILE_PX};
+use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
@@ -52,8 +52,9 @@ const SLOTS: &[Slot] = &[
     Slot::Filtered,
     Slot::Sampler,
 ];
-/// Groups of what is read where shadows fall, and near the toy.
+/// Group of what is read where shadows fall.
 const GROUP_SHADOW: usize = 2;
+/// Group of what is read near the toy.
 const GROUP_TOY: usize = 3;
 /// What is read where shadows fall.
 const SHADOW_SLOTS: &[Slot] = &[
@@ -159,7 +160,7 @@ impl Pass {
         let drawing = Drawing {
             has_detail: u32::from(inputs.detail.is_some()),
         };
-        let shaded = recorder.bind_with(&self.beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
+        let shadowed = recorder.bind_with(&self.beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
         let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
         let target = &targets.picture.view;
         let parts = inputs.parts(target.size_px());
@@ -167,9 +168,9 @@ impl Pass {
         render.begin(&self.open, &open);
         parts.open.iter().for_each(|part| fill(&mut render, part));
         let n = |parts: &[PixelRect]| -> u64 { parts.iter().map(|part| n_pixels(part.size_px)).sum() };
-        render.narrow(n(&parts.shaded) + n(&parts.near));
-        render.begin(&self.beside, &[shaded]);
-        parts.shaded.iter().for_each(|part| fill(&mut render, part));
+        render.narrow(n(&parts.shadowed) + n(&parts.near));
+        render.begin(&self.beside, &[shadowed]);
+        parts.shadowed.iter().for_each(|part| fill(&mut render, part));
         render.narrow(n(&parts.near));
         render.begin(near_toy, &[of_toy]);
         parts.near.iter().for_each(|part| fill(&mut render, part));
@@ -186,7 +187,7 @@ struct Parts {
     /// Clear of the toy and of its shadows.
     open: Vec<PixelRect>,
     /// Where shadows may fall.
-    shaded: Vec<PixelRect>,
+    shadowed: Vec<PixelRect>,
     /// Near the toy in either pose.
     near: Vec<PixelRect>,
 }
@@ -229,33 +230,49 @@ impl<'a> Inputs<'a> {
     }
 
     fn parts(&self, size_px: UVec2) -> Parts {
-        let mut near = Tiles::over(size_px, SHADED_TILE_PX);
-        let mut shaded = near.clone();
-        let globals = self.region.globals_on_device();
+        let mut near = Tiles::over(size_px, TILE_PX);
+        let mut shadowed = near.clone();
         if self.region.plan.is_shadow_withheld {
             // The validity then tells of shadows, too.
             near.mark_all();
         } else {
-            let camera = ByCamera {
-                origin_px: Vec2::ZERO,
-                ..globals.uniform.by_camera()
-            };
-            let toy = self.mesh;
-            for (pose, maps) in [(&toy.physical, self.physical), (&toy.shown, self.shown)] {
-                toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
-                let posed = Posed { globals, toy, pose };
-                self.lighting.mark_shadows(&mut shaded, (posed, maps));
-            }
+            self.mark_near(&mut near);
         }
-        if self.detail.is_some() {
-            shaded.mark_all();
+        if self.changes_everywhere() {
+            shadowed.mark_all();
+        } else {
+            self.mark_shadowed(&mut shadowed);
         }
-        let shaded_alone = shaded.without(&near).rects(true);
-        shaded.join(&near);
+        let shadowed_alone = shadowed.without(&near).rects(true);
+        shadowed.join(&near);
         Parts {
-            open: shaded.rects(false),
-            shaded: shaded_alone,
+            open: shadowed.rects(false),
+            shadowed: shadowed_alone,
             near: near.rects(true),
+        }
+    }
+
+    /// Whether each pixel has its own residual, or there is ambient light alone, whose change may be as large as a shadow.
+    fn changes_everywhere(&self) -> bool {
+        self.detail.is_some() || self.region.plan.n_lights == 0
+    }
+
+    fn mark_near(&self, tiles: &mut Tiles) {
+        let camera = ByCamera {
+            origin_px: Vec2::ZERO,
+            ..self.region.uniform.by_camera()
+        };
+        for pose in [&self.mesh.physical, &self.mesh.shown] {
+            self.mesh
+                .mark_seen(tiles, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
+        }
+    }
+
+    fn mark_shadowed(&self, tiles: &mut Tiles) {
+        let (globals, toy) = (self.region.globals_on_device(), self.mesh);
+        for (pose, maps) in [(&toy.physical, self.physical), (&toy.shown, self.shown)] {
+            let posed = Posed { globals, toy, pose };
+            self.lighting.mark_shadows(tiles, (posed, maps));
         }
     }
 }

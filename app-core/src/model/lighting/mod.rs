@@ -9,7 +9,7 @@ use crate::geometry::tiles::Tiles;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
-use crate::model::lighting::occlusion::{LightPointsBuffer, PartOfMap, Tested};
+use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
 use crate::passes::counting::InstanceOrder;
 use crate::passes::globals::GlobalsOnDevice;
@@ -47,8 +47,8 @@ impl Step {
     }
 }
 
-/// Pixels along each side of the tiles by which shadows, and the toy, are told from what is clear of them.
-pub(crate) const SHADED_TILE_PX: u32 = 16;
+/// Pixels along each side of the tiles in which shadows, and the toy, are looked for.
+pub(crate) const TILE_PX: u32 = 16;
 /// Pixels beyond a shadow's triangles that it may reach by rounding.
 const AROUND_SHADOW_PX: f32 = 1.0;
 
@@ -63,15 +63,15 @@ pub(crate) struct LightMaps {
 /// Visibility of the lights from outside.
 pub(crate) struct InjectedLights {
     visibility: Texture,
-    /// In which any light is hidden.
-    shaded: Tiles,
+    /// Tiles in which any light is hidden.
+    shadowed: Tiles,
 }
 
 impl InjectedLights {
     /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
     pub(crate) fn new(gpu: &Gpu, (map, n_lights): (&FloatMap, usize), like: &Texture) -> Self {
         let size_px = UVec2::new(map.width, map.height);
-        let mut shaded = Tiles::over(size_px, SHADED_TILE_PX);
+        let mut shadowed = Tiles::over(size_px, TILE_PX);
         let rows = (0..map.height).flat_map(|y| (0..map.width).map(move |x| UVec2::new(x, y)));
         for (at, visibilities) in rows.zip(&map.texels) {
             if visibilities
@@ -79,12 +79,12 @@ impl InjectedLights {
                 .take(n_lights)
                 .any(|visibility| *visibility < 1.0)
             {
-                shaded.mark_box([at.as_vec2(), (at + 1).as_vec2()]);
+                shadowed.mark_box([at.as_vec2(), (at + 1).as_vec2()]);
             }
         }
         Self {
             visibility: upload(gpu, map, like),
-            shaded,
+            shadowed,
         }
     }
 }
@@ -150,10 +150,10 @@ impl Lighting {
         }
     }
 
-    /// Marks the tiles of the region, of `SHADED_TILE_PX`, in which a toy in a pose may hide any part of any light.
+    /// Marks the tiles of the region, of `TILE_PX`, in which a toy in a pose may hide any part of any light.
     pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, (posed, maps): (Posed<'_>, &LightMaps)) {
         if let Some(injected) = &maps.injected {
-            tiles.join(&injected.shaded);
+            tiles.join(&injected.shadowed);
         }
         for light in &self.lights {
             for (receiver, points) in light.by_receiver().enumerate() {
@@ -186,7 +186,10 @@ impl Lighting {
                     .lights
                     .iter()
                     .enumerate()
-                    .map(|(index, light)| (light, Some(Side::Light(index))))
+                    .map(|(index, points)| Light {
+                        points,
+                        side: Some(Side::Light(index)),
+                    })
                     .collect();
                 let onto = (&maps.visibility.lights, &self.orders.lights);
                 self.encode_visibility(recorder, passes, (posed, self.casters.light), (&lights, onto));
@@ -196,7 +199,10 @@ impl Lighting {
             }
             Step::Ambient => {
                 let onto = (&maps.visibility.ambient, &self.orders.ambient);
-                let lights = [(&self.ambient, None)];
+                let lights = [Light {
+                    points: &self.ambient,
+                    side: None,
+                }];
                 self.encode_visibility(recorder, passes, (posed, self.casters.ambient), (&lights, onto));
             }
         }
@@ -207,7 +213,7 @@ impl Lighting {
         recorder: &mut Recorder<'_>,
         passes: &Passes,
         (posed, caster): (Posed<'_>, Detail),
-        (lights, onto): (&[Tested<'_>], (&Texture, &InstanceOrder)),
+        (lights, onto): (&[Light<'_>], (&Texture, &InstanceOrder)),
     ) {
         let inputs = occlusion::Inputs {
             globals: posed.globals,

@@ -28,7 +28,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 ]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Maximum number of light points of one pass.
+/// Maximum number of points of one light.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
 /// Maximum number of points of all lights, which a map is drawn from in one pass.
 #[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
@@ -91,7 +91,7 @@ impl PartOfMap {
         }
     }
 
-    /// Most that the points of the lights before it in its map may be.
+    /// Number of points that the lights before it in the map may have.
     #[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
     const fn n_before(&self) -> u32 {
         (MAX_LIGHT_POINTS * self.channel) as u32
@@ -250,8 +250,13 @@ pub(crate) struct Inputs<'a> {
     pub(crate) caster: Detail,
 }
 
-/// A light whose occlusion is tested, and which one it is; none of what comes from all sides.
-pub(crate) type Tested<'a> = (&'a LightPointsBuffer, Option<Side>);
+/// A light that is drawn from.
+#[derive(Clone, Copy)]
+pub(crate) struct Light<'a> {
+    pub(crate) points: &'a LightPointsBuffer,
+    /// Which one it is; none of what comes from all sides.
+    pub(crate) side: Option<Side>,
+}
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -266,33 +271,33 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
-        lights: &[Tested<'_>],
+        lights: &[Light<'_>],
         (map, order): (&Texture, &InstanceOrder),
     ) {
         let Some((_, draws)) = self.of_formats.iter().find(|(format, _)| *format == map.format()) else {
             return;
         };
         let cover = draws.cover.any();
-        let bound = |light: &LightPointsBuffer| {
+        let bound = |points: &LightPointsBuffer| {
             [
                 recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
-                recorder.bind(cover, GROUP_PASS, &[(&light.uniform).into()]),
+                recorder.bind(cover, GROUP_PASS, &[(&points.uniform).into()]),
             ]
         };
         let corners = |light| inputs.corners(recorder.gpu, light, map.size_px());
         let drawn: Vec<_> = lights
             .iter()
-            .map(|light| (light.0, bound(light.0), corners(*light)))
+            .map(|light| (light.points, bound(light.points), corners(*light)))
             .collect();
         let mut render = order.render(recorder, SHADER.name, cleared_to(&map.view, Color::WHITE));
-        for (light, groups, corners) in drawn {
+        for (points, groups, corners) in drawn {
             for receiver in 0..inputs.n_receivers {
                 if inputs.n_receivers > 1 {
                     render.begin(&draws.route, &groups);
                     render.draw(0..3, receiver..receiver + 1);
                 }
-                let instances = receiver * light.n_points..(receiver + 1) * light.n_points;
-                let n_plain = inputs.n_whole_shadows(light, receiver);
+                let instances = receiver * points.n_points..(receiver + 1) * points.n_points;
+                let n_plain = inputs.n_whole_shadows(points, receiver);
                 let drawn = (&corners, inputs.pose);
                 draws
                     .cover
@@ -304,8 +309,8 @@ impl Pass {
 
 impl<'a> Inputs<'a> {
     /// Corners to draw for a light onto a map of so many texels.
-    fn corners(&self, gpu: &Gpu, (light, side): Tested<'_>, map_px: UVec2) -> Corners<'a> {
-        let points = light.in_anchor();
+    fn corners(&self, gpu: &Gpu, light: Light<'_>, map_px: UVec2) -> Corners<'a> {
+        let points = light.points.in_anchor();
         let projection = self.globals.uniform.onto_receiver(0, points);
         // Each receiver would have silhouettes of its own.
         let projection = projection.filter(|_| self.n_receivers == 1);
@@ -318,7 +323,7 @@ impl<'a> Inputs<'a> {
             saves: Saves::Triangles,
         });
         self.toy
-            .corners(gpu, (self.pose, side), (points, self.caster), target)
+            .corners(gpu, (self.pose, light.side), (points, self.caster), target)
     }
 
     /// Points of a light, from the first on, whose shadows of the toy on a receiver need not be cut off.
