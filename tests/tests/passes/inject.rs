@@ -5,10 +5,9 @@ use app_core::frame::Path;
 use app_core::internals::InjectedVisibility;
 use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::Preset;
-use glam::{DVec2, DVec3};
 
 use crate::cores::core_on;
-use crate::photo::{Photo, photograph};
+use crate::photo::photograph;
 use crate::run::{input, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
@@ -92,19 +91,7 @@ fn clear_of_shadows_all_is_composed_as_elsewhere() {
             image_px: 2 * setup.image_px + 1,
             ..setup
         });
-        // Something lies there.
-        let photo = Photo {
-            unmodelled: |point| {
-                let is_there = point.in_plane.distance(DVec2::new(0.1, 0.08)) < 0.03;
-                if is_there {
-                    DVec3::new(0.4, 0.1, 0.0)
-                } else {
-                    DVec3::ZERO
-                }
-            },
-            ..Photo::plain(setup.lights.len())
-        };
-        let (plate, image) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
+        let [plate, image] = photograph(&stand);
         let mut core = core_on(scene(&stand, &plate), Preset::Balanced).unwrap();
         let mut picture = |maps: Option<&InjectedVisibility>| {
             if let Some(maps) = maps {
