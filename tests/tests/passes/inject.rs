@@ -72,8 +72,8 @@ fn injected_visibility_takes_the_place_of_the_devices_own() {
     }
 }
 
-/// Where no shadow falls `composite` reads no visibility. Tiles that an injected map says to hide something are composed as all
-/// others: so they look when they are not.
+/// `composite` reads no visibility where it looks for no shadow. A map of its own visibilities, injected, would have it look where
+/// there is one all the same; and one that says a little is hidden everywhere has it look everywhere.
 #[test]
 fn clear_of_shadows_all_is_composed_as_elsewhere() {
     // What rounds to the code of 1.
