@@ -17,6 +17,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
 use crate::model::capture::{CapturePath, CaptureTargets};
+use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::frame::{FramePath, FrameTargets};
 use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
 use crate::model::plan::Plan;
@@ -176,6 +177,22 @@ impl Model {
     /// The region's picture.
     pub(crate) fn picture(&self) -> Picture<'_> {
         self.drawn.by_pass.composite.picture()
+    }
+
+    /// Looks for the toy and its shadows in the region, in the poses that are new.
+    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
+        if news.keeps_pose() {
+            return;
+        }
+        let seen = (&self.region, &self.lighting);
+        let known = self.drawn.physical_marks.take();
+        let physical = known
+            .filter(|_| news.change < Change::View)
+            .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
+        let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
+        let has_detail = self.captured.by_pass.detail.residual.is_some();
+        self.drawn.parts = RegionParts::new([&physical, &shown], has_detail);
+        self.drawn.physical_marks = Some(physical);
     }
 
     /// Encodes what of the frame path is due, and before it the capture steps that the change needs.

@@ -94,7 +94,7 @@ impl Stage {
         let globals = globals(&footprint.view, &plan.region, &self.layout()).with_toy_box(&plan.toy_box);
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let state = SceneState::new(&gpu, grids_over(&self.reached_rects), plan.n_lights, toy);
-        let model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
+        let mut model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
             frame: &frame.view,
@@ -109,6 +109,7 @@ impl Stage {
             change: Change::View,
             is_pose_new: true,
         };
+        model.look_for_toy(&self.toy, news);
         model.encode(&mut recorder, &self.toy, &pictures, news);
         #[allow(clippy::cast_precision_loss, reason = "at most 64")]
         let count = |n: usize| n as f64;

@@ -81,6 +81,14 @@ impl Method {
         }
     }
 
+    /// Looks for the toy in the picture, where the method goes by that.
+    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
+        match self {
+            Self::Model(model) => model.look_for_toy(toy, news),
+            Self::Baseline(_) => {}
+        }
+    }
+
     /// Encodes the frame path, and before it what the change asks for.
     pub(crate) fn encode(
         &self,

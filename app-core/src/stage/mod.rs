@@ -369,6 +369,8 @@ impl Stage {
             state.exposure = input.exposure;
             state.image = Some(input.image.clone());
         }
+        let news = News { change, is_pose_new };
+        state.method.look_for_toy(&self.toy, news);
         let Some(MethodState { method, .. }) = &self.state else {
             return;
         };
@@ -396,7 +398,6 @@ impl Stage {
             plate_views: &self.plates.views,
             is_same_view: footprint.choice.is_same_view,
         };
-        let news = News { change, is_pose_new };
         method.encode(recorder, &self.toy, &pictures, news);
         if news.keeps_pose() {
             report.skipped.push(LeftOut {

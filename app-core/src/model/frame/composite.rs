@@ -1,11 +1,8 @@
 //! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
-use glam::{UVec2, Vec2};
 use wgpu::StoreOp;
 
 use crate::geometry::rect::PixelRect;
-use crate::geometry::silhouette::ByCamera;
-use crate::geometry::tiles::Tiles;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
@@ -17,18 +14,17 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::coverage::COVERED;
+use crate::model::frame::region_parts::RegionParts;
 use crate::model::frame::toy;
-use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
+use crate::model::lighting::LightMaps;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
-use crate::model::region::Region;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
 use crate::passes::finished::Picture;
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
 use crate::passes::present::REGION_FORMAT;
-use crate::passes::toy_mesh::{Detail, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
@@ -66,9 +62,6 @@ const SHADOW_SLOTS: &[Slot] = &[
 ];
 /// What is read near a toy alone.
 const TOY_SLOTS: &[Slot] = &[Slot::Texture; 8];
-/// Farthest that the validity and what is drawn of a toy tell of it, in pixels beyond its triangles.
-const AROUND_TOY_PX: f32 = 10.0;
-
 shared_struct! {
     /// How the receivers were drawn.
     pub(crate) struct Drawing {
@@ -87,9 +80,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) region: &'a Region,
-    pub(crate) mesh: &'a ToyMesh,
-    pub(crate) lighting: &'a Lighting,
+    pub(crate) parts: &'a RegionParts,
     pub(crate) scene: Scene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) cells: &'a Buffer,
@@ -162,8 +153,7 @@ impl Pass {
         };
         let shadowed = recorder.bind_with(&self.beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
         let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
-        let target = &targets.picture.view;
-        let parts = inputs.parts(target.size_px());
+        let (target, parts) = (&targets.picture.view, inputs.parts);
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
         render.begin(&self.open, &open);
         parts.open.iter().for_each(|part| fill(&mut render, part));
@@ -180,16 +170,6 @@ impl Pass {
 fn fill(render: &mut Render<'_>, part: &PixelRect) {
     render.clip((part.origin_px, part.size_px));
     render.draw(0..3, 0..1);
-}
-
-/// Rectangles of the region.
-struct Parts {
-    /// Clear of the toy and of its shadows.
-    open: Vec<PixelRect>,
-    /// Where shadows may fall.
-    shadowed: Vec<PixelRect>,
-    /// Near the toy in either pose.
-    near: Vec<PixelRect>,
 }
 
 impl<'a> Inputs<'a> {
@@ -227,52 +207,5 @@ impl<'a> Inputs<'a> {
             self.moved_mask.into(),
             self.coverage.into(),
         ]
-    }
-
-    fn parts(&self, size_px: UVec2) -> Parts {
-        let mut near = Tiles::over(size_px, TILE_PX);
-        let mut shadowed = near.clone();
-        if self.region.plan.is_shadow_withheld {
-            // The validity then tells of shadows, too.
-            near.mark_all();
-        } else {
-            self.mark_near(&mut near);
-        }
-        if self.changes_everywhere() {
-            shadowed.mark_all();
-        } else {
-            self.mark_shadowed(&mut shadowed);
-        }
-        let shadowed_alone = shadowed.without(&near).rects(true);
-        shadowed.join(&near);
-        Parts {
-            open: shadowed.rects(false),
-            shadowed: shadowed_alone,
-            near: near.rects(true),
-        }
-    }
-
-    /// Whether each pixel has its own residual, or there is ambient light alone, whose change may be as large as a shadow.
-    fn changes_everywhere(&self) -> bool {
-        self.detail.is_some() || self.region.plan.n_lights == 0
-    }
-
-    fn mark_near(&self, tiles: &mut Tiles) {
-        let camera = ByCamera {
-            origin_px: Vec2::ZERO,
-            ..self.region.uniform.by_camera()
-        };
-        for pose in [&self.mesh.physical, &self.mesh.shown] {
-            self.mesh
-                .mark_seen(tiles, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
-        }
-    }
-
-    fn mark_shadowed(&self, tiles: &mut Tiles) {
-        let (globals, toy) = (self.region.globals_on_device(), self.mesh);
-        for (pose, maps) in [(&toy.physical, self.physical), (&toy.shown, self.shown)] {
-            let posed = Posed { globals, toy, pose };
-            self.lighting.mark_shadows(tiles, (posed, maps));
-        }
     }
 }

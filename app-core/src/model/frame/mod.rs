@@ -1,9 +1,12 @@
 //! The frame path: visibility of the shown pose, then the picture of the region.
 
+pub(crate) mod region_parts;
+
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::CaptureTargets;
+use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
@@ -60,6 +63,10 @@ pub(crate) fn order(plan: &Plan) -> Vec<Step> {
 pub(crate) struct FrameTargets {
     /// Visibility of the lights in the shown pose.
     pub(crate) light: LightMaps,
+    /// What the toy in the physical pose changes of the region, once it was looked for.
+    pub(crate) physical_marks: Option<Marks>,
+    /// As both poses part the region.
+    pub(crate) parts: RegionParts,
     pub(crate) by_pass: Targets,
 }
 
@@ -68,6 +75,8 @@ impl FrameTargets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
             light: LightMaps::new(gpu, plan),
+            physical_marks: None,
+            parts: RegionParts::all_near(plan.region.size_px),
             by_pass: Targets::new(gpu, plan),
         }
     }
@@ -140,9 +149,7 @@ impl FramePath<'_> {
     fn composite_inputs(&self) -> composite::Inputs<'_> {
         let (captured, drawn) = (self.captured, self.drawn);
         composite::Inputs {
-            region: self.region,
-            mesh: self.toy,
-            lighting: self.lighting.1,
+            parts: &drawn.parts,
             scene: self.scene(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,

@@ -1,0 +1,87 @@
+//! Parts of the region that `composite` draws by a shader each: near the toy, in a shadow, and open.
+
+use glam::{UVec2, Vec2};
+
+use crate::geometry::rect::PixelRect;
+use crate::geometry::silhouette::ByCamera;
+use crate::geometry::tiles::Tiles;
+use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
+use crate::model::region::Region;
+use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
+
+/// Farthest that the validity and what is drawn of a toy tell of it, in pixels beyond its triangles.
+const AROUND_TOY_PX: f32 = 10.0;
+
+/// What a toy in one pose changes.
+pub(crate) struct Marks {
+    /// Tiles near it.
+    near: Tiles,
+    /// Tiles in which it may hide any part of a light.
+    shadowed: Tiles,
+}
+
+impl Marks {
+    /// Of a pose, with the maps of its lights.
+    pub(crate) fn of(
+        (region, lighting): (&Region, &Lighting),
+        toy: &ToyMesh,
+        (pose, maps): (&PoseBuffers, &LightMaps),
+    ) -> Self {
+        let mut near = Tiles::over(region.plan.region.size_px, TILE_PX);
+        let mut shadowed = near.clone();
+        let globals = region.globals_on_device();
+        let camera = ByCamera {
+            origin_px: Vec2::ZERO,
+            ..globals.uniform.by_camera()
+        };
+        toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
+        if region.plan.is_shadow_withheld {
+            // The validity then tells of shadows, too.
+            near.mark_all();
+        }
+        lighting.mark_shadows(&mut shadowed, (Posed { globals, toy, pose }, maps));
+        if region.plan.n_lights == 0 {
+            // The ambient light's change may be as large as a shadow.
+            shadowed.mark_all();
+        }
+        Self { near, shadowed }
+    }
+}
+
+/// Rectangles that fill the region.
+pub(crate) struct RegionParts {
+    /// Clear of the toy and of its shadows in either pose.
+    pub(crate) open: Vec<PixelRect>,
+    /// Where shadows may fall.
+    pub(crate) shadowed: Vec<PixelRect>,
+    /// Near the toy.
+    pub(crate) near: Vec<PixelRect>,
+}
+
+impl RegionParts {
+    /// All of a region of `size_px` as near the toy.
+    pub(crate) fn all_near(size_px: UVec2) -> Self {
+        Self {
+            open: Vec::new(),
+            shadowed: Vec::new(),
+            near: Tiles::over(size_px, TILE_PX).rects(false),
+        }
+    }
+
+    /// Of both poses; where each pixel has its own residual none is open.
+    pub(crate) fn new([physical, shown]: [&Marks; 2], has_detail: bool) -> Self {
+        let (mut near, mut shadowed) = (physical.near.clone(), physical.shadowed.clone());
+        near.join(&shown.near);
+        shadowed.join(&shown.shadowed);
+        if has_detail {
+            shadowed.mark_all();
+        }
+        let shadowed_alone = shadowed.without(&near).rects(true);
+        shadowed.join(&near);
+        Self {
+            open: shadowed.rects(false),
+            shadowed: shadowed_alone,
+            near: near.rects(true),
+        }
+    }
+}
