@@ -4,18 +4,19 @@
 // turned surface; hidden points take the model's base colour under the fitted light, times the tint.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
-// Reads: both poses, materials, appearance and the light it was seen under, gbuffer, fit, depth maps from the lights,
-// tints. Writes: linear radiance, premultiplied, alpha the fraction of samples hit; where it differs from the
+// Reads: both poses, materials, frame, which of its pixels the toy's colours are from and the light these were seen
+// under, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, alpha the fraction of samples hit; where it differs from the
 // camera's pixel.
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
-@group(1) @binding(1) var appearance: texture_2d<f32>;
+@group(1) @binding(1) var frame: texture_2d<f32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
 @group(1) @binding(3) var appearance_base: texture_2d<f32>;
 @group(1) @binding(4) var appearance_received: texture_2d<f32>;
 @group(1) @binding(5) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(6) var<storage, read> tints: array<vec4f>;
+@group(1) @binding(7) var appearance_source: texture_2d<f32>;
 
 // Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
 override IS_COARSE: bool = false;
@@ -111,10 +112,12 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
     if surface > depth && !is_same_surface(surface, depth) { continue; }
     let seen_base = textureLoad(appearance_base, texel, 0);
     if is_other_material(seen_base.rgb, base) { continue; }
-    let color = textureLoad(appearance, texel, 0);
+    let number = number_at(textureLoad(appearance_source, texel, 0));
+    if number == NO_SOURCE { continue; }
+    let color = textureLoad(frame, region_texel(source_texel(vec2i(texel), number)), 0).rgb;
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    let weight = bilinear * color.a * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
-    sum += weight * vec4f(color.rgb, 1.0);
+    let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
+    sum += weight * vec4f(color, 1.0);
     up += weight * seen_base.a;
     received += weight * textureLoad(appearance_received, texel, 0);
   }

@@ -13,7 +13,6 @@ use crate::model::state::tints::TintMap;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
-use crate::stage::Stage;
 
 /// Measuring and measuring aids, behind the public face of [`Core`]. What reads waits for the device.
 pub trait Inspect {
@@ -108,10 +107,10 @@ impl Inspect for Core {
     }
 
     fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError> {
-        let Some(method) = self.stage.as_ref().and_then(Stage::method) else {
+        let Some(stage) = &self.stage else {
             return Ok(None);
         };
-        Ok(method.read_map(&self.gpu, map)?)
+        Ok(stage.read_map(&self.gpu, map)?)
     }
 
     fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError> {

@@ -5,6 +5,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4};
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::texture::Texture;
 use crate::model::Model;
+use crate::model::capture::appearance::source_texel;
 use crate::model::capture::validity::FAR_MARKS;
 use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
@@ -13,13 +14,18 @@ use crate::readback::{FloatMap, Map, read_texture};
 
 impl Model {
     /// Waits for the device and returns a map.
-    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+    pub(crate) fn read_map(
+        &self,
+        gpu: &Gpu,
+        frame: Option<&Texture>,
+        map: Map,
+    ) -> Result<Option<FloatMap>, GpuError> {
         let (captured, drawn) = (&self.captured, &self.drawn);
         let map = match map {
             Map::Validity => self.read_box(gpu, &captured.by_pass.validity.marks, FAR_MARKS),
             Map::GbufferBase => self.read_box(gpu, &captured.by_pass.gbuffer.base, [0.0; 4]),
             Map::GbufferReceived => self.read_box(gpu, &captured.by_pass.gbuffer.received, [0.0; 4]),
-            Map::Appearance => self.read_box(gpu, &captured.by_pass.appearance.color, [0.0; 4]),
+            Map::Appearance => self.read_appearance(gpu, frame),
             Map::PhysicalVisibility => read_texture(gpu, captured.light.visibility.lights.raw()),
             Map::PhysicalAmbient => read_texture(gpu, captured.light.visibility.ambient.raw()),
             Map::Visibility => read_texture(gpu, drawn.light.visibility.lights.raw()),
@@ -49,6 +55,26 @@ impl Model {
             width: size.x,
             height: size.y,
             texels,
+        })
+    }
+
+    /// The toy's own colours: those of the frame in the region that the source tells of.
+    fn read_appearance(&self, gpu: &Gpu, frame: Option<&Texture>) -> Result<FloatMap, GpuError> {
+        let source = self.read_box(gpu, &self.captured.by_pass.appearance.source, [1.0; 4])?;
+        let frame = read_texture(gpu, frame.and_then(Texture::raw))?;
+        let toy_box = self.region.plan.toy_box;
+        let [first, end] =
+            [toy_box.origin_px, toy_box.origin_px + toy_box.size_px].map(|corner| corner.as_ivec2());
+        let width = source.width.max(1);
+        let color = |(index, number): (u32, &[f32; 4])| {
+            let from = source_texel(UVec2::new(index % width, index / width).as_ivec2(), number[0])?;
+            let from = from.clamp(first, end - 1).as_uvec2();
+            frame.texels.get((from.y * width + from.x) as usize).copied()
+        };
+        let texels = (0..).zip(&source.texels);
+        Ok(FloatMap {
+            texels: texels.map(|texel| color(texel).unwrap_or_default()).collect(),
+            ..source
         })
     }
 

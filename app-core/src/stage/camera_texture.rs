@@ -157,6 +157,11 @@ impl CameraTexture {
         &texture.texture.view
     }
 
+    /// That part, once it was cut out.
+    pub(crate) fn cut_texture(&self) -> Option<&Texture> {
+        self.cut.as_ref().map(|cut| &cut.texture)
+    }
+
     fn whole(&self, gpu: &Gpu) -> &SrgbTexture {
         self.whole.get_or_init(|| SrgbTexture::new(gpu, self.size_px))
     }

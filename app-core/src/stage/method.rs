@@ -5,6 +5,7 @@ use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
 use crate::model::{self, Model};
 use crate::passes;
 use crate::passes::finished::Picture;
@@ -111,10 +112,15 @@ impl Method {
         }
     }
 
-    /// Waits for the device and returns a map, where this method makes it.
-    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+    /// Waits for the device and returns a map, where this method makes it; `frame` is the camera's picture in the work region.
+    pub(crate) fn read_map(
+        &self,
+        gpu: &Gpu,
+        frame: Option<&Texture>,
+        map: Map,
+    ) -> Result<Option<FloatMap>, GpuError> {
         match self {
-            Self::Model(model) => model.read_map(gpu, map),
+            Self::Model(model) => model.read_map(gpu, frame, map),
             Self::Baseline(baseline) => baseline.read_map(gpu, map),
         }
     }

@@ -24,7 +24,7 @@ use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::governor::Step;
-use crate::gpu::context::Gpu;
+use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::texture::Texture;
 use crate::passes::finished::{Finished, Laid};
@@ -35,6 +35,7 @@ use crate::plan::{Change, LeftOut, News};
 use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
+use crate::readback::{FloatMap, Map};
 use crate::scene::{Camera, Image, Scene};
 use crate::toy::{self, Caster, PosedMesh, Toy, ToyError};
 
@@ -230,6 +231,14 @@ impl Stage {
     /// The scene that is staged.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Waits for the device and returns a map, where the method makes it.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        let Some(method) = self.method() else {
+            return Ok(None);
+        };
+        method.read_map(gpu, self.camera.cut_texture(), map)
     }
 
     /// What was learned so far.

@@ -1,7 +1,7 @@
 //! `appearance` on scattered evidence of surfaces at several depths.
 
-use glam::{DVec4, UVec2};
-use harness::reference::appearance::{Seen, ToyPixel, clean};
+use glam::{DVec4, IVec2, UVec2};
+use harness::reference::appearance::{REACH_PX, Seen, ToyPixel, clean};
 use harness::reference::raster::Raster;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
@@ -76,38 +76,33 @@ fn errors(source: &str) -> Errors {
     );
 
     let shared = scene.shared(device);
-    let frame = [device.map(&scene.image)];
     let [validity, normal, received, base] =
         [&toy.validity, &toy.normal, &toy.received, &toy.base].map(|map| [device.map(map)]);
     let depth = device.depth(&toy.depth);
-    let of_view: Bindings<'_> = [
-        views(0, &frame),
-        views(2, &validity),
-        vec![(3, wgpu::BindingResource::TextureView(&depth))],
-        views(4, &normal),
-        views(5, &received),
-        views(6, &base),
+    let own: Bindings<'_> = [
+        views(0, &validity),
+        vec![(1, wgpu::BindingResource::TextureView(&depth))],
+        views(2, &normal),
+        views(3, &received),
+        views(4, &base),
     ]
     .concat();
-    let drawn = |fragment, output, own: &Bindings<'_>| {
+    let drawn = |output| {
         let draw = Draw {
             source,
-            fragment,
+            fragment: "fs_clean",
             constants: &[],
             output,
             size,
         };
-        device.draw(draw, [&buffers(0, &shared[..1]), own])
+        device.draw(draw, [&buffers(0, &shared[..1]), &own])
     };
-    // Of a new picture colours alone are made, of the frame and of what the view's source says.
-    let numbers = [device.map(&drawn("fs_clean", 3, &of_view))];
-    let of_picture: Bindings<'_> = [views(0, &frame), views(1, &numbers)].concat();
-    let color: Part = |pixel| pixel.color.extend(1.0);
-    let outputs: [(Raster<DVec4>, Part); 4] = [
-        (drawn("fs_clean", 0, &of_view), color),
-        (drawn("fs_clean", 1, &of_view), |pixel| pixel.received),
-        (drawn("fs_clean", 2, &of_view), |pixel| pixel.base),
-        (drawn("fs_recolor", 0, &of_picture), color),
+    let sources = drawn(2);
+    let colors = texels.map(|texel| color_from(&scene.image, texel, sources.at(texel).x));
+    let outputs: [(Raster<DVec4>, Part); 3] = [
+        (drawn(0), |pixel| pixel.received),
+        (drawn(1), |pixel| pixel.base),
+        (colors, |pixel| pixel.color.extend(1.0)),
     ];
     let mut pairs = Vec::new();
     for (actual, part) in outputs {
@@ -118,6 +113,18 @@ fn errors(source: &str) -> Errors {
         }));
     }
     Errors::between(pairs)
+}
+
+/// Colour of the pixel that a source tells of: the squares around a texel are numbered row by row, eight to a row.
+fn color_from(image: &Raster<DVec4>, texel: UVec2, source: f64) -> DVec4 {
+    let number = (0..255).find(|number| (255.0 * source - f64::from(*number)).abs() < 0.5);
+    let Some(number) = number else {
+        return DVec4::ZERO;
+    };
+    let offset = IVec2::new(number % 8, number / 8) - REACH_PX;
+    let last = image.size().as_ivec2() - 1;
+    let from = (texel.as_ivec2() + offset).clamp(IVec2::ZERO, last);
+    image.at(from.as_uvec2()).truncate().extend(1.0)
 }
 
 #[test]
@@ -136,9 +143,9 @@ fn a_fault_in_the_appearance_is_found() {
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
         ("far < least", "far <= least"),
         ("here > 0.0", "here > 9.0"),
-        ("i32(number) / SIDE_PX", "i32(number) % SIDE_PX"),
-        ("* SIDE_PX + offset.x", "* SIDE_PX - offset.x"),
-        ("round(255.0 *", "round(254.0 *"),
+        ("number >> 3u", "number >> 2u"),
+        ("<< 3u) + offset.x", "<< 3u) - offset.x"),
+        ("/ 255.0, 0.0", "/ 250.0, 0.0"),
         ("0.5 + 0.5 * normal.y", "0.5 - 0.5 * normal.y"),
         (
             "textureLoad(gbuffer_received, from_texel",

@@ -1,13 +1,14 @@
-//! `appearance`: the toy's own colours from the camera frame, carried a little past its outline.
+//! `appearance`: which of the camera's pixels the toy's own colours are from, also a little past its outline.
 
+use glam::IVec2;
 use wgpu::{Color, TextureFormat};
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared, cleared_to};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer::{self, BASE_FORMAT, RECEIVED_FORMAT};
 use crate::model::parts::HEMISPHERES;
@@ -15,62 +16,53 @@ use crate::model::plan::Plan;
 use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::{DEPTH, FULLSCREEN};
 
+/// Numbers of the pixels that colours are from.
+pub(crate) const SOURCE: Part = part!("common/source", constants: [REACH_PX]);
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &HEMISPHERES,
     &DEPTH,
     &FULLSCREEN,
-    &part!("capture/appearance", constants: [REACH_PX]),
+    &SOURCE,
+    &part!("capture/appearance"),
 ]);
-/// Frame and source, of which colours are made, then what is the same for all pictures of a view.
 const SLOTS: &[Slot] = &[
-    Slot::Texture,
-    Slot::Texture,
     Slot::Texture,
     Slot::Depth,
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
 ];
-/// Format of the colours: as the camera's, so that its codes come through unrounded.
-const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the numbers of the pixels that they are from, in codes.
 const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// Slots of what colours are made of.
-const N_COLOR_SLOTS: usize = 2;
-
 /// How far past the toy its colours are extrapolated.
 const REACH_PX: u32 = 3;
 
 pub(crate) struct Pass {
-    all: Draw,
-    colors: Draw,
+    draw: Draw,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) globals: &'a Buffer,
-    pub(crate) frame: &'a TextureView,
     pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
 /// Of the toy box's size.
 pub(crate) struct Targets {
-    pub(crate) color: Texture,
     /// Each light's cosine times its visibility at the pixels that a colour is from.
     pub(crate) received: Texture,
     /// Base colour of these pixels, and how far they face upwards.
     pub(crate) base: Texture,
     /// Which pixels they are.
-    source: Texture,
+    pub(crate) source: Texture,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         let target = |label, format| Texture::target(gpu, label, plan.toy_box.size_px, format);
         Self {
-            color: target("appearance", COLOR_FORMAT),
             received: target("appearance received", RECEIVED_FORMAT),
             base: target("appearance base", BASE_FORMAT),
             source: target("appearance source", SOURCE_FORMAT),
@@ -80,60 +72,42 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let draw = |fragment, slots, targets| {
-            let groups = [GLOBALS_GROUP, slots, &[], &[]];
-            gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, targets))
-        };
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let targets = [RECEIVED_FORMAT, BASE_FORMAT, SOURCE_FORMAT];
         Self {
-            all: draw(
-                "fs_clean",
-                SLOTS,
-                &[COLOR_FORMAT, RECEIVED_FORMAT, BASE_FORMAT, SOURCE_FORMAT],
-            ),
-            colors: draw("fs_recolor", &SLOTS[..N_COLOR_SLOTS], &[COLOR_FORMAT]),
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_clean", groups, &targets)),
         }
     }
 
-    /// Of a new view all, of a new picture of a known one the colours alone.
-    pub(crate) fn encode(
-        &self,
-        recorder: &mut Recorder<'_>,
-        inputs: &Inputs<'_>,
-        is_new_view: bool,
-        targets: &Targets,
-    ) {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let gbuffer = inputs.gbuffer;
-        let of_view = [
-            inputs.frame,
-            // Of a new view the source is written, not read: the validity stands in its place.
-            inputs.validity,
-            inputs.validity,
-            &gbuffer.depth.view,
-            &gbuffer.normal.view,
-            &gbuffer.received.view,
-            &gbuffer.base.view,
+        let resources = [
+            inputs.validity.into(),
+            (&gbuffer.depth.view).into(),
+            (&gbuffer.normal.view).into(),
+            (&gbuffer.received.view).into(),
+            (&gbuffer.base.view).into(),
         ];
-        let of_picture: [_; N_COLOR_SLOTS] = [inputs.frame, &targets.source.view];
-        let written = [&targets.color, &targets.received, &targets.base, &targets.source];
-        let globals = |draw| recorder.bind(draw, GROUP_SCENE, &[inputs.globals.into()]);
-        let bound =
-            |draw, textures: &[Resource<'_>]| [globals(draw), recorder.bind(draw, GROUP_PASS, textures)];
-        // Of a new view as well, so that the pictures of it that follow make no objects.
-        let of_colors = bound(&self.colors, &of_picture.map(Into::into));
-        let (draw, groups, n_written) = if is_new_view {
-            (
-                &self.all,
-                bound(&self.all, &of_view.map(Into::into)),
-                written.len(),
-            )
-        } else {
-            (&self.colors, of_colors, 1)
-        };
-        let [color, received, base, source] = written.map(|texture| &texture.view);
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(&self.draw, GROUP_PASS, &resources),
+        ];
         // Beyond what is drawn no colour has a source.
-        let no_source = cleared_to(source, Color::WHITE);
-        let written = [cleared(color), cleared(received), cleared(base), no_source].map(Some);
+        let written = [
+            cleared(&targets.received.view),
+            cleared(&targets.base.view),
+            cleared_to(&targets.source.view, Color::WHITE),
+        ];
         let near = inputs.plan.near_physical_toy(REACH_PX);
-        recorder.fullscreen_within(draw, &groups, &written[..n_written], near);
+        recorder.fullscreen_within(&self.draw, &groups, &written.map(Some), near);
     }
+}
+
+/// The pixel that a source tells the colour of a texel to be from; none where there is none.
+pub(crate) fn source_texel(texel: IVec2, source: f32) -> Option<IVec2> {
+    const N_IN_ROW: i32 = 8;
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
+    let number = (255.0 * source).round() as i32;
+    let offset = IVec2::new(number % N_IN_ROW, number / N_IN_ROW) - REACH_PX as i32;
+    (number < N_IN_ROW * N_IN_ROW).then_some(texel + offset)
 }

@@ -99,11 +99,9 @@ impl CapturePath<'_> {
                 .tint
                 .encode(recorder, &self.tint_inputs(), &self.state.tints),
             Step::TintFill => passes.tint_fill.encode(recorder, &self.state.tints),
-            Step::Appearance { is_new_view } => {
+            Step::Appearance => {
                 let inputs = self.appearance_inputs();
-                passes
-                    .appearance
-                    .encode(recorder, &inputs, is_new_view, &of.appearance);
+                passes.appearance.encode(recorder, &inputs, &of.appearance);
             }
         }
     }
@@ -249,7 +247,6 @@ impl CapturePath<'_> {
         appearance::Inputs {
             plan: &self.region.plan,
             globals: &self.region.globals,
-            frame: self.pictures.frame,
             validity: self.validity(),
             gbuffer: &self.captured.by_pass.gbuffer,
         }

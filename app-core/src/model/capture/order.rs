@@ -34,9 +34,7 @@ pub(crate) enum Step {
     Detail,
     Tint,
     TintFill,
-    Appearance {
-        is_new_view: bool,
-    },
+    Appearance,
 }
 
 impl Step {
@@ -57,7 +55,7 @@ impl Step {
             Self::Detail => &["detail"],
             Self::Tint => &["tint"],
             Self::TintFill => &["tint_fill"],
-            Self::Appearance { .. } => &["appearance"],
+            Self::Appearance => &["appearance"],
         }
     }
 
@@ -103,8 +101,8 @@ pub(crate) fn order(plan: &Plan, change: Change) -> Vec<Step> {
     let is_first = change >= Change::Scene;
     steps.extend([Step::Residual { is_first }, Step::FillResidual]);
     add_if(&mut steps, detail::is_needed(plan), [Step::Detail]);
-    let is_new_view = change >= Change::View;
-    steps.extend([Step::Tint, Step::TintFill, Step::Appearance { is_new_view }]);
+    steps.extend([Step::Tint, Step::TintFill]);
+    add_if(&mut steps, change >= Change::View, [Step::Appearance]);
     steps
 }
 

@@ -131,6 +131,7 @@ impl FramePath<'_> {
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
             scene: self.scene(),
             toy: self.toy,
+            frame: self.frame,
             appearance: &self.captured.by_pass.appearance,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
             self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],

@@ -9,7 +9,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::appearance;
+use crate::model::capture::appearance::{self, SOURCE};
 use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow::{
     self, GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
@@ -38,6 +38,7 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &TINT_CELL,
     &BETWEEN_TINTS,
     &BEHIND,
+    &SOURCE,
     &part!("frame/toy"),
 ]);
 /// The offset of a draw in pixels, then what it reads.
@@ -49,6 +50,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::uniform::<TintGrid>(),
     Slot::Read,
+    Slot::Texture,
 ];
 /// As a draw with materials, then the physical pose.
 const STREAMS: &[Stream] = &[
@@ -87,6 +89,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) camera_in_anchor: Vec3,
     pub(crate) scene: Scene<'a>,
     pub(crate) toy: &'a ToyMesh,
+    pub(crate) frame: &'a TextureView,
     pub(crate) appearance: &'a appearance::Targets,
     pub(crate) gbuffer_depth: &'a TextureView,
     /// Of the shown pose, and of the physical one.
@@ -218,15 +221,16 @@ impl Pass {
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 7] {
+    fn resources(&self) -> [Resource<'a>; 8] {
         [
             Resource::PerUse,
-            (&self.appearance.color.view).into(),
+            self.frame.into(),
             self.gbuffer_depth.into(),
             (&self.appearance.base.view).into(),
             (&self.appearance.received.view).into(),
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
+            (&self.appearance.source.view).into(),
         ]
     }
 }

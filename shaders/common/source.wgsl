@@ -1,0 +1,25 @@
+// Which pixel near a pixel of the toy box its colour is from.
+
+// Farthest that a pixel of one surface is looked for.
+const REACH_PX: i32 = 3;
+// Of a pixel that no colour is found for. Others are numbered row by row of the square around it, eight to a row.
+const NO_SOURCE: u32 = 255u;
+
+fn number_of(offset: vec2i) -> u32 {
+  return u32(((offset.y + REACH_PX) << 3u) + offset.x + REACH_PX);
+}
+
+fn source_of(number: u32) -> vec4f {
+  return vec4f(f32(number) / 255.0, 0.0, 0.0, 0.0);
+}
+
+// Texel of the source with a number.
+fn source_texel(texel: vec2i, number: u32) -> vec2i {
+  let place = vec2i(i32(number & 7u), i32(number >> 3u));
+  return clamped_to_box(texel + place - REACH_PX);
+}
+
+// Number that a texel of a source holds.
+fn number_at(source: vec4f) -> u32 {
+  return u32(round(255.0 * source.r));
+}
