@@ -2,11 +2,13 @@
 
 // Farthest that a pixel of one surface is looked for.
 const REACH_PX: i32 = 3;
-// Of a pixel that no colour is found for. Others are numbered row by row of the square around it, eight to a row.
+// Pixels around a pixel are numbered row by row, so many to a row.
+const N_IN_ROW: i32 = 8;
+// Of a pixel that no colour is found for.
 const NO_SOURCE: u32 = 255u;
 
 fn number_of(offset: vec2i) -> u32 {
-  return u32(((offset.y + REACH_PX) << 3u) + offset.x + REACH_PX);
+  return u32((offset.y + REACH_PX) * N_IN_ROW + offset.x + REACH_PX);
 }
 
 fn source_of(number: u32) -> vec4f {
@@ -15,7 +17,7 @@ fn source_of(number: u32) -> vec4f {
 
 // Texel of the source with a number.
 fn source_texel(texel: vec2i, number: u32) -> vec2i {
-  let place = vec2i(i32(number & 7u), i32(number >> 3u));
+  let place = vec2i(vec2u(number % u32(N_IN_ROW), number / u32(N_IN_ROW)));
   return clamped_to_box(texel + place - REACH_PX);
 }
 

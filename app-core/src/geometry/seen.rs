@@ -1,8 +1,8 @@
 //! Where a shape may be seen, or its shadow fall, or either be looked up from beside it.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
-use crate::geometry::silhouette::{Projection, landings};
+use crate::geometry::silhouette::{Projection, around, landings};
 use crate::geometry::tiles::Tiles;
 
 /// Marks the tiles within `reach_px`, along either axis, of where a shape may be seen, or its shadow fall: all of them where that
@@ -19,13 +19,10 @@ pub fn mark_seen(
     let Some(landings) = landings(positions, corners, projection) else {
         return tiles.mark_all();
     };
-    let land = |corner: u32| landings.get(corner as usize);
+    let land = |corner: u32| landings.get(corner as usize).copied();
     for [a, b, c] in corners.as_chunks().0 {
         if let (Some(a), Some(b), Some(c)) = (land(*a), land(*b), land(*c)) {
-            let reach = Vec2::splat(reach_px);
-            let low = [a, b, c].map(|one| one.at_px - one.within_px - reach);
-            let high = [a, b, c].map(|one| one.at_px + one.within_px + reach);
-            tiles.mark_box([low[0].min(low[1]).min(low[2]), high[0].max(high[1]).max(high[2])]);
+            tiles.mark_box(around([a, b, c], reach_px));
         }
     }
 }

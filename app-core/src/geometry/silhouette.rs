@@ -210,7 +210,7 @@ pub fn find_silhouette(
     for corners in triangles {
         let landings = corners.map(land);
         if landings.iter().any(|landing| landing.may_be_cut) {
-            tiles.mark_box(around(landings));
+            tiles.mark_box(around(landings, AROUND_PX));
         }
     }
     let counted = tiles.counted();
@@ -218,7 +218,7 @@ pub fn find_silhouette(
         .as_chunks::<3>()
         .0
         .iter()
-        .filter(|corners| counted.meets(around(corners.map(land))))
+        .filter(|corners| counted.meets(around(corners.map(land), AROUND_PX)))
         .flatten()
         .copied()
         .collect();
@@ -261,13 +261,13 @@ fn place(positions: &[Vec3], corner: u32) -> Vec3 {
     positions.get(corner as usize).copied().unwrap_or_default()
 }
 
-/// A box around all that is seen of a triangle.
-fn around(landings: [Landing; 3]) -> PixelBox {
+/// A box around all that is seen of a triangle, and `reach_px` beyond.
+pub(super) fn around(landings: [Landing; 3], reach_px: f32) -> PixelBox {
     let low = landings.map(|one| one.at_px - one.within_px);
     let high = landings.map(|one| one.at_px + one.within_px);
-    let around = Vec2::splat(AROUND_PX);
+    let reach = Vec2::splat(reach_px);
     [
-        low[0].min(low[1]).min(low[2]) - around,
-        high[0].max(high[1]).max(high[2]) + around,
+        low[0].min(low[1]).min(low[2]) - reach,
+        high[0].max(high[1]).max(high[2]) + reach,
     ]
 }

@@ -85,7 +85,7 @@ pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'stati
         .collect()
 }
 
-/// Capture passes that run for a new picture of a known view, such as the toy's colours, count as the frame path's.
+/// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
 fn capture_path(change: Change) -> Path {
     if change >= Change::View {
         Path::Capture
@@ -190,8 +190,7 @@ impl Model {
             .filter(|_| news.change < Change::View)
             .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
         let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
-        let has_detail = self.captured.by_pass.detail.residual.is_some();
-        self.drawn.parts = RegionParts::new([&physical, &shown], has_detail);
+        self.drawn.parts = RegionParts::new([&physical, &shown]);
         self.drawn.physical_marks = Some(physical);
     }
 

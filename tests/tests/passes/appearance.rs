@@ -143,8 +143,8 @@ fn a_fault_in_the_appearance_is_found() {
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
         ("far < least", "far <= least"),
         ("here > 0.0", "here > 9.0"),
-        ("number >> 3u", "number >> 2u"),
-        ("<< 3u) + offset.x", "<< 3u) - offset.x"),
+        ("number / u32(N", "number % u32(N"),
+        ("* N_IN_ROW + offset.x", "* N_IN_ROW - offset.x"),
         ("/ 255.0, 0.0", "/ 250.0, 0.0"),
         ("0.5 + 0.5 * normal.y", "0.5 - 0.5 * normal.y"),
         (

@@ -17,7 +17,7 @@ use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
 use crate::passes::parts::{DEPTH, FULLSCREEN};
 
 /// Numbers of the pixels that colours are from.
-pub(crate) const SOURCE: Part = part!("common/source", constants: [REACH_PX]);
+pub(crate) const SOURCE: Part = part!("common/source", constants: [REACH_PX, N_IN_ROW]);
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &HEMISPHERES,
@@ -33,10 +33,13 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
 ];
-/// Format of the numbers of the pixels that they are from, in codes.
+/// Format of the numbers of the pixels that colours are from, in codes.
 const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
+
 /// How far past the toy its colours are extrapolated.
 const REACH_PX: u32 = 3;
+/// Pixels around a pixel are numbered row by row, so many to a row.
+const N_IN_ROW: i32 = 8;
 
 pub(crate) struct Pass {
     draw: Draw,
@@ -105,7 +108,6 @@ impl Pass {
 
 /// The pixel that a source tells the colour of a texel to be from; none where there is none.
 pub(crate) fn source_texel(texel: IVec2, source: f32) -> Option<IVec2> {
-    const N_IN_ROW: i32 = 8;
     #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let number = (255.0 * source).round() as i32;
     let offset = IVec2::new(number % N_IN_ROW, number / N_IN_ROW) - REACH_PX as i32;

@@ -5,6 +5,7 @@ use glam::{UVec2, Vec2};
 use crate::geometry::rect::PixelRect;
 use crate::geometry::silhouette::ByCamera;
 use crate::geometry::tiles::Tiles;
+use crate::model::capture::detail;
 use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
 use crate::model::region::Region;
 use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
@@ -16,7 +17,7 @@ const AROUND_TOY_PX: f32 = 10.0;
 pub(crate) struct Marks {
     /// Tiles near it.
     near: Tiles,
-    /// Tiles in which it may hide any part of a light.
+    /// Tiles in which more may change than a little ambient light.
     shadowed: Tiles,
 }
 
@@ -30,19 +31,21 @@ impl Marks {
         let mut near = Tiles::over(region.plan.region.size_px, TILE_PX);
         let mut shadowed = near.clone();
         let globals = region.globals_on_device();
-        let camera = ByCamera {
-            origin_px: Vec2::ZERO,
-            ..globals.uniform.by_camera()
-        };
-        toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
         if region.plan.is_shadow_withheld {
             // The validity then tells of shadows, too.
             near.mark_all();
+        } else {
+            let camera = ByCamera {
+                origin_px: Vec2::ZERO,
+                ..globals.uniform.by_camera()
+            };
+            toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
         }
-        lighting.mark_shadows(&mut shadowed, (Posed { globals, toy, pose }, maps));
-        if region.plan.n_lights == 0 {
-            // The ambient light's change may be as large as a shadow.
+        if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {
+            // Each pixel has its own residual, or the ambient light's change may be as large as a shadow.
             shadowed.mark_all();
+        } else {
+            lighting.mark_shadows(&mut shadowed, (Posed { globals, toy, pose }, maps));
         }
         Self { near, shadowed }
     }
@@ -68,14 +71,11 @@ impl RegionParts {
         }
     }
 
-    /// Of both poses; where each pixel has its own residual none is open.
-    pub(crate) fn new([physical, shown]: [&Marks; 2], has_detail: bool) -> Self {
+    /// Of both poses.
+    pub(crate) fn new([physical, shown]: [&Marks; 2]) -> Self {
         let (mut near, mut shadowed) = (physical.near.clone(), physical.shadowed.clone());
         near.join(&shown.near);
         shadowed.join(&shown.shadowed);
-        if has_detail {
-            shadowed.mark_all();
-        }
         let shadowed_alone = shadowed.without(&near).rects(true);
         shadowed.join(&near);
         Self {
