@@ -10,12 +10,11 @@
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 
-@group(1) @binding(0) var frame: texture_2d<f32>;
-@group(1) @binding(1) var plate: texture_2d<f32>;
-@group(1) @binding(2) var validity: texture_2d<f32>;
-@group(1) @binding(3) var visibility: texture_2d<f32>;
-@group(1) @binding(4) var ambient: texture_2d<f32>;
-@group(1) @binding(5) var ambient_sampler: sampler;
+@group(1) @binding(0) var plate: texture_2d<f32>;
+@group(1) @binding(1) var validity: texture_2d<f32>;
+@group(1) @binding(2) var visibility: texture_2d<f32>;
+@group(1) @binding(3) var ambient: texture_2d<f32>;
+@group(1) @binding(4) var ambient_sampler: sampler;
 
 const RADIUS_PX: i32 = 3;
 // Detail, in plates, up to which it is noise, and from which none of it is.
@@ -34,7 +33,7 @@ fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: p
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
   if receiver_of(point) != receiver || marks_at(texel).r == 0.0 || b.a < 1.0 { return vec3f(1.0); }
-  let f = textureLoad(frame, texel, 0).rgb / fit.gain.rgb;
+  let f = frame_at(texel) / fit.gain.rgb;
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   // Ratios to a nearly black plate are noise.

@@ -7,11 +7,10 @@
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var plate: texture_2d<f32>;
-@group(1) @binding(3) var frame: texture_2d<f32>;
-@group(1) @binding(4) var validity: texture_2d<f32>;
-@group(1) @binding(5) var visibility: texture_2d<f32>;
-@group(1) @binding(6) var ambient: texture_2d<f32>;
-@group(1) @binding(7) var ambient_sampler: sampler;
+@group(1) @binding(3) var validity: texture_2d<f32>;
+@group(1) @binding(4) var visibility: texture_2d<f32>;
+@group(1) @binding(5) var ambient: texture_2d<f32>;
+@group(1) @binding(6) var ambient_sampler: sampler;
 
 // Light left, in plates, above which a pixel's own estimate is used in full, and below which not at all.
 const TELLS_ALL: f32 = 0.3;
@@ -25,7 +24,7 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if photographed.a == 1.0 || !is_hit(point) { return photographed; }
   let smooth_color = completed(photographed, point);
   if marks_at(vec2i(texel)).b == 0.0 { return smooth_color; }
-  let f = textureLoad(frame, texel, 0).rgb;
+  let f = frame_at(vec2i(texel));
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
   let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
   let left = smallest(model);

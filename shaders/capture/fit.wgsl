@@ -18,16 +18,15 @@
 
 @group(2) @binding(0) var<uniform> step: FitStep;
 @group(2) @binding(1) var<storage, read_write> rows: array<f32>;
-@group(2) @binding(2) var frame: texture_2d<f32>;
-@group(2) @binding(3) var plate: texture_2d<f32>;
-@group(2) @binding(4) var validity: texture_2d<f32>;
-@group(2) @binding(5) var visibility: texture_2d<f32>;
-@group(2) @binding(6) var ambient: texture_2d<f32>;
-@group(2) @binding(7) var ambient_sampler: sampler;
-@group(2) @binding(8) var gbuffer_base: texture_2d<f32>;
-@group(2) @binding(9) var gbuffer_normal: texture_2d<f32>;
+@group(2) @binding(2) var plate: texture_2d<f32>;
+@group(2) @binding(3) var validity: texture_2d<f32>;
+@group(2) @binding(4) var visibility: texture_2d<f32>;
+@group(2) @binding(5) var ambient: texture_2d<f32>;
+@group(2) @binding(6) var ambient_sampler: sampler;
+@group(2) @binding(7) var gbuffer_base: texture_2d<f32>;
+@group(2) @binding(8) var gbuffer_normal: texture_2d<f32>;
 // Each light's cosine times its visibility.
-@group(2) @binding(10) var gbuffer_received: texture_2d<f32>;
+@group(2) @binding(9) var gbuffer_received: texture_2d<f32>;
 
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
@@ -40,10 +39,6 @@ const ESTIMATED_INTENSITIES: f32 = 1e-3;
 fn cauchy_weight(residual: vec3f, scale: vec3f) -> vec3f {
   let r = residual / scale;
   return select(1.0 / (1.0 + r * r), vec3f(0.0), scale == vec3f(0.0));
-}
-
-fn frame_at(texel: vec2u) -> vec3f {
-  return textureLoad(frame, texel, 0).rgb;
 }
 
 // Measurements at a pixel of a receiver: the inputs of its equations.
@@ -79,7 +74,7 @@ fn observe(texel: vec2u, plate_texel: vec4f) -> Observation {
   let evident = marks_at(vec2i(texel)).r;
   seen.point = receiver_point(at);
   if evident == 0.0 || !is_hit(seen.point) { return seen; }
-  seen.frame = frame_at(texel);
+  seen.frame = frame_at(vec2i(texel));
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
@@ -140,7 +135,7 @@ fn toy_equation(texel: vec2u) -> Equation {
   if marks_at(vec2i(texel)).g == 0.0 { return eq; }
   let in_box = box_texel(vec2i(texel));
   let base = textureLoad(gbuffer_base, in_box, 0).rgb;
-  let f = frame_at(texel);
+  let f = frame_at(vec2i(texel));
   let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
   eq.value = f / fit.gain.rgb;
   let received = textureLoad(gbuffer_received, in_box, 0);

@@ -4,11 +4,10 @@
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 // CPU reference: reference/lit.rs.
 
-@group(1) @binding(4) var frame: texture_2d<f32>;
-@group(1) @binding(5) var validity: texture_2d<f32>;
-@group(1) @binding(6) var visibility: texture_2d<f32>;
-@group(1) @binding(7) var ambient: texture_2d<f32>;
-@group(1) @binding(8) var ambient_sampler: sampler;
+@group(1) @binding(4) var validity: texture_2d<f32>;
+@group(1) @binding(5) var visibility: texture_2d<f32>;
+@group(1) @binding(6) var ambient: texture_2d<f32>;
+@group(1) @binding(7) var ambient_sampler: sampler;
 
 // Exponent of the light that is left: shadow counts little, since its depth may not be fitted yet.
 const LIT_POWER: f32 = 8.0;
@@ -20,7 +19,7 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   let here = receiver_point(vec2f(texel) + 0.5);
   let seen = marks_at(vec2i(texel)).b;
   if seen == 0.0 || receiver_of(here) != receiver_of(point) { return vec4f(0.0); }
-  let f = textureLoad(frame, texel, 0).rgb;
+  let f = frame_at(vec2i(texel));
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let model = receiver_model(here, a, textureLoad(visibility, texel, 0));
   let left = smallest(model);

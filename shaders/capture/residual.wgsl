@@ -5,12 +5,11 @@
 // Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
 // the pyramids. CPU reference: reference/residual.rs.
 
-@group(1) @binding(4) var frame: texture_2d<f32>;
-@group(1) @binding(5) var plate: texture_2d<f32>;
-@group(1) @binding(6) var validity: texture_2d<f32>;
-@group(1) @binding(7) var visibility: texture_2d<f32>;
-@group(1) @binding(8) var ambient: texture_2d<f32>;
-@group(1) @binding(9) var ambient_sampler: sampler;
+@group(1) @binding(4) var plate: texture_2d<f32>;
+@group(1) @binding(5) var validity: texture_2d<f32>;
+@group(1) @binding(6) var visibility: texture_2d<f32>;
+@group(1) @binding(7) var ambient: texture_2d<f32>;
+@group(1) @binding(8) var ambient_sampler: sampler;
 
 // Residual, in plates, at which a point counts half: an outlier, such as a hand.
 const CAUCHY_SCALE: f32 = 0.03;
@@ -28,7 +27,7 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   let texel = vec2u(at);
   let seen = marks_at(vec2i(texel)).r;
   if seen == 0.0 || receiver_of(receiver_point(vec2f(texel) + 0.5)) != receiver_of(point) { return sums; }
-  let f = textureLoad(frame, texel, 0).rgb;
+  let f = frame_at(vec2i(texel));
   let b = textureLoad(plate, texel, 0);
   let brightness = dot(b.rgb, b.rgb);
   // An estimated plate was made from this very frame.

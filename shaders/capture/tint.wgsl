@@ -10,13 +10,12 @@
 @group(1) @binding(0) var<uniform> stride_px: u32;
 @group(1) @binding(1) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(2) var<storage, read_write> sums: array<atomic<u32>>;
-@group(1) @binding(3) var frame: texture_2d<f32>;
-@group(1) @binding(4) var validity: texture_2d<f32>;
-@group(1) @binding(5) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(3) var validity: texture_2d<f32>;
+@group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
 // w is the material's index.
-@group(1) @binding(6) var gbuffer_normal: texture_2d<f32>;
-@group(1) @binding(7) var gbuffer_received: texture_2d<f32>;
-@group(1) @binding(8) var gbuffer_base: texture_2d<f32>;
+@group(1) @binding(5) var gbuffer_normal: texture_2d<f32>;
+@group(1) @binding(6) var gbuffer_received: texture_2d<f32>;
+@group(1) @binding(7) var gbuffer_base: texture_2d<f32>;
 
 // Expected values above this are clipped in the photograph, whatever the paint; the cap also bounds the sums.
 const MOST_EXPECTED: f32 = 3.0;
@@ -39,7 +38,7 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let surface = textureLoad(gbuffer_normal, in_box, 0);
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
   let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
-  let shown = textureLoad(frame, texel, 0).rgb;
+  let shown = frame_at(vec2i(texel));
   if largest(shown) > BRIGHTEST_USABLE { return; }
   let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));

@@ -15,10 +15,9 @@ struct Drawing {
 }
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
-@group(1) @binding(2) var frame: texture_2d<f32>;
-@group(1) @binding(3) var physical_ambient: texture_2d<f32>;
-@group(1) @binding(4) var ambient: texture_2d<f32>;
-@group(1) @binding(5) var linear_sampler: sampler;
+@group(1) @binding(2) var physical_ambient: texture_2d<f32>;
+@group(1) @binding(3) var ambient: texture_2d<f32>;
+@group(1) @binding(4) var linear_sampler: sampler;
 
 @group(2) @binding(0) var plate: texture_2d<f32>;
 @group(2) @binding(1) var physical_visibility: texture_2d<f32>;
@@ -107,12 +106,11 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
 
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
-// the camera pixel where toy and receiver mix: 1 where the change is little. `evident` are the pixel's marks;
+// the camera pixel where toy and receiver mix: 1 where the change is little. `f` is the frame there, `evident` are its marks;
 // `has_moved` is whether the real toy beside it has.
-fn receiver(position: vec4f, evident: vec4f, has_moved: bool, change: ptr<function, vec4f>) -> vec3f {
+fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: ptr<function, vec4f>) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
-  let f = textureLoad(frame, texel, 0).rgb;
   let uv = at / globals.region_size_px;
   let v_before = textureLoad(physical_visibility, texel, 0);
   let v_after = textureLoad(visibility, texel, 0);
@@ -209,7 +207,7 @@ fn stillness(texel: vec2i) -> f32 {
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
-  let frame_color = textureLoad(frame, texel, 0).rgb;
+  let frame_color = frame_at(vec2i(texel));
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {
@@ -218,7 +216,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   var change = vec4f(0.0);
   let evident = marks_at(vec2i(texel));
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  let laid = (1.0 - toy.a) * receiver(position, evident, has_moved, &change) + toy.rgb;
+  let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
   if change.a == 0.0 { return vec4f(laid, 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
@@ -236,7 +234,7 @@ fn shown_plate(f: vec3f, model: vec3f) -> vec3f {
 @fragment
 fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let at = position.xy;
-  let f = textureLoad(frame, vec2u(at), 0).rgb;
+  let f = frame_at(vec2i(at));
   let uv = at / globals.region_size_px;
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
@@ -257,7 +255,7 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @fragment
 fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   var change = vec4f(0.0);
-  return vec4f(receiver(position, FAR_MARKS, false, &change), 1.0);
+  return vec4f(receiver(position, frame_at(vec2i(position.xy)), FAR_MARKS, false, &change), 1.0);
 }
 
 // Near a toy, which was drawn once, or four times. An entry point for each, since some processors take all

@@ -10,13 +10,12 @@
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
-@group(1) @binding(1) var frame: texture_2d<f32>;
-@group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
-@group(1) @binding(3) var appearance_base: texture_2d<f32>;
-@group(1) @binding(4) var appearance_received: texture_2d<f32>;
-@group(1) @binding(5) var<uniform> tint_grid: TintGrid;
-@group(1) @binding(6) var<storage, read> tints: array<vec4f>;
-@group(1) @binding(7) var appearance_source: texture_2d<f32>;
+@group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(2) var appearance_base: texture_2d<f32>;
+@group(1) @binding(3) var appearance_received: texture_2d<f32>;
+@group(1) @binding(4) var<uniform> tint_grid: TintGrid;
+@group(1) @binding(5) var<storage, read> tints: array<vec4f>;
+@group(1) @binding(6) var appearance_source: texture_2d<f32>;
 
 // Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
 override IS_COARSE: bool = false;
@@ -114,7 +113,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
     if is_other_material(seen_base.rgb, base) { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
-    let color = textureLoad(frame, region_texel(source_texel(vec2i(texel), number)), 0).rgb;
+    let color = frame_at(region_texel(source_texel(vec2i(texel), number)));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
     sum += weight * vec4f(color, 1.0);

@@ -14,7 +14,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
-use crate::passes::finished::Picture;
+use crate::passes::frame::Picture;
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
@@ -192,7 +192,7 @@ impl Baseline {
             warp: &self.targets.warp.maps.view,
             labels: &self.targets.eligible.labels.view,
             seen_sets: &self.targets.census.seen_sets,
-            frame: pictures.frame,
+            frame: pictures.frame.views()[0],
             plate: &self.plate.view,
         }
     }
@@ -201,7 +201,7 @@ impl Baseline {
         retarget::Inputs {
             scene: self.scene(),
             toy,
-            frame: pictures.frame,
+            frame: pictures.frame.views()[0],
             plate: &self.plate.view,
             mask: &self.targets.masks.mask.view,
             labels: &self.targets.eligible.labels.view,

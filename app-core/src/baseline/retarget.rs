@@ -10,7 +10,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::finished::Picture;
+use crate::passes::frame::Picture;
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::FULLSCREEN;
 use crate::passes::present::REGION_FORMAT;

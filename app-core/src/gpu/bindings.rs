@@ -137,6 +137,10 @@ pub(crate) enum Resource<'a> {
 }
 
 impl<'a> Resource<'a> {
+    fn is_own(&self) -> bool {
+        !matches!(self, Self::View(view) if !view.is_own)
+    }
+
     /// What it moves through a slot.
     pub(super) fn bound(self, slot: Slot) -> Option<Bound> {
         match (self, slot) {
@@ -249,7 +253,7 @@ impl BindingCache {
     }
 
     /// The group of `resources`, in the order of the layout's slots, from the cache where it has one; none where one of them
-    /// is on no device.
+    /// is on no device. One with a texture that is not the core's own lives no longer than its use.
     pub(crate) fn group(
         &self,
         (device, uniforms): (&Device, &Uniforms),
@@ -257,6 +261,9 @@ impl BindingCache {
         resources: &[Resource<'_>],
     ) -> Option<wgpu::BindGroup> {
         let held: Vec<Held> = resources.iter().map(Held::of).collect::<Option<_>>()?;
+        if !resources.iter().all(Resource::is_own) {
+            return Some(make_group((device, uniforms), layout, &held));
+        }
         let key = (layout.slots, held);
         let mut groups = locked(&self.groups);
         if let Some(group) = groups.get(&key) {
@@ -280,11 +287,7 @@ impl BindingCache {
 }
 
 /// A group of what is held, in the order of the layout's slots.
-pub(super) fn make_group(
-    (device, uniforms): (&Device, &Uniforms),
-    layout: &Layout,
-    held: &[Held],
-) -> wgpu::BindGroup {
+fn make_group((device, uniforms): (&Device, &Uniforms), layout: &Layout, held: &[Held]) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(layout.slots.iter().zip(held))
         .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {

@@ -7,7 +7,7 @@ use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
 
-use super::bindings::{BindingCache, Held, Layout, Resource, Slot, make_group};
+use super::bindings::{BindingCache, Layout, Resource, Slot};
 use super::device::{Device, Kind};
 use super::meter::{Memory, Meter};
 use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, PipelineCache};
@@ -267,12 +267,6 @@ impl Opened {
     pub(super) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> Option<wgpu::BindGroup> {
         let on = (&self.device, &self.uniforms);
         self.bindings.group(on, layout, resources)
-    }
-
-    /// A group of `resources` that lives as long as its use.
-    pub(super) fn bind_once(&self, layout: &Layout, resources: &[Resource<'_>]) -> Option<wgpu::BindGroup> {
-        let held: Vec<Held> = resources.iter().map(Held::of).collect::<Option<_>>()?;
-        Some(make_group((&self.device, &self.uniforms), layout, &held))
     }
 }
 

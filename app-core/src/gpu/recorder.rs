@@ -99,27 +99,6 @@ impl<'g> Recorder<'g> {
         }
     }
 
-    /// The same with resources that are not the core's own: no cache keeps them.
-    pub(crate) fn bind_once_with<T, U: bytemuck::Pod>(
-        &mut self,
-        pipeline: &Pipeline<T>,
-        index: usize,
-        uniform: &U,
-        resources: &[Resource<'_>],
-    ) -> Group {
-        let opened = self.gpu.opened.as_ref();
-        let raw = opened.and_then(|opened| {
-            let layout = pipeline.compiled.as_ref()?.layouts[index].clone();
-            opened.bind_once(&layout.unwrap_or_else(|| opened.layout(&[])), resources)
-        });
-        Group {
-            index: u32::try_from(index).unwrap_or(u32::MAX),
-            raw,
-            offset: Some(self.uniforms.add(uniform)),
-            bound: bound(pipeline.slots[index], resources),
-        }
-    }
-
     /// Begins a render pass under the name of its shader.
     pub(crate) fn render<'a>(
         &'a mut self,

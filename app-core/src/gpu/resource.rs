@@ -20,4 +20,6 @@ pub(crate) struct TextureView {
     /// The texture's, of which those with several layers have one each.
     pub(super) id: Id,
     pub(super) shape: Shape,
+    /// Not the platform's, which is not to be kept.
+    pub(super) is_own: bool,
 }

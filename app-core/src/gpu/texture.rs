@@ -116,6 +116,7 @@ impl Texture {
                 format,
                 ..self.view.shape
             },
+            is_own: true,
         }
     }
 
@@ -127,29 +128,6 @@ impl Texture {
     /// Fills one picture of an array.
     pub(crate) fn write_layer(&self, gpu: &Gpu, layer: u32, texels: &[u8]) {
         self.write_part(gpu, (0, layer), texels);
-    }
-
-    /// Fills the whole texture with a part of a larger picture of that many columns, from a corner on.
-    pub(crate) fn write_part_of(&self, gpu: &Gpu, texels: &[u8], (corner_px, columns): (UVec2, u32)) {
-        let size_px = self.size_px();
-        let texel_bytes = self.format().block_copy_size(None).unwrap_or(1);
-        let row_bytes = (columns * texel_bytes) as usize;
-        let first = corner_px.y as usize * row_bytes + (corner_px.x * texel_bytes) as usize;
-        let cut_bytes = (size_px.x * texel_bytes) as usize;
-        gpu.meter.upload(cut_bytes * size_px.y as usize);
-        let (Some(opened), Some(raw), Some(texels)) = (&gpu.opened, &self.raw, texels.get(first..)) else {
-            return;
-        };
-        opened.queue.write_texture(
-            raw.as_image_copy(),
-            texels,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(columns * texel_bytes),
-                rows_per_image: None,
-            },
-            raw.size(),
-        );
     }
 
     fn write_part(&self, gpu: &Gpu, (level, layer): (u32, u32), texels: &[u8]) {
@@ -258,6 +236,7 @@ impl TextureView {
             raw: gpu.view(Some(texture), &wgpu::TextureViewDescriptor::default()),
             id: Meter::id(),
             shape: Shape::of(size_px, texture.format(), texture.usage()),
+            is_own: false,
         }
     }
 }
@@ -290,6 +269,7 @@ fn view_of(
         raw: gpu.view(texture, &descriptor),
         id: Meter::id(),
         shape: Shape { n_layers, ..*shape },
+        is_own: true,
     }
 }
 

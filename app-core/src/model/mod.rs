@@ -23,7 +23,7 @@ use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
-use crate::passes::finished::Picture;
+use crate::passes::frame::Picture;
 use crate::passes::globals::Globals;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate;

@@ -7,17 +7,19 @@ use crate::gpu::texture::Texture;
 use crate::model::Model;
 use crate::model::capture::appearance::source_texel;
 use crate::model::capture::validity::FAR_MARKS;
+use crate::model::diagnostics::evidence::linear_colors;
 use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
 use crate::passes::globals::Globals;
 use crate::readback::{FloatMap, Map, read_texture};
+use crate::scene::Image;
 
 impl Model {
     /// Waits for the device and returns a map.
     pub(crate) fn read_map(
         &self,
         gpu: &Gpu,
-        frame: Option<&Texture>,
+        frame: Option<&Image>,
         map: Map,
     ) -> Result<Option<FloatMap>, GpuError> {
         let (captured, drawn) = (&self.captured, &self.drawn);
@@ -59,9 +61,9 @@ impl Model {
     }
 
     /// The toy's own colours: those of the frame in the region that the source tells of.
-    fn read_appearance(&self, gpu: &Gpu, frame: Option<&Texture>) -> Result<FloatMap, GpuError> {
+    fn read_appearance(&self, gpu: &Gpu, frame: Option<&Image>) -> Result<FloatMap, GpuError> {
         let source = self.read_box(gpu, &self.captured.by_pass.appearance.source, [1.0; 4])?;
-        let frame = read_texture(gpu, frame.and_then(Texture::raw))?;
+        let frame = frame.map_or_else(Vec::new, |frame| linear_colors(frame, &self.region.rect()));
         let toy_box = self.region.plan.toy_box;
         let [first, end] =
             [toy_box.origin_px, toy_box.origin_px + toy_box.size_px].map(|corner| corner.as_ivec2());
@@ -69,7 +71,8 @@ impl Model {
         let color = |(index, number): (u32, &[f32; 4])| {
             let from = source_texel(UVec2::new(index % width, index / width).as_ivec2(), number[0])?;
             let from = from.clamp(first, end - 1).as_uvec2();
-            frame.texels.get((from.y * width + from.x) as usize).copied()
+            let [r, g, b] = *frame.get((from.y * width + from.x) as usize)?;
+            Some([r, g, b, 1.0])
         };
         let texels = (0..).zip(&source.texels);
         Ok(FloatMap {

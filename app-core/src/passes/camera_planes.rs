@@ -1,33 +1,22 @@
-//! `camera_planes`: the camera's planes of luma and chroma, or a part of them, as sRGB codes.
+//! `camera_planes`: the camera's planes of luma and chroma as sRGB codes.
 
 use glam::UVec2;
 use wgpu::TextureFormat;
 
-use crate::camera_frame::{PlanarImage, YcbcrEncoding, half_size_px};
+use crate::camera_frame::{PlanarImage, half_size_px};
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::{Texture, TextureView};
+use crate::passes::frame::{Encoding, FramePlanes, PLANES};
 use crate::passes::parts::FULLSCREEN;
 
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&FULLSCREEN, &part!("passes/camera_planes", structs: [Encoding])]);
+pub(crate) const SHADER: Shader = Shader::new(&[&FULLSCREEN, &PLANES, &part!("passes/camera_planes")]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Encoding>(), Slot::Texture, Slot::Texture];
 /// Format of what is written: codes of the frame.
 const CODES: TextureFormat = TextureFormat::Rgba8Unorm;
-
-shared_struct! {
-    /// Map from the planes' codes to sRGB codes.
-    pub(crate) struct Encoding {
-        pub srgb_from_ycbcr: Mat3Columns,
-        pub origin: [f32; 4],
-        pub corner_px: [i32; 2],
-        pub unused: [i32; 2],
-    }
-}
 
 pub(crate) struct Pass {
     draw: Draw,
@@ -66,24 +55,16 @@ impl Pass {
         }
     }
 
-    /// Decodes views of luma and chroma, which may be the platform's: no cache keeps them. As much as the target holds, from
-    /// the corner at `corner_px` on.
+    /// Decodes all of a picture.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        encoding: YcbcrEncoding,
-        [luma, chroma]: [&TextureView; 2],
-        (frame_codes, corner_px): (&TextureView, UVec2),
+        planes: &FramePlanes<'_>,
+        frame_codes: &TextureView,
     ) {
-        let map = encoding.srgb_from_ycbcr();
-        let encoding = Encoding {
-            srgb_from_ycbcr: map.columns(),
-            origin: map.origin.extend(0.0).to_array(),
-            corner_px: corner_px.as_ivec2().to_array(),
-            unused: [0; 2],
-        };
+        let [luma, chroma] = planes.views;
         let resources = [Resource::PerUse, luma.into(), chroma.into()];
-        let own = recorder.bind_once_with(&self.draw, GROUP_PASS, &encoding, &resources);
+        let own = recorder.bind_with(&self.draw, GROUP_PASS, &planes.uniform(), &resources);
         recorder.fullscreen(&self.draw, &[own], &[frame_codes]);
     }
 }

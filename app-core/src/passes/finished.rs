@@ -2,9 +2,8 @@
 
 use glam::UVec2;
 
-use crate::camera_frame::YcbcrEncoding;
 use crate::geometry::rect::PixelRect;
-use crate::gpu::texture::TextureView;
+use crate::passes::frame::{Frame, Picture};
 
 /// A picture that was made or taken.
 #[derive(Clone, Copy)]
@@ -14,29 +13,6 @@ pub(crate) struct Finished<'a> {
     pub(crate) region: Option<Laid<'a>>,
     /// Of the camera image.
     pub(crate) size_px: UVec2,
-}
-
-/// The camera image, in the form that it came in.
-#[derive(Clone, Copy)]
-pub(crate) enum Frame<'a> {
-    Picture(Picture<'a>),
-    Planes(FramePlanes<'a>),
-}
-
-/// Views of luma and of chroma, which may be the platform's, and what their codes mean.
-#[derive(Clone, Copy)]
-pub(crate) struct FramePlanes<'a> {
-    pub(crate) views: [&'a TextureView; 2],
-    pub(crate) encoding: YcbcrEncoding,
-}
-
-/// Two views of an sRGB texture.
-#[derive(Clone, Copy)]
-pub(crate) struct Picture<'a> {
-    /// Decoded where it is read.
-    pub(crate) light: &'a TextureView,
-    /// Its codes.
-    pub(crate) codes: &'a TextureView,
 }
 
 /// The region's picture over the camera image.

@@ -6,6 +6,7 @@
 pub(crate) mod camera_planes;
 pub(crate) mod counting;
 pub(crate) mod finished;
+pub(crate) mod frame;
 pub(crate) mod globals;
 pub(crate) mod list;
 pub(crate) mod materials;

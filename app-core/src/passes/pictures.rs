@@ -2,10 +2,11 @@
 
 use crate::gpu::buffer::Buffer;
 use crate::gpu::texture::TextureView;
+use crate::passes::frame::Frame;
 
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
-    pub(crate) frame: &'a TextureView,
+    pub(crate) frame: Frame<'a>,
     /// How many the state has learned from before.
     pub(crate) n_before: u32,
     /// Exposure of `frame` over that of the frame that last updated the state.

@@ -11,7 +11,8 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::{Laid, Picture};
+use crate::passes::finished::Laid;
+use crate::passes::frame::Picture;
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =

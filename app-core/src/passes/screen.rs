@@ -11,7 +11,8 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::{Finished, Frame, FramePlanes};
+use crate::passes::finished::Finished;
+use crate::passes::frame::{Frame, FramePlanes};
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
 pub(crate) const SHADER: Shader =
@@ -131,8 +132,7 @@ impl Pass {
                     luma.into(),
                     chroma.into(),
                 ];
-                // They may be the platform's: no cache keeps them.
-                let own = recorder.bind_once_with(&self.of_planes, GROUP_PASS, &map, &resources);
+                let own = recorder.bind_with(&self.of_planes, GROUP_PASS, &map, &resources);
                 recorder.fullscreen(&self.of_planes, &[own], &[screen]);
             }
         }

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::model::plan::Plan;
 use crate::model::state::SceneState;
 use crate::model::state::grids::grids_over;
+use crate::passes::frame::{Frame, Picture};
 use crate::passes::globals::globals;
 use crate::passes::pictures::Pictures;
 use crate::passes::present::REGION_FORMAT;
@@ -97,7 +98,10 @@ impl Stage {
         let mut model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
-            frame: &frame.view,
+            frame: Frame::Picture(Picture {
+                light: &frame.view,
+                codes: &frame.view,
+            }),
             n_before: 0,
             exposure_ratio: 1.0,
             plates: &self.plates.pictures.view,

@@ -1,20 +1,18 @@
 //! The camera's picture on the device, in whichever form it came.
 //!
-//! A screen shows a picture's planes as they are. The method reads a picture's part in the work region, which is cut out of it;
-//! only who reads the whole picture has all of it decoded.
+//! Planes are read as they are, by the screen and by the model; only who filters light of the whole picture has all of it decoded.
 
 use std::sync::OnceLock;
 
 use glam::UVec2;
 use wgpu::TextureFormat;
 
-use crate::camera_frame::{CameraImage, PlanarImage, YcbcrEncoding};
-use crate::geometry::rect::PixelRect;
+use crate::camera_frame::{CameraImage, PlanarImage};
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::camera_planes::{self, Planes};
-use crate::passes::finished::{Frame, FramePlanes, Picture};
+use crate::passes::frame::{Frame, FramePlanes, Picture};
 
 pub(crate) struct CameraTexture {
     size_px: UVec2,
@@ -23,13 +21,9 @@ pub(crate) struct CameraTexture {
     /// All of it: of a picture that came as one, and of one that somebody wanted as one.
     whole: OnceLock<SrgbTexture>,
     is_whole_there: bool,
-    /// The part of it in a rectangle.
-    cut: Option<SrgbTexture>,
-    /// Where that is, once it is there.
-    cut_rect: Option<PixelRect>,
     decoder: OnceLock<camera_planes::Pass>,
     /// Once planes have come as bytes.
-    planes: Option<Planes>,
+    own_planes: Option<Planes>,
     /// The platform's planes, while they are those of the picture.
     lent: Option<[TextureView; 2]>,
 }
@@ -65,10 +59,8 @@ impl CameraTexture {
             image: None,
             whole: OnceLock::new(),
             is_whole_there: false,
-            cut: None,
-            cut_rect: None,
             decoder: OnceLock::new(),
-            planes: None,
+            own_planes: None,
             lent: None,
         }
     }
@@ -94,7 +86,7 @@ impl CameraTexture {
         let lent = opened.and_then(|opened| image.textures_on(&opened.device.handle()));
         self.lent = lent.map(|textures| textures.map(|texture| TextureView::of_other(gpu, texture)));
         if self.lent.is_none() {
-            self.planes
+            self.own_planes
                 .get_or_insert_with(|| Planes::new(gpu, image.size_px()))
                 .write(gpu, image);
         }
@@ -104,14 +96,13 @@ impl CameraTexture {
     pub(crate) fn forget(&mut self) {
         self.image = None;
         self.is_whole_there = false;
-        self.cut_rect = None;
         self.lent = None;
     }
 
-    /// The picture as a screen takes it.
+    /// The picture in the form that it came in.
     pub(crate) fn frame(&self, gpu: &Gpu) -> Frame<'_> {
-        match self.planes_with_encoding() {
-            Some((views, encoding)) => Frame::Planes(FramePlanes { views, encoding }),
+        match self.planes() {
+            Some(planes) => Frame::Planes(planes),
             None => Frame::Picture(self.whole(gpu).picture()),
         }
     }
@@ -120,68 +111,40 @@ impl CameraTexture {
     pub(crate) fn decoded(&self, recorder: &mut Recorder<'_>) -> Picture<'_> {
         let whole = self.whole(recorder.gpu);
         if !self.is_whole_there {
-            self.decode(recorder, (&whole.codes, UVec2::ZERO));
+            self.decode(recorder, &whole.codes);
         }
         whole.picture()
     }
 
     /// The same for who reads it over several frames: decoded once.
-    pub(crate) fn keep_decoded(&mut self, recorder: &mut Recorder<'_>) -> &TextureView {
+    pub(crate) fn keep_decoded(&mut self, recorder: &mut Recorder<'_>) -> Picture<'_> {
         self.decoded(recorder);
         self.is_whole_there = true;
-        &self.whole(recorder.gpu).texture.view
-    }
-
-    /// Cuts out the part in `rect`, unless that is there already.
-    pub(crate) fn cut(&mut self, recorder: &mut Recorder<'_>, rect: PixelRect) {
-        if self.cut_rect == Some(rect) {
-            return;
-        }
-        let known = self.cut.take();
-        let known = known.filter(|cut| cut.texture.size_px() == rect.size_px);
-        let cut = known.unwrap_or_else(|| SrgbTexture::new(recorder.gpu, rect.size_px));
-        match &self.image {
-            Some(CameraImage::Rgba(image)) => {
-                let from = (rect.origin_px, image.width_px);
-                cut.texture.write_part_of(recorder.gpu, &image.rgba8, from);
-            }
-            _ => self.decode(recorder, (&cut.codes, rect.origin_px)),
-        }
-        self.cut = Some(cut);
-        self.cut_rect = Some(rect);
-    }
-
-    /// View of that part, decoded where it is read; of the whole picture before the first cut.
-    pub(crate) fn cut_view(&self, gpu: &Gpu) -> &TextureView {
-        let texture = self.cut.as_ref().unwrap_or_else(|| self.whole(gpu));
-        &texture.texture.view
-    }
-
-    /// That part, once it was cut out.
-    pub(crate) fn cut_texture(&self) -> Option<&Texture> {
-        self.cut.as_ref().map(|cut| &cut.texture)
+        self.whole(recorder.gpu).picture()
     }
 
     fn whole(&self, gpu: &Gpu) -> &SrgbTexture {
         self.whole.get_or_init(|| SrgbTexture::new(gpu, self.size_px))
     }
 
-    fn planes_with_encoding(&self) -> Option<([&TextureView; 2], YcbcrEncoding)> {
+    fn planes(&self) -> Option<FramePlanes<'_>> {
         let Some(CameraImage::Planes(image)) = &self.image else {
             return None;
         };
-        let own = || self.planes.as_ref().map(Planes::views);
+        let own = || self.own_planes.as_ref().map(Planes::views);
         let lent = self.lent.as_ref().map(|[luma, chroma]| [luma, chroma]);
-        Some((lent.or_else(own)?, image.encoding()))
+        Some(FramePlanes {
+            views: lent.or_else(own)?,
+            encoding: image.encoding(),
+        })
     }
 
-    /// Decodes as much of the planes as a target holds, from a corner on.
-    fn decode(&self, recorder: &mut Recorder<'_>, (codes, corner_px): (&TextureView, UVec2)) {
-        if let Some((planes, encoding)) = self.planes_with_encoding() {
+    fn decode(&self, recorder: &mut Recorder<'_>, codes: &TextureView) {
+        if let Some(planes) = self.planes() {
             let pass = self
                 .decoder
                 .get_or_init(|| camera_planes::Pass::new(recorder.gpu));
-            pass.encode(recorder, encoding, planes, (codes, corner_px));
+            pass.encode(recorder, &planes, codes);
         }
     }
 }

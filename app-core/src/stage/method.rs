@@ -5,10 +5,9 @@ use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
 use crate::model::{self, Model};
 use crate::passes;
-use crate::passes::finished::Picture;
+use crate::passes::frame::Picture;
 use crate::passes::list::WarmUp;
 use crate::passes::pictures::Pictures;
 use crate::passes::toy_mesh::ToyMesh;
@@ -16,6 +15,7 @@ use crate::plan::{LeftOut, News};
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
+use crate::scene::Image;
 
 /// Everything that the frames of a preset run, to be compiled.
 pub(crate) fn warm_ups(preset: Preset) -> Vec<WarmUp> {
@@ -112,11 +112,11 @@ impl Method {
         }
     }
 
-    /// Waits for the device and returns a map, where this method makes it; `frame` is the camera's picture in the work region.
+    /// Waits for the device and returns a map, where this method makes it; `frame` is the picture that was learned from last.
     pub(crate) fn read_map(
         &self,
         gpu: &Gpu,
-        frame: Option<&Texture>,
+        frame: Option<&Image>,
         map: Map,
     ) -> Result<Option<FloatMap>, GpuError> {
         match self {

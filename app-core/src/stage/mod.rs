@@ -28,6 +28,7 @@ use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::texture::Texture;
 use crate::passes::finished::{Finished, Laid};
+use crate::passes::frame::Frame;
 use crate::passes::pictures::Pictures;
 use crate::passes::present::{self, OUTPUT_FORMAT};
 use crate::passes::toy_mesh::ToyMesh;
@@ -238,7 +239,7 @@ impl Stage {
         let Some(method) = self.method() else {
             return Ok(None);
         };
-        method.read_map(gpu, self.camera.cut_texture(), map)
+        method.read_map(gpu, self.learned_image(), map)
     }
 
     /// What was learned so far.
@@ -392,12 +393,9 @@ impl Stage {
         }
         recorder.n_pixels = n_pixels(method.region().size_px);
         let frame = match method {
-            Method::Model(_) => {
-                self.camera.cut(recorder, method.region());
-                self.camera.cut_view(gpu)
-            }
-            // Its `retarget` fills the place of the toy from anywhere.
-            Method::Baseline(_) => self.camera.keep_decoded(recorder),
+            Method::Model(_) => self.camera.frame(gpu),
+            // Its `retarget` filters light of the whole picture.
+            Method::Baseline(_) => Frame::Picture(self.camera.keep_decoded(recorder)),
         };
         let pictures = Pictures {
             frame,

@@ -10,7 +10,7 @@ use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::numbers::number;
-use crate::scrambled::{Scrambled, buffers, views};
+use crate::scrambled::{Scrambled, views};
 
 /// Of residuals up to a tenth of the plate, and of more where nothing is modelled. Measured: 1.2e-6.
 const ALLOWED: f64 = 1e-4;
@@ -42,7 +42,6 @@ fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), scene());
     let size = scene.rect.size_px;
     let maps = [
-        device.map(&scene.image),
         device.map(&scene.plate),
         device.map(&scene.validity),
         device.map(&scene.visibility),
@@ -50,7 +49,7 @@ fn errors(source: &str) -> Errors {
     ];
     let linear = device.linear_sampler();
     let mut own = views(0, &maps);
-    own.push((5, wgpu::BindingResource::Sampler(&linear)));
+    own.push((4, wgpu::BindingResource::Sampler(&linear)));
     let draw = Draw {
         source,
         fragment: "fs_separate",
@@ -58,7 +57,7 @@ fn errors(source: &str) -> Errors {
         output: 0,
         size,
     };
-    let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
+    let actual = device.draw(draw, [&scene.seen(device).bindings(), &own]);
 
     let photographed = scene.plate.map(|texel| texel.w);
     let told = told(&scene.region, &scene.pictures(0), &photographed, &scene.solution);

@@ -91,7 +91,6 @@ fn errors(source: &str) -> Errors {
     ];
     let maps = [
         device.map(&scene.plate),
-        device.map(&scene.image),
         device.map(&scene.validity),
         device.map(&scene.visibility),
         device.filterable(&scene.ambient),
@@ -99,7 +98,7 @@ fn errors(source: &str) -> Errors {
     let linear = device.linear_sampler();
     let mut own = buffers(0, &place);
     own.extend(views(2, &maps));
-    own.push((7, wgpu::BindingResource::Sampler(&linear)));
+    own.push((6, wgpu::BindingResource::Sampler(&linear)));
     let pictures = scene.pictures(2);
     let known = Known {
         pictures: &pictures,
@@ -114,7 +113,7 @@ fn errors(source: &str) -> Errors {
         output: 0,
         size: scene.rect.size_px,
     };
-    let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
+    let actual = device.draw(draw, [&scene.seen(device).bindings(), &own]);
     let texels = Raster::from_fn(scene.rect.size_px, |texel| texel);
     let expected = texels.map(|texel| complete(&scene.region, &known, true, texel));
     let both = actual.texels().iter().zip(expected.texels());

@@ -56,7 +56,6 @@ fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
         device.uniform(&step(taken)),
     ];
     let maps = [
-        device.map(&scene.image),
         device.map(&scene.validity),
         device.map(&scene.visibility),
         device.filterable(&scene.ambient),
@@ -64,9 +63,9 @@ fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
     let linear = device.linear_sampler();
     let mut own = buffers(0, &pools);
     own.extend(views(4, &maps));
-    own.push((8, wgpu::BindingResource::Sampler(&linear)));
-    let shared = scene.shared(device);
-    device.compute(source, "cs_pool", [&buffers(0, &shared), &own], WORKGROUPS);
+    own.push((7, wgpu::BindingResource::Sampler(&linear)));
+    let seen = scene.seen(device);
+    device.compute(source, "cs_pool", [&seen.bindings(), &own], WORKGROUPS);
     let [cells, accumulated] = [1, 2].map(|k: usize| device.read(&pools[k]));
 
     let pictures = scene.pictures(2);

@@ -19,6 +19,7 @@ mod estimate;
 mod exposure;
 mod fill;
 mod fit;
+mod frame;
 mod goldens;
 mod grazing;
 mod inject;

@@ -105,6 +105,24 @@ impl Scrambled {
         [device.uniform(&self.stand.globals(&self.rect)), fit]
     }
 
+    /// What is seen, which is the rest of group 0 for passes that look at the camera's picture.
+    pub(crate) fn seen(&self, device: &Device) -> Seen {
+        let whole = Raster::from_fn(self.stand.setup.image_px, |at| {
+            let is_in = at.cmpge(self.rect.origin_px) & at.cmplt(self.rect.origin_px + self.rect.size_px);
+            if is_in.all() {
+                self.image.at(at - self.rect.origin_px)
+            } else {
+                DVec4::NAN
+            }
+        });
+        let [globals, fit] = self.shared(device);
+        // A picture has no encoding.
+        Seen {
+            buffers: [globals, fit, device.uniform(&[0.0_f32; 16])],
+            frame: device.map(&whole),
+        }
+    }
+
     /// Grids that do not quite hold the receivers, nor start at the first cell.
     pub(crate) fn grids(&self) -> Grids {
         let mut grids = Grids::default();
@@ -129,6 +147,21 @@ impl Scrambled {
     pub(crate) fn plane_grids(&self) -> [PlaneGrid; 2] {
         let grids = self.grids().grids;
         [PlaneGrid::from(&grids[0]), PlaneGrid::from(&grids[1])]
+    }
+}
+
+/// Globals, fit, and the camera's picture.
+pub(crate) struct Seen {
+    buffers: [wgpu::Buffer; 3],
+    frame: wgpu::TextureView,
+}
+
+impl Seen {
+    pub(crate) fn bindings(&self) -> Bindings<'_> {
+        let mut bindings = buffers(0, &self.buffers);
+        let frame = || wgpu::BindingResource::TextureView(&self.frame);
+        bindings.extend([(3, frame()), (4, frame())]);
+        bindings
     }
 }
 

@@ -2,7 +2,7 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
@@ -11,13 +11,17 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::observed::Observed;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &MODEL,
     &PIXEL,
     &CHANNELS,
@@ -26,7 +30,6 @@ pub(crate) const SHADER: Shader = Shader::new(&[
     &part!("capture/detail"),
 ]);
 const SLOTS: &[Slot] = &[
-    Slot::Texture,
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
@@ -46,7 +49,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a TextureView,
 }
@@ -67,7 +70,7 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        let groups = [SEEN_SLOTS, SLOTS, &[], &[]];
         Self {
             draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_separate", groups, &[FORMAT])),
         }
@@ -77,7 +80,6 @@ impl Pass {
         let Some(target) = &targets.residual else { return };
         let observed = &inputs.observed;
         let resources = [
-            observed.frame.into(),
             inputs.plate.into(),
             observed.validity.into(),
             observed.visibility.into(),
@@ -85,7 +87,7 @@ impl Pass {
             (&recorder.gpu.samplers.linear).into(),
         ];
         let groups = [
-            recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
+            inputs.seen.bind(recorder, &self.draw),
             recorder.bind(&self.draw, GROUP_PASS, &resources),
         ];
         recorder.fullscreen(&self.draw, &groups, &[&target.view]);

@@ -1,6 +1,6 @@
 //! `estimate`: the plate, completed by an estimate where no plate covers the pixel.
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
@@ -11,14 +11,18 @@ use crate::model::capture::observed::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS};
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, SRGB};
 use crate::passes::plate::FINE_FORMAT;
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &MODEL,
     &CHANNELS,
     &GRID,
@@ -32,7 +36,6 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,
-    Slot::Texture,
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
@@ -50,7 +53,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) lit_cells: &'a Buffer,
     pub(crate) photographed: &'a TextureView,
@@ -74,7 +77,7 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SCENE_SLOTS, SLOTS, &[], &[]];
+        let groups = [SEEN_SLOTS, SLOTS, &[], &[]];
         Self {
             complete: gpu.draw(&DrawSpec::fullscreen(
                 &SHADER,
@@ -92,14 +95,13 @@ impl Pass {
             inputs.grids.into(),
             inputs.lit_cells.into(),
             inputs.photographed.into(),
-            observed.frame.into(),
             observed.validity.into(),
             observed.visibility.into(),
             observed.ambient.into(),
             (&recorder.gpu.samplers.linear).into(),
         ];
         let groups = [
-            recorder.bind(draw, GROUP_SCENE, &inputs.scene.resources()),
+            inputs.seen.bind(recorder, draw),
             recorder.bind(draw, GROUP_PASS, &resources),
         ];
         recorder.fullscreen(draw, &groups, &[target]);

@@ -2,7 +2,7 @@
 
 use wgpu::BufferUsages;
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
@@ -15,9 +15,10 @@ use crate::model::capture::observed::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, HEMISPHERES, MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SCENE_SLOTS, Scene};
+use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{MARKS, PIXEL};
+use crate::passes::parts::{MARKS, PIXEL, SRGB};
 
 /// One step of the iteratively reweighted least squares.
 pub(crate) const FIT_STEP: Part = part!(
@@ -30,6 +31,9 @@ const FIT_SUMS: Part = part!("common/fit_sums");
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &FIT_STEP,
     &MODEL,
     &HEMISPHERES,
@@ -54,7 +58,6 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
-    Slot::Texture,
     Slot::Filtered,
     Slot::Sampler,
     Slot::Texture,
@@ -62,7 +65,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
 ];
 /// Slots of what is seen of receivers.
-const N_RECEIVER_SLOTS: usize = 8;
+const N_RECEIVER_SLOTS: usize = 7;
 const SUBJECT_RECEIVER: u32 = Subject::Receiver as u32;
 const SUBJECT_TOY: u32 = Subject::Toy as u32;
 const SUBJECT_INTENSITIES: u32 = Subject::Intensities as u32;
@@ -139,7 +142,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Inputs<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) lit_cells: &'a Buffer,
     pub(crate) observed: Observed<'a>,
@@ -172,7 +175,7 @@ impl Pass {
             gpu.compute(&ComputeSpec {
                 shader: &SHADER,
                 entry_point,
-                groups: [SCENE_SLOTS, lit_slots, &SLOTS[..n_slots], &[]],
+                groups: [SEEN_SLOTS, lit_slots, &SLOTS[..n_slots], &[]],
             })
         };
         let by_plate = |[complete, completing]: [_; 2]| {
@@ -200,7 +203,6 @@ impl Pass {
         let resources = [
             Resource::PerUse,
             (&targets.rows).into(),
-            observed.frame.into(),
             inputs.plate.into(),
             observed.validity.into(),
             observed.visibility.into(),
@@ -217,7 +219,7 @@ impl Pass {
             Subject::Toy => (&self.toy, SLOTS.len()),
         };
         let mut groups = vec![
-            recorder.bind(compute, GROUP_SCENE, &inputs.scene.resources()),
+            inputs.seen.bind(recorder, compute),
             recorder.bind_with(compute, GROUP_FIT, step, &resources[..n_slots]),
         ];
         if task.completes_plate {

@@ -10,13 +10,17 @@ use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::FIT;
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{CHANNELS, MARKS};
+use crate::passes::parts::{CHANNELS, MARKS, SRGB};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &MODEL,
     &CHANNELS,
     &GRID,
@@ -30,7 +34,6 @@ const SLOTS: &[Slot] = &[
     Slot::ReadWrite,
     Slot::ReadWrite,
     Slot::per_use::<Taken>(),
-    Slot::Texture,
     Slot::Texture,
     Slot::Texture,
     Slot::Filtered,
@@ -57,12 +60,7 @@ impl Pass {
     /// Adds this view's colours to the cells.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
         let observed = &inputs.observed;
-        let pictures = [
-            observed.frame,
-            observed.validity,
-            observed.visibility,
-            observed.ambient,
-        ];
+        let pictures = [observed.validity, observed.visibility, observed.ambient];
         self.0.encode(recorder, &inputs.on, &Taken::ALL, &pictures);
     }
 }

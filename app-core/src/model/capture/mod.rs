@@ -16,7 +16,7 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::model::state::grids::CellBuffers;
-use crate::model::state::solution::Scene;
+use crate::model::state::solution::{Scene, SeenScene};
 use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate::{self, FINE_FORMAT};
@@ -137,7 +137,7 @@ impl CapturePath<'_> {
             return;
         };
         let inputs = estimate::Inputs {
-            scene: self.scene(),
+            seen: self.seen(),
             grids: &self.state.grids,
             lit_cells: &self.state.lit.cells,
             photographed: &photographed.view,
@@ -153,7 +153,7 @@ impl CapturePath<'_> {
         let photographed = captured.by_pass.estimate.photographed.as_ref();
         let photographed = photographed.filter(|_| task.completes_plate);
         let inputs = fit::Inputs {
-            scene: self.scene(),
+            seen: self.seen(),
             grids: &self.state.grids,
             lit_cells: &self.state.lit.cells,
             observed: self.observed(),
@@ -227,7 +227,7 @@ impl CapturePath<'_> {
 
     fn detail_inputs(&self) -> detail::Inputs<'_> {
         detail::Inputs {
-            scene: self.scene(),
+            seen: self.seen(),
             observed: self.observed(),
             plate: &self.captured.plate.view,
         }
@@ -236,8 +236,7 @@ impl CapturePath<'_> {
     fn tint_inputs(&self) -> tint::Inputs<'_> {
         tint::Inputs {
             plan: &self.region.plan,
-            scene: self.scene(),
-            frame: self.pictures.frame,
+            seen: self.seen(),
             validity: self.validity(),
             gbuffer: &self.captured.by_pass.gbuffer,
         }
@@ -259,10 +258,16 @@ impl CapturePath<'_> {
         }
     }
 
+    fn seen(&self) -> SeenScene<'_> {
+        SeenScene {
+            scene: self.scene(),
+            frame: self.pictures.frame,
+        }
+    }
+
     fn observed(&self) -> Observed<'_> {
         let visibility = &self.captured.light.visibility;
         Observed {
-            frame: self.pictures.frame,
             validity: self.validity(),
             visibility: &visibility.lights.view,
             ambient: &visibility.ambient.view,
@@ -275,7 +280,7 @@ impl CapturePath<'_> {
 
     fn pool_grids<'a>(&'a self, cells: &'a CellBuffers) -> PoolGrids<'a> {
         PoolGrids {
-            scene: self.scene(),
+            seen: self.seen(),
             grids: &self.state.grids,
             layout: &self.state.layout,
             cells,

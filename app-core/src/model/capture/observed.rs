@@ -5,8 +5,6 @@ use crate::gpu::texture::TextureView;
 /// Maps of the region that passes which learn from the receivers read, each pixel by pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Observed<'a> {
-    /// The camera's picture, of the image's size.
-    pub(crate) frame: &'a TextureView,
     pub(crate) validity: &'a TextureView,
     /// Of each light.
     pub(crate) visibility: &'a TextureView,

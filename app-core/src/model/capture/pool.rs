@@ -1,6 +1,6 @@
 //! Pooling of pictures in the cells of coarse grids, for `lit` and `residual`.
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
@@ -9,7 +9,7 @@ use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::state::grids::{CellBuffers, Grids};
-use crate::model::state::solution::{SCENE_SLOTS, Scene};
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 
 /// Sample points of a cell, and its accumulation.
 pub(crate) const POOL: Part = part!("common/pool", structs: [Taken], constants: [N_POINTS]);
@@ -53,7 +53,7 @@ pub(crate) struct Pool {
 
 /// Grids and cells to pool into.
 pub(crate) struct PoolGrids<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) grids: &'a Buffer,
     /// Contents of `grids`.
     pub(crate) layout: &'a Grids,
@@ -68,7 +68,7 @@ impl Pool {
             compute: gpu.compute(&ComputeSpec {
                 shader,
                 entry_point: "cs_pool",
-                groups: [SCENE_SLOTS, slots, &[], &[]],
+                groups: [SEEN_SLOTS, slots, &[], &[]],
             }),
         }
     }
@@ -90,7 +90,7 @@ impl Pool {
             .chain([sampler])
             .collect();
         let groups = [
-            recorder.bind(&self.compute, GROUP_SCENE, &on.scene.resources()),
+            on.seen.bind(recorder, &self.compute),
             recorder.bind_with(&self.compute, GROUP_PASS, taken, &resources),
         ];
         let n_side = N_POINTS / taken.stride;

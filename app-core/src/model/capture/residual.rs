@@ -10,13 +10,17 @@ use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::FIT;
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{MARKS, PIXEL};
+use crate::passes::parts::{MARKS, PIXEL, SRGB};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &MODEL,
     &PIXEL,
     &GRID,
@@ -30,7 +34,6 @@ const SLOTS: &[Slot] = &[
     Slot::ReadWrite,
     Slot::ReadWrite,
     Slot::per_use::<Taken>(),
-    Slot::Texture,
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
@@ -57,7 +60,6 @@ impl Pass {
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>) {
         let observed = &inputs.observed;
         let pictures = [
-            observed.frame,
             inputs.plate,
             observed.validity,
             observed.visibility,

@@ -1,6 +1,6 @@
 //! `tint`: shown and expected colours of the toy's visible paint, summed in cells.
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::{Recorder, n_pixels};
@@ -9,15 +9,19 @@ use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
 use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{CHANNELS, MARKS, PIXEL};
+use crate::passes::parts::{CHANNELS, MARKS, PIXEL, SRGB};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &HEMISPHERES,
     &TOY_RADIANCE,
     &PIXEL,
@@ -33,7 +37,6 @@ const SLOTS: &[Slot] = &[
     Slot::uniform::<TintGrid>(),
     Slot::ReadWrite,
     Slot::Texture,
-    Slot::Texture,
     Slot::Depth,
     Slot::Texture,
     Slot::Texture,
@@ -48,8 +51,7 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
-    pub(crate) scene: Scene<'a>,
-    pub(crate) frame: &'a TextureView,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
@@ -60,7 +62,7 @@ impl Pass {
             compute: gpu.compute(&ComputeSpec {
                 shader: &SHADER,
                 entry_point: "cs_add",
-                groups: [SCENE_SLOTS, SLOTS, &[], &[]],
+                groups: [SEEN_SLOTS, SLOTS, &[], &[]],
             }),
         }
     }
@@ -73,7 +75,6 @@ impl Pass {
             Resource::PerUse,
             (&tints.grid).into(),
             (&tints.sums).into(),
-            inputs.frame.into(),
             inputs.validity.into(),
             (&gbuffer.depth.view).into(),
             (&gbuffer.normal.view).into(),
@@ -82,7 +83,7 @@ impl Pass {
         ];
         let stride_px = inputs.plan.fit_stride_px;
         let groups = [
-            recorder.bind(&self.compute, GROUP_SCENE, &inputs.scene.resources()),
+            inputs.seen.bind(recorder, &self.compute),
             recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
         ];
         // As many steps as can begin in the box.

@@ -3,7 +3,7 @@
 use wgpu::StoreOp;
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
@@ -20,15 +20,18 @@ use crate::model::lighting::LightMaps;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
-use crate::passes::finished::Picture;
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
+use crate::passes::frame::{FRAME, PLANES, Picture};
 use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL};
+use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
 use crate::passes::present::REGION_FORMAT;
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &MODEL,
     &PIXEL,
     &GRID,
@@ -43,7 +46,6 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,
-    Slot::Texture,
     Slot::Filtered,
     Slot::Filtered,
     Slot::Sampler,
@@ -81,10 +83,9 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) parts: &'a RegionParts,
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) grids: &'a Buffer,
     pub(crate) cells: &'a Buffer,
-    pub(crate) frame: &'a TextureView,
     pub(crate) plate: &'a TextureView,
     pub(crate) validity: &'a TextureView,
     pub(crate) physical: &'a LightMaps,
@@ -124,7 +125,7 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let draw = |fragment, of_shadow, of_toy| {
-            let groups = [SCENE_SLOTS, SLOTS, of_shadow, of_toy];
+            let groups = [SEEN_SLOTS, SLOTS, of_shadow, of_toy];
             gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT]))
         };
         Self {
@@ -141,7 +142,7 @@ impl Pass {
             _ => &self.drawn_four_times,
         };
         let open = [
-            recorder.bind(&self.open, GROUP_SCENE, &inputs.scene.resources()),
+            inputs.seen.bind(recorder, &self.open),
             recorder.bind(
                 &self.open,
                 GROUP_PASS,
@@ -173,11 +174,10 @@ fn fill(render: &mut Render<'_>, part: &PixelRect) {
 }
 
 impl<'a> Inputs<'a> {
-    fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 6] {
+    fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 5] {
         [
             self.grids.into(),
             self.cells.into(),
-            self.frame.into(),
             (&self.physical.visibility.ambient.view).into(),
             (&self.shown.visibility.ambient.view).into(),
             sampler.into(),

@@ -4,14 +4,14 @@ pub(crate) mod region_parts;
 
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::TextureView;
 use crate::model::capture::CaptureTargets;
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::lighting::{self, LightMaps, Lighting, Posed};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
-use crate::model::state::solution::Scene;
+use crate::model::state::solution::{Scene, SeenScene};
+use crate::passes::frame::Frame;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::News;
@@ -91,7 +91,7 @@ pub(crate) struct FramePath<'a> {
     pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
     pub(crate) state: &'a SceneState,
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) frame: &'a TextureView,
+    pub(crate) frame: Frame<'a>,
 }
 
 impl FramePath<'_> {
@@ -129,9 +129,8 @@ impl FramePath<'_> {
         toy::Inputs {
             plan: &self.region.plan,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
-            scene: self.scene(),
+            seen: self.seen(),
             toy: self.toy,
-            frame: self.frame,
             appearance: &self.captured.by_pass.appearance,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
             self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
@@ -151,10 +150,9 @@ impl FramePath<'_> {
         let (captured, drawn) = (self.captured, self.drawn);
         composite::Inputs {
             parts: &drawn.parts,
-            scene: self.scene(),
+            seen: self.seen(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,
-            frame: self.frame,
             plate: &captured.plate.view,
             validity: &captured.by_pass.validity.marks.view,
             physical: &captured.light,
@@ -171,10 +169,13 @@ impl FramePath<'_> {
         }
     }
 
-    fn scene(&self) -> Scene<'_> {
-        Scene {
-            globals: &self.region.globals,
-            solution: &self.state.solution,
+    fn seen(&self) -> SeenScene<'_> {
+        SeenScene {
+            scene: Scene {
+                globals: &self.region.globals,
+                solution: &self.state.solution,
+            },
+            frame: self.frame,
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
@@ -16,16 +16,20 @@ use crate::model::lighting::self_shadow::{
 };
 use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
+use crate::passes::frame::{FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
-use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED};
+use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED, SRGB};
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = Shader::new(&[
     &GLOBALS,
     &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
     &TOY_LIGHT,
     &HEMISPHERES,
     &TOY_RADIANCE,
@@ -44,7 +48,6 @@ pub(crate) const SHADER: Shader = Shader::new(&[
 /// The offset of a draw in pixels, then what it reads.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<Vec2>(),
-    Slot::Texture,
     Slot::Depth,
     Slot::Texture,
     Slot::Texture,
@@ -87,9 +90,8 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) camera_in_anchor: Vec3,
-    pub(crate) scene: Scene<'a>,
+    pub(crate) seen: SeenScene<'a>,
     pub(crate) toy: &'a ToyMesh,
-    pub(crate) frame: &'a TextureView,
     pub(crate) appearance: &'a appearance::Targets,
     pub(crate) gbuffer_depth: &'a TextureView,
     /// Of the shown pose, and of the physical one.
@@ -161,7 +163,7 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SCENE_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
+        let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
         let draw = |(format, n_samples), culled| {
             gpu.draw(&DrawSpec {
                 vertex: "vs_toy",
@@ -198,7 +200,7 @@ impl Pass {
         };
         for (index, (drawn, offset_px)) in targets.drawn.iter().zip(offsets).enumerate() {
             let groups = [
-                recorder.bind(draw, GROUP_SCENE, &inputs.scene.resources()),
+                inputs.seen.bind(recorder, draw),
                 recorder.bind_with(draw, GROUP_PASS, offset_px, &inputs.resources()),
                 recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
             ];
@@ -221,10 +223,9 @@ impl Pass {
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 8] {
+    fn resources(&self) -> [Resource<'a>; 7] {
         [
             Resource::PerUse,
-            self.frame.into(),
             self.gbuffer_depth.into(),
             (&self.appearance.base.view).into(),
             (&self.appearance.received.view).into(),

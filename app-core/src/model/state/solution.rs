@@ -1,9 +1,12 @@
 //! The solution of the fits, and the sums that it is solved from.
 
-use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::bindings::{GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
+use crate::gpu::pipeline::Pipeline;
+use crate::gpu::recorder::{Group, Recorder};
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::shared_struct;
+use crate::passes::frame::{Encoding, Frame};
 use crate::passes::globals::Globals;
 use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
@@ -11,6 +14,14 @@ use crate::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 pub(crate) const FIT: Part = part!("common/fit", structs: [ReceiverFit, Fit], constants: [N_COLUMNS]);
 /// Slots that the model's passes share: the globals and the fit.
 pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::Read];
+/// The same with the camera's picture.
+pub(crate) const SEEN_SLOTS: &[Slot] = &[
+    SCENE_SLOTS[0],
+    SCENE_SLOTS[1],
+    Slot::per_use::<Encoding>(),
+    Slot::Texture,
+    Slot::Texture,
+];
 
 /// Maximum number of unknowns of a fit: two, and one per light.
 pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
@@ -55,6 +66,23 @@ pub(crate) struct Scene<'a> {
 impl<'a> Scene<'a> {
     pub(crate) fn resources(&self) -> [Resource<'a>; 2] {
         [self.globals.into(), self.solution.into()]
+    }
+}
+
+/// A scene as the camera sees it: with its picture, of the image's size.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenScene<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) frame: Frame<'a>,
+}
+
+impl SeenScene<'_> {
+    /// Binds it to a pipeline whose first group has [`SEEN_SLOTS`].
+    pub(crate) fn bind<T>(&self, recorder: &mut Recorder<'_>, pipeline: &Pipeline<T>) -> Group {
+        let [globals, solution] = self.scene.resources();
+        let [picture, chroma] = self.frame.views().map(Resource::from);
+        let resources = [globals, solution, Resource::PerUse, picture, chroma];
+        recorder.bind_with(pipeline, GROUP_SCENE, &self.frame.uniform(), &resources)
     }
 }
 

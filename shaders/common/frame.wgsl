@@ -1,0 +1,15 @@
+// The camera's picture in the work region, as linear light, read in the form that it came in.
+
+@group(0) @binding(2) var<uniform> encoding: Encoding;
+// A picture, or luma.
+@group(0) @binding(3) var frame: texture_2d<f32>;
+// Of planes alone.
+@group(0) @binding(4) var chroma: texture_2d<f32>;
+
+// Light at a texel of the region.
+fn frame_at(texel: vec2i) -> vec3f {
+  let in_picture = texel + vec2i(globals.region_origin_px);
+  let stored = textureLoad(frame, in_picture, 0);
+  if encoding.is_planar == 0u { return stored.rgb; }
+  return linear_from_srgb(codes_at(stored.r, in_picture));
+}

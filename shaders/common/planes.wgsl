@@ -1,0 +1,29 @@
+// Planes of luma and chroma (Cb, Cr) of half its size, rounded up, as sRGB codes. A shader binds them as `encoding` and `chroma`. A
+// chroma sample lies amid its four luma samples.
+//
+// Source: ITU-R BT.601-7, 2.5; BT.709-6, 3.
+
+struct Encoding {
+  srgb_from_ycbcr: mat3x3f,
+  // Luma of black, and chroma of grey.
+  origin: vec3f,
+  // 0 where there is no chroma: what stands for luma is a picture.
+  is_planar: u32,
+}
+
+// Chroma at a pixel: three quarters of the sample that it is of, one of that on its other side. A sampler of 8 bits would
+// be off by two codes.
+fn chroma_at(texel: vec2i) -> vec2f {
+  let last = vec2i(textureDimensions(chroma)) - 1;
+  let own = texel / 2;
+  let other = clamp(own + 2 * (texel % 2) - 1, vec2i(0), last);
+  let above = 0.75 * textureLoad(chroma, own, 0).rg + 0.25 * textureLoad(chroma, vec2i(other.x, own.y), 0).rg;
+  let below = 0.75 * textureLoad(chroma, vec2i(own.x, other.y), 0).rg + 0.25 * textureLoad(chroma, other, 0).rg;
+  return 0.75 * above + 0.25 * below;
+}
+
+// sRGB codes of a pixel that has a luma.
+fn codes_at(luma: f32, texel: vec2i) -> vec3f {
+  let ycbcr = vec3f(luma, chroma_at(texel));
+  return saturate(encoding.srgb_from_ycbcr * (ycbcr - encoding.origin));
+}
