@@ -1,5 +1,8 @@
 // The camera's picture in the work region, as linear light, read in the form that it came in.
 
+// Whether it is planes. No branch: some processors take both sides of one.
+override IS_PLANAR: bool = false;
+
 @group(0) @binding(2) var<uniform> encoding: Encoding;
 // A picture, or luma.
 @group(0) @binding(3) var frame: texture_2d<f32>;
@@ -10,6 +13,6 @@
 fn frame_at(texel: vec2i) -> vec3f {
   let in_picture = texel + vec2i(globals.region_origin_px);
   let stored = textureLoad(frame, in_picture, 0);
-  if encoding.is_planar == 0u { return stored.rgb; }
+  if !IS_PLANAR { return stored.rgb; }
   return linear_from_srgb(codes_at(stored.r, in_picture));
 }

@@ -7,8 +7,7 @@ struct Encoding {
   srgb_from_ycbcr: mat3x3f,
   // Luma of black, and chroma of grey.
   origin: vec3f,
-  // 0 where there is no chroma: what stands for luma is a picture.
-  is_planar: u32,
+  _pad: u32,
 }
 
 // Chroma at a pixel: three quarters of the sample that it is of, one of that on its other side. A sampler of 8 bits would

@@ -9,10 +9,11 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use app_core::Core;
+use app_core::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
 use app_core::frame::{self, FrameInput, FrameReport};
 use app_core::internals::{Change, Inspect, phone_limits, planned_by_model};
 use app_core::preset::Preset;
-use app_core::scene::{Camera, Pose};
+use app_core::scene::{Camera, Image, Pose};
 use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use glam::{DMat4, DVec3};
@@ -147,6 +148,24 @@ fn first_runs(planned: Vec<(frame::Path, &'static str)>) -> Vec<(frame::Path, &'
     first
 }
 
+/// A picture as a phone delivers it, in grey.
+fn in_grey(image: &Image) -> CameraImage {
+    let [width, height] = [image.width_px as usize, image.height_px as usize];
+    let luma: Vec<u8> = image.rgba8.iter().skip(1).step_by(4).copied().collect();
+    let chroma = vec![128; 2 * width.div_ceil(2) * height.div_ceil(2)];
+    let encoding = YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range: CodeRange::Full,
+    };
+    let planes = Planes::nv12(
+        [image.width_px, image.height_px],
+        (&luma, width),
+        (&chroma, 2 * width.div_ceil(2)),
+        encoding,
+    );
+    PlanarImage::new(&planes).unwrap().into()
+}
+
 fn later(input: &FrameInput) -> FrameInput {
     let Pose::Clip { clip, time_secs } = input.shown_pose else {
         panic!("the session shows a clip");
@@ -162,7 +181,7 @@ fn later(input: &FrameInput) -> FrameInput {
 
 fn photographed_again(input: &FrameInput) -> FrameInput {
     FrameInput {
-        image: input.image.rgba().as_ref().clone().into(),
+        image: in_grey(input.image.rgba()),
         ..input.clone()
     }
 }
@@ -211,7 +230,8 @@ fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
 #[test]
 fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
     let session = session();
-    let first = FrameInput::from(&session.frame(0).unwrap());
+    let mut first = FrameInput::from(&session.frame(0).unwrap());
+    first.image = in_grey(first.image.rgba());
     let mut traced = Traced::new("steady");
     // The others run a part of what these run.
     for preset in [Preset::Paper, Preset::Best] {
@@ -256,9 +276,15 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
         .core
         .set_scene(session.scene().clone(), Preset::Balanced)
         .unwrap();
-    let first = FrameInput::from(&session.frame(0).unwrap());
+    let mut first = FrameInput::from(&session.frame(0).unwrap());
+    let pixels = first.image.rgba().clone();
+    // As a phone delivers it: of pixels the pipelines are compiled when the first come.
+    first.image = in_grey(&pixels);
     traced.core.frame(&first).unwrap();
     assert_eq!(traced.given().n_created("Pipeline"), 0);
+    first.image = CameraImage::Rgba(pixels);
+    traced.core.frame(&first).unwrap();
+    assert!(traced.given().n_created("Pipeline") > 0);
 }
 
 /// What a core does past its count and its report is found.

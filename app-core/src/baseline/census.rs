@@ -51,6 +51,7 @@ impl Pass {
                 shader: &SHADER,
                 entry_point: "cs_count",
                 groups: [&[], SLOTS, &[], &[]],
+                constants: Vec::new(),
             }),
         }
     }

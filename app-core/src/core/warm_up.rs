@@ -10,7 +10,8 @@ use crate::stage::method;
 
 impl Core {
     /// Compiles what the frames of `preset` need, one pass a step: on another thread, or a few steps between two frames of
-    /// the shell's own. What has not been compiled until then, [`Core::set_scene`] compiles.
+    /// the shell's own. What has not been compiled until then, [`Core::set_scene`] compiles; what reads pictures that come as pixels
+    /// rather than as a phone's planes, the first frames with such.
     #[must_use]
     pub fn warm_up(&self, preset: Preset) -> WarmUp {
         WarmUp {

@@ -58,11 +58,13 @@ impl DrawSpec {
 }
 
 /// Description of a compute pipeline, its cache key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ComputeSpec {
     pub(crate) shader: &'static Shader,
     pub(crate) entry_point: &'static str,
     pub(crate) groups: Groups,
+    /// Values of `override` constants.
+    pub(crate) constants: Vec<(&'static str, u32)>,
 }
 
 /// A pipeline.
@@ -115,11 +117,7 @@ impl PipelineCache {
     fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
         let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
         let module = self.module(device, spec.shader);
-        let constants: Vec<(&str, f64)> = spec
-            .constants
-            .iter()
-            .map(|(name, value)| (*name, f64::from(*value)))
-            .collect();
+        let constants = values(&spec.constants);
         let attributes: Vec<[VertexAttribute; 1]> = spec.streams.iter().map(attribute).collect();
         let buffers: Vec<_> = attributes.iter().map(|stream| Some(buffer(stream))).collect();
         let targets: Vec<_> = spec.targets.iter().cloned().map(Some).collect();
@@ -167,7 +165,10 @@ impl PipelineCache {
             layout: Some(&layout),
             module: &self.module(device, spec.shader),
             entry_point: Some(spec.entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &values(&spec.constants),
+                ..Default::default()
+            },
             cache: None,
         });
         Pipeline {
@@ -185,6 +186,12 @@ impl PipelineCache {
             })
         })
     }
+}
+
+/// Values of `override` constants as the device takes them.
+fn values(constants: &[(&'static str, u32)]) -> Vec<(&'static str, f64)> {
+    let values = constants.iter();
+    values.map(|(name, value)| (*name, f64::from(*value))).collect()
 }
 
 fn pipeline_layout(

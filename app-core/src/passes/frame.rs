@@ -1,6 +1,9 @@
 //! The camera's picture on the device, in whichever form it came, as passes read it.
 
+use std::sync::OnceLock;
+
 use crate::camera_frame::YcbcrEncoding;
+use crate::gpu::context::Gpu;
 use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
@@ -15,7 +18,7 @@ shared_struct! {
     pub(crate) struct Encoding {
         pub srgb_from_ycbcr: Mat3Columns,
         pub origin: [f32; 3],
-        pub is_planar: u32,
+        pub _pad: u32,
     }
 }
 
@@ -42,13 +45,44 @@ pub(crate) struct FramePlanes<'a> {
     pub(crate) encoding: YcbcrEncoding,
 }
 
+/// Pipelines by the form of the picture, which [`FRAME`] has as a constant: for planes, which phones deliver, compiled ahead, for
+/// pictures when the first comes.
+pub(crate) struct ByForm<T> {
+    of_planes: T,
+    of_picture: OnceLock<T>,
+    make: Box<Make<T>>,
+}
+
+/// Makes a pipeline with a value of the constant.
+type Make<T> = dyn Fn(&Gpu, (&'static str, u32)) -> T + Send + Sync;
+
+impl<T> ByForm<T> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        make: impl Fn(&Gpu, (&'static str, u32)) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            of_planes: make(gpu, ("IS_PLANAR", 1)),
+            of_picture: OnceLock::new(),
+            make: Box::new(make),
+        }
+    }
+
+    pub(crate) fn of(&self, gpu: &Gpu, frame: &Frame<'_>) -> &T {
+        match frame {
+            Frame::Planes(_) => &self.of_planes,
+            Frame::Picture(_) => self.of_picture.get_or_init(|| (self.make)(gpu, ("IS_PLANAR", 0))),
+        }
+    }
+}
+
 impl FramePlanes<'_> {
     pub(crate) fn uniform(&self) -> Encoding {
         let map = self.encoding.srgb_from_ycbcr();
         Encoding {
             srgb_from_ycbcr: map.columns(),
             origin: map.origin.to_array(),
-            is_planar: 1,
+            _pad: 0,
         }
     }
 }

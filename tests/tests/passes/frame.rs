@@ -15,7 +15,7 @@ const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt709,
     range: CodeRange::Video,
 };
-/// The map from its codes: luma, Cb, Cr, each a column; what is black and grey; and that there are planes.
+/// The map from its codes: luma, Cb, Cr, each a column; then black and grey.
 const MAP: [f32; 16] = [
     1.164_383_6,
     1.164_383_6,
@@ -32,7 +32,7 @@ const MAP: [f32; 16] = [
     16.0 / 255.0,
     128.0 / 255.0,
     128.0 / 255.0,
-    f32::from_bits(1),
+    0.0,
 ];
 /// Draws the part alone.
 const SHOWN: &str = "
@@ -67,7 +67,7 @@ fn errors(source: &str) -> Errors {
     let draw = Draw {
         source: &shown,
         fragment: "fs_frame",
-        constants: &[],
+        constants: &[("IS_PLANAR", 1.0)],
         output: 0,
         size: scene.rect.size_px,
     };
@@ -102,7 +102,7 @@ fn a_fault_in_the_reading_is_found() {
             "+ vec2i(globals.region_origin_px) / 2;",
         ),
         ("linear_from_srgb(codes_at(", "(codes_at("),
-        ("is_planar == 0u", "is_planar == 1u"),
+        ("if !IS_PLANAR", "if IS_PLANAR"),
         ("2 * (texel % 2) - 1", "1 - 2 * (texel % 2)"),
         ("own + 2 *", "own - 2 *"),
         ("* (ycbcr - encoding.origin)", "* ycbcr"),

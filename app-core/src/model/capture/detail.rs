@@ -12,7 +12,7 @@ use crate::model::capture::observed::Observed;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{FRAME, PLANES};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
 
@@ -45,7 +45,7 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
 }
 
 pub(crate) struct Pass {
-    draw: Draw,
+    draw: ByForm<Draw>,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -72,12 +72,18 @@ impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SEEN_SLOTS, SLOTS, &[], &[]];
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_separate", groups, &[FORMAT])),
+            draw: ByForm::new(gpu, move |gpu, form| {
+                gpu.draw(&DrawSpec {
+                    constants: vec![form],
+                    ..DrawSpec::fullscreen(&SHADER, "fs_separate", groups, &[FORMAT])
+                })
+            }),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let Some(target) = &targets.residual else { return };
+        let draw = self.draw.of(recorder.gpu, &inputs.seen.frame);
         let observed = &inputs.observed;
         let resources = [
             inputs.plate.into(),
@@ -87,9 +93,9 @@ impl Pass {
             (&recorder.gpu.samplers.linear).into(),
         ];
         let groups = [
-            inputs.seen.bind(recorder, &self.draw),
-            recorder.bind(&self.draw, GROUP_PASS, &resources),
+            inputs.seen.bind(recorder, draw),
+            recorder.bind(draw, GROUP_PASS, &resources),
         ];
-        recorder.fullscreen(&self.draw, &groups, &[&target.view]);
+        recorder.fullscreen(draw, &groups, &[&target.view]);
     }
 }

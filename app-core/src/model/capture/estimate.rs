@@ -12,7 +12,7 @@ use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{FRAME, PLANES};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, SRGB};
 use crate::passes::plate::FINE_FORMAT;
@@ -49,7 +49,7 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
 }
 
 pub(crate) struct Pass {
-    complete: Draw,
+    complete: ByForm<Draw>,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -79,17 +79,17 @@ impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [SEEN_SLOTS, SLOTS, &[], &[]];
         Self {
-            complete: gpu.draw(&DrawSpec::fullscreen(
-                &SHADER,
-                "fs_complete",
-                groups,
-                &[FINE_FORMAT],
-            )),
+            complete: ByForm::new(gpu, move |gpu, form| {
+                gpu.draw(&DrawSpec {
+                    constants: vec![form],
+                    ..DrawSpec::fullscreen(&SHADER, "fs_complete", groups, &[FINE_FORMAT])
+                })
+            }),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
-        let draw = &self.complete;
+        let draw = self.complete.of(recorder.gpu, &inputs.seen.frame);
         let observed = &inputs.observed;
         let resources = [
             inputs.grids.into(),

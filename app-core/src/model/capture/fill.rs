@@ -29,6 +29,7 @@ impl Pass {
                 shader: &SHADER,
                 entry_point: "cs_pull_push",
                 groups: [&[], SLOTS, &[], &[]],
+                constants: Vec::new(),
             }),
         }
     }

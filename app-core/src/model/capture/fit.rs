@@ -16,7 +16,7 @@ use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, HEMISPHERES, MODEL, T
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{FRAME, PLANES};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{MARKS, PIXEL, SRGB};
 
@@ -135,10 +135,10 @@ impl Task {
 
 pub(crate) struct Pass {
     /// Of a plate as it is, and of one that is completed.
-    receiver: [Compute; 2],
+    receiver: [ByForm<Compute>; 2],
     /// The same.
-    intensities: [Compute; 2],
-    toy: Compute,
+    intensities: [ByForm<Compute>; 2],
+    toy: ByForm<Compute>,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -172,10 +172,13 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let compute = |entry_point, lit_slots: &'static [Slot], n_slots| {
-            gpu.compute(&ComputeSpec {
-                shader: &SHADER,
-                entry_point,
-                groups: [SEEN_SLOTS, lit_slots, &SLOTS[..n_slots], &[]],
+            ByForm::new(gpu, move |gpu, form| {
+                gpu.compute(&ComputeSpec {
+                    shader: &SHADER,
+                    entry_point,
+                    groups: [SEEN_SLOTS, lit_slots, &SLOTS[..n_slots], &[]],
+                    constants: vec![form],
+                })
             })
         };
         let by_plate = |[complete, completing]: [_; 2]| {
@@ -218,6 +221,7 @@ impl Pass {
             Subject::Intensities => (&self.intensities[by_plate], N_RECEIVER_SLOTS),
             Subject::Toy => (&self.toy, SLOTS.len()),
         };
+        let compute = compute.of(recorder.gpu, &inputs.seen.frame);
         let mut groups = vec![
             inputs.seen.bind(recorder, compute),
             recorder.bind_with(compute, GROUP_FIT, step, &resources[..n_slots]),

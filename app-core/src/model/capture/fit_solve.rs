@@ -45,6 +45,7 @@ impl Pass {
                 shader: &SHADER,
                 entry_point: "cs_solve",
                 groups: [GLOBALS_GROUP, SLOTS, &[], &[]],
+                constants: Vec::new(),
             }),
         }
     }

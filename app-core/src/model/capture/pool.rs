@@ -10,6 +10,7 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::passes::frame::ByForm;
 
 /// Sample points of a cell, and its accumulation.
 pub(crate) const POOL: Part = part!("common/pool", structs: [Taken], constants: [N_POINTS]);
@@ -48,7 +49,7 @@ impl Taken {
 }
 
 pub(crate) struct Pool {
-    compute: Compute,
+    compute: ByForm<Compute>,
 }
 
 /// Grids and cells to pool into.
@@ -65,10 +66,13 @@ impl Pool {
     /// The slots begin with the grids, the cells and their accumulated sums, and the points taken.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader, slots: &'static [Slot]) -> Self {
         Self {
-            compute: gpu.compute(&ComputeSpec {
-                shader,
-                entry_point: "cs_pool",
-                groups: [SEEN_SLOTS, slots, &[], &[]],
+            compute: ByForm::new(gpu, move |gpu, form| {
+                gpu.compute(&ComputeSpec {
+                    shader,
+                    entry_point: "cs_pool",
+                    groups: [SEEN_SLOTS, slots, &[], &[]],
+                    constants: vec![form],
+                })
             }),
         }
     }
@@ -81,6 +85,7 @@ impl Pool {
         taken: &Taken,
         pictures: &[&TextureView],
     ) {
+        let compute = self.compute.of(recorder.gpu, &on.seen.frame);
         let buffers = [on.grids, &on.cells.cells, &on.cells.accumulated].map(Resource::from);
         let sampler = Resource::from(&recorder.gpu.samplers.linear);
         let resources: Vec<_> = buffers
@@ -90,12 +95,12 @@ impl Pool {
             .chain([sampler])
             .collect();
         let groups = [
-            on.seen.bind(recorder, &self.compute),
-            recorder.bind_with(&self.compute, GROUP_PASS, taken, &resources),
+            on.seen.bind(recorder, compute),
+            recorder.bind_with(compute, GROUP_PASS, taken, &resources),
         ];
         let n_side = N_POINTS / taken.stride;
         let n_points = (u64::from(n_side * n_side) * on.layout.n_cells()).min(recorder.n_pixels);
         let workgroups = [WORKGROUPS, WORKGROUPS, on.n_receivers];
-        recorder.compute_over(&self.compute, &groups, workgroups, n_points);
+        recorder.compute_over(compute, &groups, workgroups, n_points);
     }
 }

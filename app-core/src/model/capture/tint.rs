@@ -11,7 +11,7 @@ use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
-use crate::passes::frame::{FRAME, PLANES};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 use crate::passes::parts::{CHANNELS, MARKS, PIXEL, SRGB};
@@ -46,7 +46,7 @@ const SLOTS: &[Slot] = &[
 const WORKGROUP_PX: u32 = 8;
 
 pub(crate) struct Pass {
-    compute: Compute,
+    compute: ByForm<Compute>,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -59,10 +59,13 @@ pub(crate) struct Inputs<'a> {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            compute: gpu.compute(&ComputeSpec {
-                shader: &SHADER,
-                entry_point: "cs_add",
-                groups: [SEEN_SLOTS, SLOTS, &[], &[]],
+            compute: ByForm::new(gpu, move |gpu, form| {
+                gpu.compute(&ComputeSpec {
+                    shader: &SHADER,
+                    entry_point: "cs_add",
+                    groups: [SEEN_SLOTS, SLOTS, &[], &[]],
+                    constants: vec![form],
+                })
             }),
         }
     }
@@ -70,6 +73,7 @@ impl Pass {
     /// Sums the shown and expected colours of a frame.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, tints: &Tints) {
         recorder.clear(&tints.sums);
+        let compute = self.compute.of(recorder.gpu, &inputs.seen.frame);
         let gbuffer = inputs.gbuffer;
         let resources = [
             Resource::PerUse,
@@ -83,18 +87,13 @@ impl Pass {
         ];
         let stride_px = inputs.plan.fit_stride_px;
         let groups = [
-            inputs.seen.bind(recorder, &self.compute),
-            recorder.bind_with(&self.compute, GROUP_PASS, &stride_px, &resources),
+            inputs.seen.bind(recorder, compute),
+            recorder.bind_with(compute, GROUP_PASS, &stride_px, &resources),
         ];
         // As many steps as can begin in the box.
         let size_px = inputs.plan.toy_box.size_px;
         let sampled_px = size_px.map(|side_px| side_px.div_ceil(stride_px));
         let workgroups = sampled_px.map(|side_px| side_px.div_ceil(WORKGROUP_PX)).extend(1);
-        recorder.compute_over(
-            &self.compute,
-            &groups,
-            workgroups.to_array(),
-            n_pixels(sampled_px),
-        );
+        recorder.compute_over(compute, &groups, workgroups.to_array(), n_pixels(sampled_px));
     }
 }

@@ -30,6 +30,7 @@ impl Pass {
                 shader: &SHADER,
                 entry_point: "cs_fill",
                 groups: [&[], SLOTS, &[], &[]],
+                constants: Vec::new(),
             }),
         }
     }

@@ -21,7 +21,7 @@ use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{FRAME, PLANES, Picture};
+use crate::passes::frame::{ByForm, FRAME, PLANES, Picture};
 use crate::passes::globals::GLOBALS;
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
 use crate::passes::present::REGION_FORMAT;
@@ -73,12 +73,12 @@ shared_struct! {
 
 pub(crate) struct Pass {
     /// Clear of the toy in either pose, and of its shadows.
-    open: Draw,
+    open: ByForm<Draw>,
     /// Clear of the toy in either pose.
-    beside: Draw,
+    beside: ByForm<Draw>,
     /// Near it, where the toy was drawn once.
-    drawn_once: Draw,
-    drawn_four_times: Draw,
+    drawn_once: ByForm<Draw>,
+    drawn_four_times: ByForm<Draw>,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -126,7 +126,12 @@ impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let draw = |fragment, of_shadow, of_toy| {
             let groups = [SEEN_SLOTS, SLOTS, of_shadow, of_toy];
-            gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT]))
+            ByForm::new(gpu, move |gpu, form| {
+                gpu.draw(&DrawSpec {
+                    constants: vec![form],
+                    ..DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT])
+                })
+            })
         };
         Self {
             open: draw("fs_open", &[], &[]),
@@ -141,26 +146,24 @@ impl Pass {
             1 => &self.drawn_once,
             _ => &self.drawn_four_times,
         };
-        let open = [
-            inputs.seen.bind(recorder, &self.open),
-            recorder.bind(
-                &self.open,
-                GROUP_PASS,
-                &inputs.of_all(&recorder.gpu.samplers.linear),
-            ),
+        let [open, beside, near_toy] =
+            [&self.open, &self.beside, near_toy].map(|draw| draw.of(recorder.gpu, &inputs.seen.frame));
+        let of_open = [
+            inputs.seen.bind(recorder, open),
+            recorder.bind(open, GROUP_PASS, &inputs.of_all(&recorder.gpu.samplers.linear)),
         ];
         let drawing = Drawing {
             has_detail: u32::from(inputs.detail.is_some()),
         };
-        let shadowed = recorder.bind_with(&self.beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
+        let shadowed = recorder.bind_with(beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
         let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
         let (target, parts) = (&targets.picture.view, inputs.parts);
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
-        render.begin(&self.open, &open);
+        render.begin(open, &of_open);
         parts.open.iter().for_each(|part| fill(&mut render, part));
         let n = |parts: &[PixelRect]| -> u64 { parts.iter().map(|part| n_pixels(part.size_px)).sum() };
         render.narrow(n(&parts.shadowed) + n(&parts.near));
-        render.begin(&self.beside, &[shadowed]);
+        render.begin(beside, &[shadowed]);
         parts.shadowed.iter().for_each(|part| fill(&mut render, part));
         render.narrow(n(&parts.near));
         render.begin(near_toy, &[of_toy]);

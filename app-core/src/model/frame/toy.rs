@@ -18,7 +18,7 @@ use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
-use crate::passes::frame::{FRAME, PLANES};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
 use crate::passes::globals::GLOBALS;
 use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
 use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED, SRGB};
@@ -79,12 +79,14 @@ const OFFSETS_PX: [Vec2; 4] = [
     Vec2::new(0.0625, 0.1875),
 ];
 
+/// Both sides of each triangle, and the one that faces the camera.
+type Sides = ByForm<[Draw; 2]>;
+
 pub(crate) struct Pass {
-    /// Draw both sides of each triangle, or the one that faces the camera.
-    coded: [Draw; 2],
-    fine: [Draw; 2],
+    coded: Sides,
+    fine: Sides,
     /// Of one sample.
-    single: [Draw; 2],
+    single: Sides,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -163,33 +165,21 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
-        let draw = |(format, n_samples), culled| {
-            gpu.draw(&DrawSpec {
-                vertex: "vs_toy",
-                streams: STREAMS,
-                n_samples,
-                constants: vec![("IS_COARSE", u32::from(n_samples == 1))],
-                depth: Some(nearest_surface()),
-                culled,
-                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
-            })
-        };
-        let draws = |target| [None, Some(Face::Back)].map(|culled| draw(target, culled));
         Self {
-            coded: draws((CODED_FORMAT, N_SAMPLES)),
-            fine: draws((FINE_FORMAT, N_SAMPLES)),
-            single: draws((CODED_FORMAT, 1)),
+            coded: sides(gpu, (CODED_FORMAT, N_SAMPLES)),
+            fine: sides(gpu, (FINE_FORMAT, N_SAMPLES)),
+            single: sides(gpu, (CODED_FORMAT, 1)),
         }
     }
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let [draw, culled] = match targets.drawn.len() {
+        let sides = match targets.drawn.len() {
             1 if targets.samples.is_none() => &self.single,
             1 => &self.coded,
             _ => &self.fine,
         };
+        let [draw, culled] = sides.of(recorder.gpu, &inputs.seen.frame);
         let [shown, physical] = inputs.self_shadow;
         let maps = shown.resources(recorder.gpu, physical);
         let materials = inputs.toy.bind_materials(recorder, draw);
@@ -220,6 +210,25 @@ impl Pass {
             toy.draw_parts(&mut render, &sided, &[&toy.shown, &toy.physical], &materials);
         }
     }
+}
+
+/// Draws onto targets of a format and so many samples.
+fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32)) -> Sides {
+    let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
+    let is_coarse = ("IS_COARSE", u32::from(n_samples == 1));
+    ByForm::new(gpu, move |gpu, form| {
+        [None, Some(Face::Back)].map(|culled| {
+            gpu.draw(&DrawSpec {
+                vertex: "vs_toy",
+                streams: STREAMS,
+                n_samples,
+                constants: vec![form, is_coarse],
+                depth: Some(nearest_surface()),
+                culled,
+                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
+            })
+        })
+    })
 }
 
 impl<'a> Inputs<'a> {
