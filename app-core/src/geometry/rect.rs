@@ -32,6 +32,23 @@ impl PixelRect {
         (size_px.min_element() > 0).then_some(Self { origin_px, size_px })
     }
 
+    /// The rest of it beside a part of it, in at most four rectangles.
+    pub fn beside(&self, part: &Self) -> impl Iterator<Item = Self> {
+        let (UVec2 { x: left, y: top }, end) = (self.origin_px, self.origin_px + self.size_px);
+        let (from, to) = (part.origin_px, part.origin_px + part.size_px);
+        let rects = [
+            [left, top, end.x, from.y],
+            [left, from.y, from.x, to.y],
+            [to.x, from.y, end.x, to.y],
+            [left, to.y, end.x, end.y],
+        ];
+        let rects = rects.into_iter().map(|[x, y, end_x, end_y]| Self {
+            origin_px: UVec2::new(x, y),
+            size_px: UVec2::new(end_x, end_y) - UVec2::new(x, y),
+        });
+        rects.filter(|rect| rect.size_px.min_element() > 0)
+    }
+
     /// Whether all of `other` lies within.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {

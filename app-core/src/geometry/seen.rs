@@ -1,9 +1,45 @@
 //! Where a shape may be seen, or its shadow fall, or either be looked up from beside it.
 
-use glam::Vec3;
+use glam::{UVec2, Vec2, Vec3};
 
+use crate::geometry::rect::PixelRect;
 use crate::geometry::silhouette::{Projection, around, landings};
 use crate::geometry::tiles::Tiles;
+
+/// The pixels of a target of `size_px` in which a shape may be seen, with one around for what rounding and the offsets of samples
+/// add: all of them where that has no bounds, none where it is beyond the target.
+pub(crate) fn seen_rect(
+    positions: &[Vec3],
+    projection: &dyn Projection,
+    size_px: UVec2,
+) -> Option<PixelRect> {
+    let all = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px,
+    };
+    let landings: Option<Vec<_>> = positions
+        .iter()
+        .map(|position| projection.land(*position))
+        .collect();
+    let Some(landings) = landings else {
+        return Some(all);
+    };
+    let low = landings
+        .iter()
+        .map(|one| one.at_px - one.within_px)
+        .fold(Vec2::INFINITY, Vec2::min);
+    let high = landings
+        .iter()
+        .map(|one| one.at_px + one.within_px)
+        .fold(Vec2::NEG_INFINITY, Vec2::max);
+    // What lies before the target's origin is cut off by the numbers without a sign.
+    let [first, end] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|corner| corner.as_uvec2());
+    let seen = PixelRect {
+        origin_px: first,
+        size_px: end.saturating_sub(first),
+    };
+    seen.common(&all)
+}
 
 /// Marks the tiles within `reach_px`, along either axis, of where a shape may be seen, or its shadow fall: all of them where that
 /// has no bounds. `corners` are those of its triangles.

@@ -43,8 +43,10 @@ pub(crate) enum Slot {
     WholeNumbers,
     /// A filterable texture.
     Filtered,
-    /// A depth map.
+    /// A depth map of the pixels that are drawn.
     Depth,
+    /// A depth map seen from elsewhere, which is looked at anywhere.
+    DepthFromElsewhere,
     /// The sampler that filters.
     Sampler,
     /// The sampler that compares depths.
@@ -110,7 +112,9 @@ impl Slot {
                     TextureViewDimension::D2,
                 ),
             ),
-            Self::Depth => (drawn, texture(TextureSampleType::Depth, TextureViewDimension::D2)),
+            Self::Depth | Self::DepthFromElsewhere => {
+                (drawn, texture(TextureSampleType::Depth, TextureViewDimension::D2))
+            }
             Self::Sampler => (drawn, BindingType::Sampler(SamplerBindingType::Filtering)),
             Self::Comparison => (drawn, BindingType::Sampler(SamplerBindingType::Comparison)),
         };
@@ -152,6 +156,7 @@ impl<'a> Resource<'a> {
             (Self::View(view), _) => Some(Bound::View {
                 id: view.id,
                 shape: view.shape,
+                is_whole: slot == Slot::DepthFromElsewhere,
             }),
             (Self::Sampler(_), _) => None,
             (Self::PerUse, _) => Some(Bound::Buffer {

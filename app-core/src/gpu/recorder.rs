@@ -389,7 +389,7 @@ impl Render<'_> {
     }
 
     /// Draws no farther than a part of the attachments; before anything is set.
-    fn within(&mut self, part: (UVec2, UVec2)) {
+    pub(crate) fn within(&mut self, part: (UVec2, UVec2)) {
         self.narrow(n_pixels(part.1));
         self.clip(part);
     }

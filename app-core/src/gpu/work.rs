@@ -99,8 +99,8 @@ pub(crate) type Id = u64;
 pub(super) enum Bound {
     /// A part of a buffer.
     Buffer { id: Id, n_bytes: u64, is_written: bool },
-    /// A view of a texture.
-    View { id: Id, shape: Shape },
+    /// A view of a texture, of which no more is read than the pixels that are looked at, or all.
+    View { id: Id, shape: Shape, is_whole: bool },
 }
 
 /// A pass that is being counted.
@@ -147,9 +147,10 @@ impl<'a> Tally<'a> {
                         self.work.write(if is_written { n_bytes } else { 0 });
                     }
                 }
-                Bound::View { id, shape } => {
+                Bound::View { id, shape, is_whole } => {
                     if self.is_new(id) {
-                        let most = self.n_pixels.saturating_mul(u64::from(shape.n_layers));
+                        let n_pixels = if is_whole { u64::MAX } else { self.n_pixels };
+                        let most = n_pixels.saturating_mul(u64::from(shape.n_layers));
                         self.work.read(shape.n_texels().min(most) * shape.texel_bytes());
                     }
                 }

@@ -8,6 +8,7 @@ pub(crate) mod counting;
 pub(crate) mod finished;
 pub(crate) mod frame;
 pub(crate) mod globals;
+pub(crate) mod in_parts;
 pub(crate) mod list;
 pub(crate) mod materials;
 mod mips;

@@ -6,12 +6,13 @@ mod runs;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
 use crate::geometry::bounds::Sphere;
 use crate::geometry::facing::Viewers;
-use crate::geometry::seen::mark_seen;
+use crate::geometry::rect::PixelRect;
+use crate::geometry::seen::{mark_seen, seen_rect};
 use crate::geometry::silhouette::{Edges, Projection, Shape, find_silhouette};
 use crate::geometry::tiles::Tiles;
 use crate::gpu::buffer::Buffer;
@@ -230,6 +231,15 @@ impl ToyMesh {
         for corners in [closed, open] {
             mark_seen(tiles, (&pose.mesh.positions, corners), projection, reach_px);
         }
+    }
+
+    /// The pixels of a target of `size_px` in which the toy may be seen in a pose.
+    pub(crate) fn seen_rect(
+        pose: &PoseBuffers,
+        projection: &dyn Projection,
+        size_px: UVec2,
+    ) -> Option<PixelRect> {
+        seen_rect(&pose.mesh.positions, projection, size_px)
     }
 
     /// A shape in a pose, if it is small enough to look for its silhouette.

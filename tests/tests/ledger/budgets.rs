@@ -75,15 +75,15 @@ fn assert_held(n_lights: u32, preset: Preset, budgets: [Budget; 3], peak_mib: f6
 fn frames_of_balanced_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
-        (Pose, 222_000, 1.60),
-        (Picture, 222_000, 1.88),
-        (View, 392_000, 2.86),
+        (Pose, 222_000, 1.52),
+        (Picture, 222_000, 1.80),
+        (View, 392_000, 2.79),
     ];
     assert_held(1, Preset::Balanced, one, 36.0);
     let two = [
-        (Pose, 332_000, 1.72),
-        (Picture, 332_000, 2.01),
-        (View, 609_000, 3.09),
+        (Pose, 332_000, 1.76),
+        (Picture, 332_000, 2.05),
+        (View, 609_000, 3.20),
     ];
     assert_held(2, Preset::Balanced, two, 39.5);
 }
@@ -92,15 +92,15 @@ fn frames_of_balanced_stay_within_their_budgets() {
 fn frames_of_fast_stay_within_their_budgets() {
     use FrameKind::{Picture, Pose, View};
     let one = [
-        (Pose, 101_000, 1.49),
-        (Picture, 101_000, 1.77),
-        (View, 171_000, 2.67),
+        (Pose, 101_000, 1.39),
+        (Picture, 101_000, 1.67),
+        (View, 171_000, 2.58),
     ];
     assert_held(1, Preset::Fast, one, 34.0);
     let two = [
-        (Pose, 135_000, 1.64),
-        (Picture, 135_000, 1.92),
-        (View, 239_000, 2.92),
+        (Pose, 135_000, 1.56),
+        (Picture, 135_000, 1.84),
+        (View, 239_000, 2.85),
     ];
     assert_held(2, Preset::Fast, two, 37.0);
 }

@@ -29,8 +29,16 @@ struct View {
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    Uniform { n_bytes: u64, is_dynamic: bool },
-    Storage { is_written: bool },
+    Uniform {
+        n_bytes: u64,
+        is_dynamic: bool,
+    },
+    Storage {
+        is_written: bool,
+    },
+    Depth,
+    /// A sampler that compares: depths that are bound with it are seen from elsewhere than what is drawn.
+    Comparison,
     Other,
 }
 
@@ -248,6 +256,9 @@ impl Objects {
     fn bound(&self, group: u64, n_pixels: u64, seen: &mut BTreeSet<[u64; 3]>) -> (u64, u64) {
         let (layout, bound) = &self.groups[&group];
         let (mut read, mut written) = (0, 0);
+        let compares = self.layouts[layout]
+            .iter()
+            .any(|kind| matches!(kind, Kind::Comparison));
         for (index, (kind, id)) in self.layouts[layout].iter().zip(bound).enumerate() {
             match *kind {
                 Kind::Uniform { n_bytes, is_dynamic } => {
@@ -264,13 +275,15 @@ impl Objects {
                         written += if is_written { self.buffers[id] } else { 0 };
                     }
                 }
-                Kind::Other => {
+                Kind::Depth | Kind::Comparison | Kind::Other => {
                     let Some(view) = self.views.get(id) else {
                         continue;
                     };
                     if seen.insert([view.of, view.first_layer, view.n_layers]) {
                         let texture = self.textures[&view.of];
-                        let n_texels = (texture.size[0] * texture.size[1]).min(n_pixels);
+                        let is_whole = compares && matches!(kind, Kind::Depth);
+                        let most = if is_whole { u64::MAX } else { n_pixels };
+                        let n_texels = (texture.size[0] * texture.size[1]).min(most);
                         read += n_texels * view.n_layers * texture.texel_bytes;
                     }
                 }
@@ -296,6 +309,8 @@ fn kinds(text: &[&str]) -> Vec<Kind> {
             "ty: Storage(" => kinds.push(Kind::Storage {
                 is_written: text[index + 1].contains("false"),
             }),
+            "ty: Texture(" if text[index + 1].contains("Depth") => kinds.push(Kind::Depth),
+            "ty: Sampler(comparison)," => kinds.push(Kind::Comparison),
             _ => kinds.push(Kind::Other),
         }
     }

@@ -2,12 +2,11 @@
 
 use wgpu::StoreOp;
 
-use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Recorder, Render, cleared, n_pixels};
+use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::samplers::Sampler;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::shared::shared_struct;
@@ -23,6 +22,7 @@ use crate::model::state::grids::{GRID, Grids};
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
 use crate::passes::frame::{ByForm, FRAME, PLANES, Picture};
 use crate::passes::globals::GLOBALS;
+use crate::passes::in_parts::{fill, n_pixels_of};
 use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
 use crate::passes::present::REGION_FORMAT;
 
@@ -160,20 +160,14 @@ impl Pass {
         let (target, parts) = (&targets.picture.view, inputs.parts);
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
         render.begin(open, &of_open);
-        parts.open.iter().for_each(|part| fill(&mut render, part));
-        let n = |parts: &[PixelRect]| -> u64 { parts.iter().map(|part| n_pixels(part.size_px)).sum() };
-        render.narrow(n(&parts.shadowed) + n(&parts.near));
+        fill(&mut render, &parts.open);
+        render.narrow(n_pixels_of(&parts.shadowed) + n_pixels_of(&parts.near));
         render.begin(beside, &[shadowed]);
-        parts.shadowed.iter().for_each(|part| fill(&mut render, part));
-        render.narrow(n(&parts.near));
+        fill(&mut render, &parts.shadowed);
+        render.narrow(n_pixels_of(&parts.near));
         render.begin(near_toy, &[of_toy]);
-        parts.near.iter().for_each(|part| fill(&mut render, part));
+        fill(&mut render, &parts.near);
     }
-}
-
-fn fill(render: &mut Render<'_>, part: &PixelRect) {
-    render.clip((part.origin_px, part.size_px));
-    render.draw(0..3, 0..1);
 }
 
 impl<'a> Inputs<'a> {

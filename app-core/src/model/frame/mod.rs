@@ -2,6 +2,7 @@
 
 pub(crate) mod region_parts;
 
+use crate::geometry::rect::PixelRect;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::model::capture::CaptureTargets;
@@ -67,6 +68,8 @@ pub(crate) struct FrameTargets {
     pub(crate) physical_marks: Option<Marks>,
     /// As both poses part the region.
     pub(crate) parts: RegionParts,
+    /// The part of the toy box in which the shown toy may be seen.
+    pub(crate) shown_toy: Option<PixelRect>,
     pub(crate) by_pass: Targets,
 }
 
@@ -77,6 +80,7 @@ impl FrameTargets {
             light: LightMaps::new(gpu, plan),
             physical_marks: None,
             parts: RegionParts::all_near(plan.region.size_px),
+            shown_toy: None,
             by_pass: Targets::new(gpu, plan),
         }
     }
@@ -129,6 +133,7 @@ impl FramePath<'_> {
         toy::Inputs {
             plan: &self.region.plan,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
+            shown_toy: self.drawn.shown_toy,
             seen: self.seen(),
             toy: self.toy,
             appearance: &self.captured.by_pass.appearance,

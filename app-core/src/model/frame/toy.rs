@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
+use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
@@ -92,6 +93,8 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) camera_in_anchor: Vec3,
+    /// The part of the toy box in which the toy may be seen.
+    pub(crate) shown_toy: Option<PixelRect>,
     pub(crate) seen: SeenScene<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
@@ -200,6 +203,8 @@ impl Pass {
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn());
+            let Some(part) = inputs.shown_toy else { continue };
+            render.within((part.origin_px, part.size_px));
             let sided = Sided {
                 both: draw,
                 culled,
