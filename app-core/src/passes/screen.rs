@@ -89,13 +89,6 @@ pub(crate) struct Pass {
     mixed: [Draw; 2],
 }
 
-/// A part of the screen that is drawn alike.
-struct Part<'a> {
-    rects: Vec<PixelRect>,
-    draw: &'a Draw,
-    groups: Vec<Group>,
-}
-
 impl Pass {
     /// For a screen of `format`, which takes sRGB codes as they are.
     pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
@@ -132,66 +125,37 @@ impl Pass {
         let region = finished.region.filter(|laid| laid.effect > 0.0);
         let inside =
             region.and_then(|laid| Some((laid, shown_rect(&laid.rect, image_from_screen)?.common(&all)?)));
-        let mut parts = match inside {
-            None => vec![self.of_frame(recorder, (&map, &finished.frame), vec![all])],
-            Some((laid, inside)) => vec![
-                self.of_frame(recorder, (&map, &finished.frame), all.beside(&inside).collect()),
-                self.of_region(recorder, (&map, &finished.frame), (&laid, inside)),
-            ],
-        };
-        // The largest first: what a part looks at is counted by its pixels.
-        parts.sort_by_key(|part| std::cmp::Reverse(n_pixels_of(&part.rects)));
+        let beside = inside.map_or_else(|| vec![all], |(_, inside)| all.beside(&inside).collect());
+        let frame = &finished.frame;
+        let of_frame = &self.frame[form(frame)];
+        let sampler = &recorder.gpu.samplers.linear;
+        let to_picture = recorder.bind_with(of_frame, GROUP_PASS, &map, &[Resource::PerUse, sampler.into()]);
+        let seen = bind_frame(recorder, of_frame, frame);
+        let over = inside.map(|(laid, inside)| (self.of_region(recorder, frame, &laid), inside));
         let mut render = recorder.render(SHADER.name, &[Some(cleared(screen))], None, StoreOp::Discard);
-        for part in &parts {
-            render.narrow(n_pixels_of(&part.rects));
-            render.begin(part.draw, &part.groups);
-            fill(&mut render, &part.rects);
+        render.set(&to_picture);
+        if let Some(((draw, groups), inside)) = over {
+            render.begin(draw, &groups);
+            fill(&mut render, &[inside]);
         }
+        render.narrow(n_pixels_of(&beside));
+        render.begin(of_frame, &[seen]);
+        fill(&mut render, &beside);
     }
 
-    fn of_frame(
-        &self,
-        recorder: &mut Recorder<'_>,
-        (map, frame): (&ScreenMap, &Frame<'_>),
-        rects: Vec<PixelRect>,
-    ) -> Part<'_> {
-        let draw = &self.frame[form(frame)];
-        let groups = vec![bind_map(recorder, draw, map), bind_frame(recorder, draw, frame)];
-        Part { rects, draw, groups }
-    }
-
-    fn of_region(
-        &self,
-        recorder: &mut Recorder<'_>,
-        (map, frame): (&ScreenMap, &Frame<'_>),
-        (laid, rect): (&Laid<'_>, PixelRect),
-    ) -> Part<'_> {
-        let is_mixed = laid.effect < 1.0;
-        let draw = if is_mixed {
-            &self.mixed[form(frame)]
-        } else {
-            &self.region
-        };
-        let region = recorder.bind(draw, GROUP_REGION, &[laid.picture.light.into()]);
-        let mut groups = vec![bind_map(recorder, draw, map), region];
-        if is_mixed {
-            groups.push(bind_frame(recorder, draw, frame));
+    /// What draws the region, and what it reads.
+    fn of_region(&self, recorder: &Recorder<'_>, frame: &Frame<'_>, laid: &Laid<'_>) -> (&Draw, Vec<Group>) {
+        let bind = |draw| recorder.bind(draw, GROUP_REGION, &[laid.picture.light.into()]);
+        if laid.effect < 1.0 {
+            let draw = &self.mixed[form(frame)];
+            return (draw, vec![bind(draw), bind_frame(recorder, draw, frame)]);
         }
-        Part {
-            rects: vec![rect],
-            draw,
-            groups,
-        }
+        (&self.region, vec![bind(&self.region)])
     }
 }
 
 fn form(frame: &Frame<'_>) -> usize {
     usize::from(matches!(frame, Frame::Planes(_)))
-}
-
-fn bind_map(recorder: &mut Recorder<'_>, draw: &Draw, map: &ScreenMap) -> Group {
-    let sampler = &recorder.gpu.samplers.linear;
-    recorder.bind_with(draw, GROUP_PASS, map, &[Resource::PerUse, sampler.into()])
 }
 
 fn bind_frame(recorder: &Recorder<'_>, draw: &Draw, frame: &Frame<'_>) -> Group {

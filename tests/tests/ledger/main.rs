@@ -11,7 +11,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_core::Core;
-use app_core::frame::{FrameInput, FrameReport};
+use app_core::camera_frame::Display;
+use app_core::frame::{self, FrameInput, FrameReport, PassRun};
 use app_core::internals::{Inspect, phone_limits};
 use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
@@ -64,8 +65,12 @@ impl Traced {
 
 /// A report in the words of a trace.
 fn counted(report: &FrameReport, given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
+    counted_runs(&report.ran, given)
+}
+
+fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
     let mut passes: BTreeMap<String, Given> = BTreeMap::new();
-    for run in &report.ran {
+    for run in ran {
         let pass = passes.entry(run.pass.to_owned()).or_default();
         let work = run.work;
         pass.n_runs += run.n_runs;
@@ -121,6 +126,51 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
         }
         assert_eq!(core.memory().held_bytes, without.memory().held_bytes, "{preset}");
         assert!(without.read_picture().is_err());
+    }
+}
+
+/// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all.
+#[test]
+fn a_screen_costs_what_a_device_is_given() {
+    let session = session();
+    let mut input = FrameInput::from(&session.frame(0).unwrap());
+    let mut traced = Traced::new("ledger-screen");
+    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
+    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    for ([width, height], effect) in [
+        ([400, 300], 1.0),
+        ([90, 400], 1.0),
+        ([90, 400], 0.4),
+        ([400, 300], 0.0),
+    ] {
+        input.effect = effect;
+        core.frame(&input).unwrap();
+        let target = traced.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        traced.given();
+        core.draw_on(&target, Display::default()).unwrap();
+        let given = traced.given();
+        let work = core.count_present([width, height], Display::default()).unwrap();
+        let on_screen = PassRun {
+            path: frame::Path::Frame,
+            pass: "screen",
+            n_runs: 1,
+            work,
+        };
+        let expected = counted_runs(&[on_screen], &given);
+        assert_eq!(expected, given, "{width} x {height}, effect {effect}");
     }
 }
 
