@@ -9,6 +9,7 @@ mod withheld;
 
 use std::ops::Range;
 
+use app_core::camera_frame::{CodeRange, LumaCoefficients, PlaneError, YcbcrEncoding};
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::Step;
@@ -21,6 +22,7 @@ use crate::alignment::{Alignments, Lights, Ratio};
 use crate::count::count;
 use crate::metrics::Scores;
 use crate::metrics::flicker::Flicker;
+use crate::planar::planar;
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
@@ -49,6 +51,8 @@ pub struct Options {
     pub frames: Option<Range<usize>>,
     /// Size of the pictures that are timed and counted, the session's own without it; errors are always of that.
     pub size_px: Option<SizePx>,
+    /// Whether they come as a phone's planes rather than as pixels.
+    pub as_planes: bool,
     /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
     pub with_exact: bool,
     /// Whether cameras, toy and lights are first aligned by the pictures; with exact visibility they never are.
@@ -168,6 +172,11 @@ fn times(
         }
         None => (session.scene().clone(), inputs.to_vec()),
     };
+    let inputs = if options.as_planes {
+        as_planes(inputs)?
+    } else {
+        inputs
+    };
     let mut times = kinds::measure(core, &inputs, options.n_repeats)?;
     if let Some(first) = inputs.first() {
         for (times, counted) in times.iter_mut().zip(count(&scene, (preset, turned_down), first)?) {
@@ -175,6 +184,19 @@ fn times(
         }
     }
     Ok(times)
+}
+
+/// The same frames as phones deliver them.
+fn as_planes(inputs: Vec<FrameInput>) -> Result<Vec<FrameInput>, PlaneError> {
+    let encoding = YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range: CodeRange::Full,
+    };
+    let planes = |input: FrameInput| {
+        let image = planar(input.image.rgba(), encoding)?.into();
+        Ok(FrameInput { image, ..input })
+    };
+    inputs.into_iter().map(planes).collect()
 }
 
 fn own_px(session: &Capture) -> SizePx {

@@ -23,6 +23,7 @@ pub mod opened;
 pub mod output;
 pub mod page;
 pub mod photographer;
+pub mod planar;
 pub mod process;
 pub mod profiled;
 pub mod program;

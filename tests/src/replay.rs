@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use app_core::alignment::{AlignError, LensAlignment};
+use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::governor::Step;
 use app_core::internals::PixelRect;
@@ -94,6 +95,9 @@ pub enum ReplayError {
         /// What is wrong with it.
         reason: Box<AlignError>,
     },
+    /// A frame cannot be had as planes.
+    #[error(transparent)]
+    Planes(#[from] PlaneError),
     /// A picture does not fit its truth.
     #[error("scoring frame {index}: {reason}")]
     Score {

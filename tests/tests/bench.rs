@@ -26,6 +26,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         n_repeats: 1,
         frames: Some(0..2),
         size_px: None,
+        as_planes: true,
         with_exact: false,
         is_aligned: true,
         ratio: Ratio::Given,
@@ -95,6 +96,13 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
                 "{pass}: {text}"
             );
         }
+        // What comes as planes the published method has decoded, once a picture; the model reads it as it is.
+        let decodes = |first: usize| [0, 1, 2].map(|kind| ran(&rows[first + kind], "camera_planes"));
+        assert_eq!(
+            [decodes(0), decodes(3)],
+            [[false; 3], [false, true, true]],
+            "{text}"
+        );
     }
 }
 

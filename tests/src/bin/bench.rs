@@ -53,6 +53,9 @@ struct Args {
     /// Time and count pictures of this size; errors are of the session's own [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<SizePx>,
+    /// Time and count pictures as a phone's planes of luma and chroma rather than as pixels
+    #[arg(long)]
+    planes: bool,
     /// Add rows of what the governor turns down, one step after the other, and draw error against time
     #[arg(long)]
     front: bool,
@@ -194,6 +197,7 @@ fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Ro
             end: usize::from(n_frames),
         }),
         size_px: args.size,
+        as_planes: args.planes,
         with_exact: args.exact,
         is_aligned: !args.as_given,
         lights: args.lights,

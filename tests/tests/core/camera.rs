@@ -1,16 +1,14 @@
 //! A camera's planes in, a screen's picture out, and an effect that fades between.
 
 use app_core::Core;
-use app_core::camera_frame::{
-    CameraImage, CodeRange, Display, Fit, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding,
-};
+use app_core::camera_frame::{CameraImage, CodeRange, Display, Fit, LumaCoefficients, YcbcrEncoding};
 use app_core::frame::FrameInput;
 use app_core::internals::{linear_from_srgb, phone_limits};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
-use glam::{DVec2, DVec3};
-use harness::reference::camera_planes::encoded;
+use glam::DVec2;
+use harness::planar::planar;
 
 use crate::bundled::{core, first_input, picture_of, scene};
 
@@ -18,44 +16,6 @@ pub(crate) const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
     range: CodeRange::Full,
 };
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "from 0 to 255"
-)]
-fn code(value: f64) -> u8 {
-    value.round().clamp(0.0, 255.0) as u8
-}
-
-/// `image` as a camera would hand it over: chroma is the mean over four pixels.
-pub(crate) fn planar(image: &Image, encoding: YcbcrEncoding) -> PlanarImage {
-    let [width, height] = [image.width_px as usize, image.height_px as usize];
-    let ycbcr = |x: usize, y: usize| {
-        let at = 4 * (y.min(height - 1) * width + x.min(width - 1));
-        let [r, g, b] = [0, 1, 2].map(|k| f64::from(image.rgba8[at + k]));
-        encoded(encoding, DVec3::new(r, g, b))
-    };
-    let luma: Vec<u8> = (0..width * height)
-        .map(|at| code(ycbcr(at % width, at / width)[0]))
-        .collect();
-    let [columns, rows] = [width.div_ceil(2), height.div_ceil(2)];
-    let chroma: Vec<u8> = (0..columns * rows)
-        .flat_map(|at| {
-            let (x, y) = (2 * (at % columns), 2 * (at / columns));
-            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| ycbcr(x + dx, y + dy));
-            [1, 2].map(|k| code(four.iter().map(|one| one[k]).sum::<f64>() / 4.0))
-        })
-        .collect();
-    let size_px = [image.width_px, image.height_px];
-    PlanarImage::new(&Planes::nv12(
-        size_px,
-        (&luma, width),
-        (&chroma, 2 * columns),
-        encoding,
-    ))
-    .unwrap()
-}
 
 fn worst(a: &[u8], b: &[u8]) -> u8 {
     assert_eq!(a.len(), b.len());
@@ -69,7 +29,7 @@ fn planes_are_decoded_on_the_device_as_on_the_processor() {
     for coefficients in [LumaCoefficients::Bt601, LumaCoefficients::Bt709] {
         for range in [CodeRange::Full, CodeRange::Video] {
             core.set_scene(scene.clone(), Preset::Balanced).unwrap();
-            let image = planar(input.image.rgba(), YcbcrEncoding { coefficients, range });
+            let image = planar(input.image.rgba(), YcbcrEncoding { coefficients, range }).unwrap();
             let shown = FrameInput {
                 image: image.into(),
                 shown_pose: scene.physical_pose.clone(),
@@ -90,7 +50,7 @@ fn planes_are_decoded_on_the_device_as_on_the_processor() {
 fn a_frame_of_planes_gives_the_picture_of_its_pixels() {
     let (scene, input) = (scene(), first_input());
     let mut core = core();
-    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING));
+    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING).unwrap());
     let pixels = CameraImage::Rgba(planes.rgba().clone());
     let [a, b] = [planes, pixels].map(|image| {
         core.set_scene(scene.clone(), Preset::Balanced).unwrap();
@@ -249,7 +209,7 @@ fn a_screen_shows_the_region_over_the_camera_image() {
 fn a_screen_shows_planes_as_their_pixels() {
     let (scene, input) = (scene(), first_input());
     let mut app = App::open();
-    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING));
+    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING).unwrap());
     let pixels = CameraImage::Rgba(planes.rgba().clone());
     for (preset, effect) in [
         (Preset::Balanced, 1.0),

@@ -8,8 +8,10 @@ use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::wgpu;
 
+use harness::planar::planar;
+
 use crate::bundled::{first_input, scene};
-use crate::camera::{App, ENCODING, planar};
+use crate::camera::{App, ENCODING};
 
 /// A texture of a platform's, with its texels.
 fn texture(app: &App, size_px: [u32; 2], format: wgpu::TextureFormat, texels: &[u8]) -> wgpu::Texture {
@@ -81,7 +83,7 @@ fn picture(app: &mut App, image: CameraImage) -> Vec<u8> {
 #[test]
 fn lent_textures_give_the_picture_of_their_bytes_without_a_copy() {
     let mut app = App::open();
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING));
+    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
     let expected = picture(&mut app, CameraImage::Planes(Arc::clone(&original)));
     let (image, n_copies) = lent(&app, &original);
     let image = CameraImage::from(image.unwrap());
@@ -98,7 +100,7 @@ fn lent_textures_give_the_picture_of_their_bytes_without_a_copy() {
 #[test]
 fn textures_of_a_lost_device_are_read_as_bytes() {
     let [mut app, lost] = [App::open(), App::open()];
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING));
+    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
     let expected = picture(&mut app, CameraImage::Planes(Arc::clone(&original)));
     let (image, n_copies) = lent(&lost, &original);
     drop(lost);
@@ -112,7 +114,7 @@ fn textures_of_a_lost_device_are_read_as_bytes() {
 #[test]
 fn what_cannot_be_read_is_black() {
     let app = App::open();
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING));
+    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
     let (width, height) = (original.size_px()[0], original.size_px()[1]);
     let image = |read: fn() -> Option<PlanarImage>| {
         let planes = LentPlanes {
