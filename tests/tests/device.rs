@@ -14,6 +14,7 @@ use app_core::frame::{self, FrameInput, FrameReport};
 use app_core::internals::{Change, Inspect, phone_limits, planned_by_model};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Image, Pose};
+use app_core::self_test;
 use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use glam::{DMat4, DVec3};
@@ -272,6 +273,8 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
     let compiled = compiled.join().unwrap().unwrap();
     assert_eq!(compiled.len(), n_passes);
     assert!(traced.given().n_created("Pipeline") >= n_passes as u64);
+    self_test::run(&mut traced.core, Preset::Balanced).unwrap();
+    assert_eq!(traced.given().n_created("Pipeline"), 0, "the self-test compiles");
     traced
         .core
         .set_scene(session.scene().clone(), Preset::Balanced)

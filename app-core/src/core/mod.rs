@@ -129,7 +129,14 @@ impl Core {
     pub fn show_camera(&mut self, image: &CameraImage) -> Result<(), CoreError> {
         self.check_sides(image.size_px())?;
         let size_px = image.size_px();
-        let kept = self.preview.take().filter(|preview| preview.size_px() == size_px);
+        if self
+            .preview
+            .as_ref()
+            .is_some_and(|preview| preview.size_px() != size_px)
+        {
+            drop_preview(&self.gpu, &mut self.preview);
+        }
+        let kept = self.preview.take();
         let preview = self.gpu.guarded(|| {
             let mut preview = kept.unwrap_or_else(|| Preview::new(size_px));
             preview.take(&self.gpu, image);
@@ -227,7 +234,7 @@ impl Core {
     /// refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
         let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
-        self.preview = None;
+        drop_preview(&self.gpu, &mut self.preview);
         input.check()?;
         check_size("camera frame", stage.scene(), &input.image)?;
         if let Some(timer) = &mut self.timer {
@@ -339,6 +346,13 @@ impl Core {
     #[must_use]
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+}
+
+/// Drops a preview with its textures, of which bind groups are kept, too.
+fn drop_preview(gpu: &Gpu, preview: &mut Option<Preview>) {
+    if preview.take().is_some() {
+        gpu.release_groups();
     }
 }
 

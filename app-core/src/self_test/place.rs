@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DQuat, DVec2, DVec3};
+use glam::{DMat4, DQuat, DVec2, DVec3, Vec3};
 use serde_json::{Value, json};
 
+use crate::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
 use crate::frame::FrameInput;
 use crate::geometry::color::srgb_from_linear;
 use crate::scene::{Camera, Image, Intrinsics, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
@@ -85,7 +86,7 @@ pub(super) fn place() -> Result<(Scene, FrameInput), ToyError> {
         uncertainty: Uncertainty::default(),
     };
     let input = FrameInput {
-        image: photograph(&camera, &SOLIDS).into(),
+        image: in_planes(photograph(&camera, &SOLIDS)),
         camera,
         exposure: 1.0,
         world_from_object: DMat4::IDENTITY,
@@ -142,14 +143,48 @@ fn photograph(camera: &Camera, solids: &[Solid]) -> Image {
     }
 }
 
+/// A picture as a phone's camera delivers it: what reads planes is what a phone is to be trusted with.
+fn in_planes(image: Image) -> CameraImage {
+    let encoding = YcbcrEncoding {
+        coefficients: LumaCoefficients::Bt601,
+        range: CodeRange::Full,
+    };
+    let map = encoding.srgb_from_ycbcr();
+    let ycbcr_from_srgb = map.matrix.inverse();
+    let ycbcr_at = |x: usize, y: usize| {
+        let at = 4 * (y * image.width_px as usize + x);
+        let srgb = Vec3::from([0, 1, 2].map(|k| f32::from(image.rgba8[at + k]) / 255.0));
+        ycbcr_from_srgb * srgb + map.origin
+    };
+    let [columns, rows] = SIZE_PX.map(|side| side as usize);
+    let all = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
+    let luma: Vec<u8> = all.clone().map(|(x, y)| code_of(ycbcr_at(x, y).x)).collect();
+    let fours = all.filter(|(x, y)| x % 2 + y % 2 == 0);
+    let chroma: Vec<u8> = fours
+        .flat_map(|(x, y)| {
+            let four = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+            let mean = four.map(|(x, y)| ycbcr_at(x, y)).into_iter().sum::<Vec3>() / 4.0;
+            [mean.y, mean.z].map(code_of)
+        })
+        .collect();
+    let planes = Planes::nv12(SIZE_PX, (&luma, columns), (&chroma, columns), encoding);
+    // They hold their picture.
+    PlanarImage::new(&planes).map_or_else(|_| image.into(), CameraImage::from)
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
 fn code(linear: f64) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a code of 8 bits"
-    )]
-    let code = (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0) as f32)).round() as u8;
-    code
+    code_of(srgb_from_linear(linear.clamp(0.0, 1.0) as f32))
+}
+
+/// The nearest code of 8 bits of a value from 0 to 1.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a code of 8 bits"
+)]
+fn code_of(value: f32) -> u8 {
+    (255.0 * value).round().clamp(0.0, 255.0) as u8
 }
 
 /// Light that comes along the ray of a pixel, linear.
