@@ -130,7 +130,7 @@ pub mod internals {
     pub use crate::geometry::reach::Reach;
     pub use crate::geometry::rect::{PixelRect, PlaneRect};
     pub use crate::geometry::scene_layout::SceneLayout;
-    pub use crate::geometry::seen::mark_seen;
+    pub use crate::geometry::seen::{mark_seen, seen_rect};
     pub use crate::geometry::shadow_atlas::ShadowAtlas;
     pub use crate::geometry::silhouette::{
         ByCamera, Edges, Landing, OntoReceiver, Projection, Shape, Silhouette, find_silhouette,

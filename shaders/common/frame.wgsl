@@ -1,6 +1,6 @@
 // The camera's picture in the work region, as linear light, read in the form that it came in.
 
-// Whether it is planes. No branch: some processors take both sides of one.
+// Whether it is planes: a constant, so that nothing of the other form is left in what is compiled.
 override IS_PLANAR: bool = false;
 
 @group(0) @binding(2) var<uniform> encoding: Encoding;

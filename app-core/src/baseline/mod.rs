@@ -13,7 +13,7 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pass_run::Path;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::frame::Picture;
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
@@ -192,7 +192,7 @@ impl Baseline {
             warp: &self.targets.warp.maps.view,
             labels: &self.targets.eligible.labels.view,
             seen_sets: &self.targets.census.seen_sets,
-            frame: pictures.frame.views()[0],
+            frame: decoded(pictures),
             plate: &self.plate.view,
         }
     }
@@ -201,7 +201,7 @@ impl Baseline {
         retarget::Inputs {
             scene: self.scene(),
             toy,
-            frame: pictures.frame.views()[0],
+            frame: decoded(pictures),
             plate: &self.plate.view,
             mask: &self.targets.masks.mask.view,
             labels: &self.targets.eligible.labels.view,
@@ -216,6 +216,12 @@ impl Baseline {
             baseline: &self.uniform,
         }
     }
+}
+
+/// The frame, all of which is decoded for the baseline.
+fn decoded<'a>(pictures: &Pictures<'a>) -> &'a TextureView {
+    let [light, _] = pictures.frame.views();
+    light
 }
 
 fn plate_target(gpu: &Gpu, plan: &BaselinePlan) -> Texture {

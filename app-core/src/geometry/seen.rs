@@ -8,30 +8,21 @@ use crate::geometry::tiles::Tiles;
 
 /// The pixels of a target of `size_px` in which a shape may be seen, with one around for what rounding and the offsets of samples
 /// add: all of them where that has no bounds, none where it is beyond the target.
-pub(crate) fn seen_rect(
-    positions: &[Vec3],
-    projection: &dyn Projection,
-    size_px: UVec2,
-) -> Option<PixelRect> {
+#[must_use]
+pub fn seen_rect(positions: &[Vec3], projection: &dyn Projection, size_px: UVec2) -> Option<PixelRect> {
     let all = PixelRect {
         origin_px: UVec2::ZERO,
         size_px,
     };
-    let landings: Option<Vec<_>> = positions
-        .iter()
-        .map(|position| projection.land(*position))
-        .collect();
-    let Some(landings) = landings else {
+    let nothing = [Vec2::INFINITY, Vec2::NEG_INFINITY];
+    let seen = positions.iter().try_fold(nothing, |[low, high], position| {
+        let landing = projection.land(*position)?;
+        let (at, within) = (landing.at_px, landing.within_px);
+        Some([low.min(at - within), high.max(at + within)])
+    });
+    let Some([low, high]) = seen else {
         return Some(all);
     };
-    let low = landings
-        .iter()
-        .map(|one| one.at_px - one.within_px)
-        .fold(Vec2::INFINITY, Vec2::min);
-    let high = landings
-        .iter()
-        .map(|one| one.at_px + one.within_px)
-        .fold(Vec2::NEG_INFINITY, Vec2::max);
     // What lies before the target's origin is cut off by the numbers without a sign.
     let [first, end] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|corner| corner.as_uvec2());
     let seen = PixelRect {

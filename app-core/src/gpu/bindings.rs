@@ -45,8 +45,8 @@ pub(crate) enum Slot {
     Filtered,
     /// A depth map of the pixels that are drawn.
     Depth,
-    /// A depth map seen from elsewhere, which is looked at anywhere.
-    DepthFromElsewhere,
+    /// A depth map from a light, which is looked at anywhere.
+    ShadowMap,
     /// The sampler that filters.
     Sampler,
     /// The sampler that compares depths.
@@ -112,7 +112,7 @@ impl Slot {
                     TextureViewDimension::D2,
                 ),
             ),
-            Self::Depth | Self::DepthFromElsewhere => {
+            Self::Depth | Self::ShadowMap => {
                 (drawn, texture(TextureSampleType::Depth, TextureViewDimension::D2))
             }
             Self::Sampler => (drawn, BindingType::Sampler(SamplerBindingType::Filtering)),
@@ -156,7 +156,7 @@ impl<'a> Resource<'a> {
             (Self::View(view), _) => Some(Bound::View {
                 id: view.id,
                 shape: view.shape,
-                is_whole: slot == Slot::DepthFromElsewhere,
+                is_whole: slot == Slot::ShadowMap,
             }),
             (Self::Sampler(_), _) => None,
             (Self::PerUse, _) => Some(Bound::Buffer {

@@ -20,6 +20,6 @@ pub(crate) struct TextureView {
     /// The texture's, of which those with several layers have one each.
     pub(super) id: Id,
     pub(super) shape: Shape,
-    /// Not the platform's, which is not to be kept.
+    /// Whether the core made it; what a platform lends no cached group holds.
     pub(super) is_own: bool,
 }

@@ -191,7 +191,7 @@ impl Model {
             .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
         let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
         let (plan, uniform) = (&self.region.plan, &self.region.uniform);
-        self.drawn.shown_toy = ToyMesh::seen_rect(&toy.shown, &uniform.by_camera(), plan.toy_box.size_px);
+        self.drawn.shown_toy = toy.shown.seen_rect(&uniform.by_camera(), plan.toy_box.size_px);
         self.drawn.parts = RegionParts::new([&physical, &shown]);
         self.drawn.physical_marks = Some(physical);
     }

@@ -127,7 +127,7 @@ impl Pass {
             region.and_then(|laid| Some((laid, shown_rect(&laid.rect, image_from_screen)?.common(&all)?)));
         let beside = inside.map_or_else(|| vec![all], |(_, inside)| all.beside(&inside).collect());
         let frame = &finished.frame;
-        let of_frame = &self.frame[form(frame)];
+        let of_frame = by_form(&self.frame, frame);
         let sampler = &recorder.gpu.samplers.linear;
         let to_picture = recorder.bind_with(of_frame, GROUP_PASS, &map, &[Resource::PerUse, sampler.into()]);
         let seen = bind_frame(recorder, of_frame, frame);
@@ -147,20 +147,26 @@ impl Pass {
     fn of_region(&self, recorder: &Recorder<'_>, frame: &Frame<'_>, laid: &Laid<'_>) -> (&Draw, Vec<Group>) {
         let bind = |draw| recorder.bind(draw, GROUP_REGION, &[laid.picture.light.into()]);
         if laid.effect < 1.0 {
-            let draw = &self.mixed[form(frame)];
+            let draw = by_form(&self.mixed, frame);
             return (draw, vec![bind(draw), bind_frame(recorder, draw, frame)]);
         }
         (&self.region, vec![bind(&self.region)])
     }
 }
 
-fn form(frame: &Frame<'_>) -> usize {
-    usize::from(matches!(frame, Frame::Planes(_)))
+/// The draw of a frame that came as a picture, or as planes.
+fn by_form<'a>([of_picture, of_planes]: &'a [Draw; 2], frame: &Frame<'_>) -> &'a Draw {
+    match frame {
+        Frame::Picture(_) => of_picture,
+        Frame::Planes(_) => of_planes,
+    }
 }
 
 fn bind_frame(recorder: &Recorder<'_>, draw: &Draw, frame: &Frame<'_>) -> Group {
-    let views = frame.views().map(Resource::from);
-    recorder.bind(draw, GROUP_DRAW, &views[..=form(frame)])
+    match frame {
+        Frame::Picture(picture) => recorder.bind(draw, GROUP_DRAW, &[picture.light.into()]),
+        Frame::Planes(planes) => recorder.bind(draw, GROUP_DRAW, &planes.views.map(Resource::from)),
+    }
 }
 
 /// The pixels of a screen whose centres lie in a rectangle of the picture, if there are any; it may reach beyond the screen.

@@ -48,6 +48,11 @@ pub(crate) struct PoseBuffers {
 }
 
 impl PoseBuffers {
+    /// The pixels of a target of `size_px` in which the toy may be seen.
+    pub(crate) fn seen_rect(&self, projection: &dyn Projection, size_px: UVec2) -> Option<PixelRect> {
+        seen_rect(&self.mesh.positions, projection, size_px)
+    }
+
     /// With room for lists of so many corners each.
     fn new(gpu: &Gpu, mesh: &PosedMesh, lists: impl Iterator<Item = usize>) -> Self {
         Self {
@@ -231,15 +236,6 @@ impl ToyMesh {
         for corners in [closed, open] {
             mark_seen(tiles, (&pose.mesh.positions, corners), projection, reach_px);
         }
-    }
-
-    /// The pixels of a target of `size_px` in which the toy may be seen in a pose.
-    pub(crate) fn seen_rect(
-        pose: &PoseBuffers,
-        projection: &dyn Projection,
-        size_px: UVec2,
-    ) -> Option<PixelRect> {
-        seen_rect(&pose.mesh.positions, projection, size_px)
     }
 
     /// A shape in a pose, if it is small enough to look for its silhouette.

@@ -241,6 +241,42 @@ fn a_screen_shows_planes_as_their_pixels() {
     }
 }
 
+/// On a turned screen of its own size a picture is what is read of it, the region in its place.
+#[test]
+fn a_turned_screen_shows_the_region_over_the_camera_image() {
+    let (scene, input) = (scene(), first_input());
+    let mut app = App::open();
+    app.core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    app.core.frame(&input).unwrap();
+    let read = app.core.read_picture().unwrap();
+    let changed = worst(&read.rgba8, &input.image.rgba().rgba8);
+    assert!(changed > 10, "{changed}");
+    let image_px = [read.width_px, read.height_px];
+    for quarter_turns in 0..4 {
+        let [width, height] = if quarter_turns % 2 == 0 {
+            image_px
+        } else {
+            [image_px[1], image_px[0]]
+        };
+        let display = Display {
+            quarter_turns,
+            ..Display::default()
+        };
+        let map = display.image_from_screen(image_px, [width, height]);
+        let expected: Vec<u8> = (0..height)
+            .flat_map(|y| (0..width).map(move |x| DVec2::new(f64::from(x), f64::from(y)) + 0.5))
+            .flat_map(|at| {
+                let texel = map.transform_point2(at).floor().as_uvec2();
+                let first = 4 * (texel.y * image_px[0] + texel.x) as usize;
+                read.rgba8[first..first + 4].to_vec()
+            })
+            .collect();
+        let shown = app.shown([width, height], display);
+        let most = worst(&shown, &expected);
+        assert!(most <= 1, "{quarter_turns} turns: {most}");
+    }
+}
+
 /// In every rotation and fit each point of the screen shows the picture's point that the map says, black beyond it.
 #[test]
 fn a_screen_shows_the_picture_turned_and_cropped() {

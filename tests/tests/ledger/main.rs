@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_core::Core;
-use app_core::camera_frame::Display;
+use app_core::camera_frame::{CameraImage, CodeRange, Display, LumaCoefficients, YcbcrEncoding};
 use app_core::frame::{self, FrameInput, FrameReport, PassRun};
 use app_core::internals::{Inspect, phone_limits};
 use app_core::preset::Preset;
@@ -19,8 +19,14 @@ use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use harness::bench::{FRAME_KINDS, with_new};
 use harness::files::{BUNDLED_SESSION, Folder};
+use harness::planar::planar;
 
 use trace::{Given, Objects};
+
+const BT601: YcbcrEncoding = YcbcrEncoding {
+    coefficients: LumaCoefficients::Bt601,
+    range: CodeRange::Full,
+};
 
 /// A device that writes down what it is given.
 struct Traced {
@@ -129,7 +135,7 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
     }
 }
 
-/// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all.
+/// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all; pixels and planes.
 #[test]
 fn a_screen_costs_what_a_device_is_given() {
     let session = session();
@@ -137,12 +143,20 @@ fn a_screen_costs_what_a_device_is_given() {
     let mut traced = Traced::new("ledger-screen");
     let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
     core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
-    for ([width, height], effect) in [
-        ([400, 300], 1.0),
-        ([90, 400], 1.0),
-        ([90, 400], 0.4),
-        ([400, 300], 0.0),
+    let pixels = input.image.clone();
+    let planes = CameraImage::from(planar(pixels.rgba(), BT601).unwrap());
+    let large = [400, 300];
+    let (narrow, small) = ([90, 400], [8, 8]);
+    for ([width, height], effect, image) in [
+        (large, 1.0, &pixels),
+        (narrow, 0.4, &pixels),
+        (large, 0.0, &pixels),
+        (large, 1.0, &planes),
+        (narrow, 1.0, &planes),
+        (narrow, 0.4, &planes),
+        (small, 1.0, &planes),
     ] {
+        input.image = image.clone();
         input.effect = effect;
         core.frame(&input).unwrap();
         let target = traced.device.create_texture(&wgpu::TextureDescriptor {

@@ -1,6 +1,6 @@
 //! Tiles of a target: the rectangles that they are filled by, and those that a shape is seen near.
 
-use app_core::internals::{Landing, PixelRect, Projection, Tiles, mark_seen};
+use app_core::internals::{Landing, PixelRect, Projection, Tiles, mark_seen, seen_rect};
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles};
 
 /// No multiple of a tile.
@@ -143,4 +143,64 @@ fn tiles_are_joined_and_taken_away() {
         assert_eq!(rest.is_marked_at(px), marks.0 && !marks.1, "at {px}");
     }
     assert!(n_shared > 0);
+}
+
+fn rect(origin_px: [u32; 2], size_px: [u32; 2]) -> PixelRect {
+    PixelRect {
+        origin_px: origin_px.into(),
+        size_px: size_px.into(),
+    }
+}
+
+#[test]
+fn a_shape_is_seen_in_a_rectangle_of_the_target() {
+    let seen = |corners: &[[f32; 3]]| {
+        let positions: Vec<Vec3> = corners.iter().copied().map(Vec3::from).collect();
+        seen_rect(&positions, &Straight, SIZE_PX)
+    };
+    // With a pixel around it, which the part of a pixel that it reaches into is not.
+    assert_eq!(
+        seen(&[[13.2, 9.0, 0.0], [40.0, 21.5, 0.0]]),
+        Some(rect([12, 8], [29, 15]))
+    );
+    assert_eq!(
+        seen(&[[-9.0, 20.0, 0.0], [5.0, 90.0, 0.0]]),
+        Some(rect([0, 19], [6, 31]))
+    );
+    assert_eq!(
+        seen(&[[70.0, -4.0, 0.0], [99.0, 3.0, 0.0]]),
+        Some(rect([69, 0], [8, 4]))
+    );
+    for beyond in [[-20.0, 20.0], [95.0, 20.0], [20.0, -20.0], [20.0, 70.0]] {
+        assert_eq!(seen(&[[beyond[0], beyond[1], 0.0]]), None, "{beyond:?}");
+    }
+    // What is behind has no bounds, and no shape has any.
+    assert_eq!(
+        seen(&[[13.0, 9.0, 0.0], [13.0, 9.0, -1.0]]),
+        Some(rect([0, 0], [77, 50]))
+    );
+    assert_eq!(seen(&[]), None);
+}
+
+#[test]
+fn what_is_beside_a_part_is_the_rest_once() {
+    let whole = rect([3, 2], [20, 10]);
+    for part in [
+        rect([7, 5], [4, 3]),
+        rect([3, 2], [5, 4]),
+        rect([18, 8], [5, 4]),
+        rect([3, 5], [20, 2]),
+        whole,
+    ] {
+        let mut rects: Vec<PixelRect> = whole.beside(&part).collect();
+        rects.push(part);
+        for px in pixels() {
+            let px = PixelRect {
+                origin_px: px,
+                size_px: UVec2::ONE,
+            };
+            let n_holding = rects.iter().filter(|rect| rect.contains(&px)).count();
+            assert_eq!(n_holding, usize::from(whole.contains(&px)), "{part:?}: {px:?}");
+        }
+    }
 }

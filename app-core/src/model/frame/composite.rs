@@ -62,7 +62,7 @@ const SHADOW_SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::per_use::<Drawing>(),
 ];
-/// What is read near a toy alone.
+/// What is read near a toy alone: with all else that is 16 textures, the most that a phone's stage may have.
 const TOY_SLOTS: &[Slot] = &[Slot::Texture; 8];
 shared_struct! {
     /// How the receivers were drawn.

@@ -34,10 +34,10 @@ pub(crate) const GROUP_SELF_SHADOW: usize = 3;
 /// Slots of the group where the maps are read.
 pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[
     Slot::uniform::<SelfShadow>(),
-    Slot::DepthFromElsewhere,
+    Slot::ShadowMap,
     Slot::Comparison,
     Slot::uniform::<SelfShadow>(),
-    Slot::DepthFromElsewhere,
+    Slot::ShadowMap,
 ];
 /// And where they are drawn.
 const TILES_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>()];
