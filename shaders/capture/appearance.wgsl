@@ -6,7 +6,7 @@
 // Each colour goes with what light it was seen under, so that it can be shown under another. All of that is the same for
 // all pictures of a view, of which `toy` takes the colours.
 //
-// Reads: validity, gbuffer. Writes: in the toy box, the source, which pixels colours are from; each light's cosine times
+// Reads: validity, gbuffer. Writes: in the physical box, the source, which pixels colours are from; each light's cosine times
 // its visibility there; their base colour, alpha how far they face upwards.
 // CPU reference: reference/appearance.rs.
 
@@ -40,7 +40,7 @@ fn nearest_source(texel: vec2i) -> u32 {
   var least = 2 * OTHER_SURFACE;
   for (var y = -REACH_PX; y <= REACH_PX; y++) {
     for (var x = -REACH_PX; x <= REACH_PX; x++) {
-      let other = clamped_to_box(texel + vec2i(x, y));
+      let other = clamped_to_physical_box(texel + vec2i(x, y));
       let is_own = here == 0.0 || is_same_surface(here, textureLoad(gbuffer_depth, other, 0));
       let far = x * x + y * y + select(OTHER_SURFACE, 0, is_own);
       if far < least && is_one_surface(other) {

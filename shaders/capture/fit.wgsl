@@ -133,7 +133,7 @@ fn intensity_equation(seen: Observation) -> Equation {
 fn toy_equation(texel: vec2u) -> Equation {
   var eq: Equation;
   if marks_at(vec2i(texel)).g == 0.0 { return eq; }
-  let in_box = box_texel(vec2i(texel));
+  let in_box = physical_texel(vec2i(texel));
   let base = textureLoad(gbuffer_base, in_box, 0).rgb;
   let f = frame_at(vec2i(texel));
   let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
@@ -187,10 +187,10 @@ fn cs_receiver_completing(@builtin(workgroup_id) group: vec3u, @builtin(local_in
 
 @compute @workgroup_size(WORKGROUP)
 fn cs_toy(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-  // Of the sampled pixels those in the toy box.
-  let low = vec2u(globals.toy_box_origin_px);
+  // Of the sampled pixels those in the physical box.
+  let low = vec2u(globals.physical_box_origin_px);
   let first = (low + step.stride_px - 1u) / step.stride_px;
-  let end = (low + vec2u(globals.toy_box_size_px) + step.stride_px - 1u) / step.stride_px;
+  let end = (low + vec2u(globals.physical_box_size_px) + step.stride_px - 1u) / step.stride_px;
   let size = min(end, sampled_size()) - min(first, sampled_size());
   for (var index = group.x * WORKGROUP + lane; index < size.x * size.y; index += step.n_rows * WORKGROUP) {
     add(toy_equation((first + vec2u(index % size.x, index / size.x)) * step.stride_px));

@@ -43,7 +43,7 @@ fn fs_describe(
   @location(4) @interpolate(flat, either) material: u32,
 ) -> GbufferTexel {
   let base = vec4f(base_color(material, uv, color), 1.0);
-  if is_behind_receiver(at.xy + globals.toy_box_origin_px, at.w) { discard; }
+  if is_behind_receiver(at.xy + globals.physical_box_origin_px, at.w) { discard; }
   let normal = unit_normal(interpolated_normal);
   return GbufferTexel(base, vec4f(normal, f32(material)), light_received(true, normal, in_anchor));
 }

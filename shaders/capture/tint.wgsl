@@ -31,10 +31,10 @@ fn seen_in_anchor(at: vec2f, depth: f32) -> vec3f {
 @compute @workgroup_size(8, 8)
 fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   // The same texels of the region wherever the box begins.
-  let start = (vec2u(globals.toy_box_origin_px) + stride_px - 1u) / stride_px;
+  let start = (vec2u(globals.physical_box_origin_px) + stride_px - 1u) / stride_px;
   let texel = (start + id.xy) * stride_px;
-  let in_box = box_texel(vec2i(texel));
-  if !is_in_toy_box(in_box) || marks_at(vec2i(texel)).g < 1.0 { return; }
+  let in_box = physical_texel(vec2i(texel));
+  if !is_in_physical_box(in_box) || marks_at(vec2i(texel)).g < 1.0 { return; }
   let surface = textureLoad(gbuffer_normal, in_box, 0);
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
   let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;

@@ -38,6 +38,9 @@ struct Globals {
   // The part of the region that targets of the toy hold: its corner, counted from the region's, and its size.
   toy_box_origin_px: vec2f,
   toy_box_size_px: vec2f,
+  // The same of the part that maps of the physical toy hold.
+  physical_box_origin_px: vec2f,
+  physical_box_size_px: vec2f,
   n_receivers: u32,
   // Bit k is 1 where receiver k is seen from behind.
   seen_from_behind: u32,
@@ -47,11 +50,6 @@ struct Globals {
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;
-
-// The texel of the region at a texel of the toy box.
-fn region_texel(in_box: vec2i) -> vec2i {
-  return in_box + vec2i(globals.toy_box_origin_px);
-}
 
 // The texel of the toy box at a texel of the region; `is_in_toy_box` tells whether there is one.
 fn box_texel(in_region: vec2i) -> vec2i {
@@ -65,6 +63,24 @@ fn is_in_toy_box(in_box: vec2i) -> bool {
 // The texel of the box nearest to one that may lie beyond it.
 fn clamped_to_box(in_box: vec2i) -> vec2i {
   return clamp(in_box, vec2i(0), vec2i(globals.toy_box_size_px) - 1);
+}
+
+// The same of the physical box.
+fn physical_texel(in_region: vec2i) -> vec2i {
+  return in_region - vec2i(globals.physical_box_origin_px);
+}
+
+fn is_in_physical_box(in_box: vec2i) -> bool {
+  return all(in_box >= vec2i(0)) && all(in_box < vec2i(globals.physical_box_size_px));
+}
+
+fn clamped_to_physical_box(in_box: vec2i) -> vec2i {
+  return clamp(in_box, vec2i(0), vec2i(globals.physical_box_size_px) - 1);
+}
+
+// The texel of the region at a texel of the physical box.
+fn region_texel(in_box: vec2i) -> vec2i {
+  return in_box + vec2i(globals.physical_box_origin_px);
 }
 
 // A point of a receiver: (x, z) in its plane, and its index, MAX_RECEIVERS where the pixel sees none.

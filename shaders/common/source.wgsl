@@ -1,4 +1,4 @@
-// Which pixel near a pixel of the toy box its colour is from.
+// Which pixel near a pixel of the physical box its colour is from.
 
 // Farthest that a pixel of one surface is looked for.
 const REACH_PX: i32 = 3;
@@ -18,7 +18,7 @@ fn source_of(number: u32) -> vec4f {
 // Texel of the source with a number.
 fn source_texel(texel: vec2i, number: u32) -> vec2i {
   let place = vec2i(vec2u(number % u32(N_IN_ROW), number / u32(N_IN_ROW)));
-  return clamped_to_box(texel + place - REACH_PX);
+  return clamped_to_physical_box(texel + place - REACH_PX);
 }
 
 // Number that a texel of a source holds.

@@ -72,8 +72,8 @@ fn vs_toy(in: Vertex) -> Surface {
   );
 }
 
-// The light that the camera's colour at `texel` was seen under, as radiance over base colour.
-fn seen_under(texel: vec2u) -> vec3f {
+// The light that the camera's colour at a texel of the physical box was seen under, as radiance over base colour.
+fn seen_under(texel: vec2i) -> vec3f {
   let up = textureLoad(appearance_base, texel, 0).a;
   return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
 }
@@ -104,8 +104,8 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
   var received = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
     let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let tap = low + corner - globals.toy_box_origin_px;
-    if !(all(tap >= vec2f(0.0)) && all(tap < globals.toy_box_size_px)) { continue; }
+    let tap = low + corner - globals.physical_box_origin_px;
+    if !(all(tap >= vec2f(0.0)) && all(tap < globals.physical_box_size_px)) { continue; }
     let texel = vec2u(tap);
     let surface = textureLoad(gbuffer_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
@@ -144,9 +144,9 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
 // The light it was seen under is that of the same point in the physical pose: what a pixel of the frame shows in its
 // middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
 // either, and are done.
-fn difference(texel: vec2u, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
+fn difference(in_region: vec2i, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
   if moved == 1.0 { return 1.0; }
-  let seen_change = light_change(lit, seen_under(texel));
+  let seen_change = light_change(lit, seen_under(clamped_to_physical_box(physical_texel(in_region))));
   if IS_COARSE { return max(moved, seen_change); }
   if seen_change == 0.0 { return moved; }
   let received = light_received(true, physical_normal, physical_in_anchor);
@@ -190,6 +190,6 @@ fn fs_toy(
   // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
-  let is_other = difference(vec2u(at.xy), is_moved, lit, physical_normal, physical_in_anchor);
+  let is_other = difference(vec2i(at.xy + globals.toy_box_origin_px), is_moved, lit, physical_normal, physical_in_anchor);
   return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(is_other));
 }

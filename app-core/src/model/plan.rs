@@ -78,6 +78,8 @@ pub struct Plan {
     /// The toy box: pixels of the region that hold the toy in every pose and what is looked up around it, counted from the
     /// region's corner.
     pub toy_box: PixelRect,
+    /// The physical box: the same for the physical pose alone.
+    pub physical_box: PixelRect,
     /// Lights whose shadows are moved, at most four.
     pub n_lights: usize,
     /// Width in pixels of the widest penumbra of each of them.
@@ -132,7 +134,8 @@ impl Plan {
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
-            toy_box: toy_box(facts, settings),
+            toy_box: box_in_region(facts.toy_box, (facts, settings)),
+            physical_box: box_in_region(facts.physical_box, (facts, settings)),
             left_out: left_out(facts, n_lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
@@ -167,7 +170,8 @@ impl Plan {
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
             let counts = [plan.n_lights, plan.n_ambient_directions];
-            (plan.region.size_px, plan.toy_box.size_px, plan.ambient_px, counts)
+            let boxes_px = [plan.toy_box.size_px, plan.physical_box.size_px];
+            (plan.region.size_px, boxes_px, plan.ambient_px, counts)
         };
         sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
     }
@@ -190,20 +194,20 @@ impl Plan {
             .clamp(1, MAX_FIT_ROWS)
     }
 
-    /// What drawing onto the toy box takes: its corner, and the size of the region that it is a part of.
+    /// What drawing onto one of the boxes takes: its corner, and the size of the region that it is a part of.
     #[must_use]
-    pub fn part_drawn(&self) -> (UVec2, UVec2) {
-        (self.toy_box.origin_px, self.region.size_px)
+    pub fn part_drawn(&self, of: &PixelRect) -> (UVec2, UVec2) {
+        (of.origin_px, self.region.size_px)
     }
 
-    /// Pixels of the toy box at most `reach_px` from those that show the physical toy: their corner, counted from the
+    /// Pixels of the physical box at most `reach_px` from those that show the physical toy: their corner, counted from the
     /// box's, and their size.
     #[must_use]
     pub fn near_physical_toy(&self, reach_px: u32) -> Option<(UVec2, UVec2)> {
         // What rounding adds in 32 bits is less than a pixel.
         let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
-        let near = near.common(&self.toy_box)?;
-        Some((near.origin_px - self.toy_box.origin_px, near.size_px))
+        let near = near.common(&self.physical_box)?;
+        Some((near.origin_px - self.physical_box.origin_px, near.size_px))
     }
 }
 
@@ -216,8 +220,8 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
     })
 }
 
-/// The toy box. A shadow that is withheld marks pixels all over the region.
-fn toy_box(facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
+/// A box of the image as one of the region. A shadow that is withheld marks pixels all over that.
+fn box_in_region(of_image: Option<PixelRect>, (facts, settings): (&SceneFacts, &ModelSettings)) -> PixelRect {
     let whole = PixelRect {
         origin_px: UVec2::ZERO,
         size_px: facts.region.size_px,
@@ -225,7 +229,7 @@ fn toy_box(facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
     if settings.is_shadow_withheld {
         return whole;
     }
-    in_region(facts.toy_box, &facts.region).unwrap_or(PixelRect {
+    in_region(of_image, &facts.region).unwrap_or(PixelRect {
         size_px: UVec2::ONE,
         ..whole
     })

@@ -23,10 +23,13 @@ impl Model {
         map: Map,
     ) -> Result<Option<FloatMap>, GpuError> {
         let (captured, drawn) = (&self.captured, &self.drawn);
+        let physical = self.region.plan.physical_box.origin_px;
         let map = match map {
-            Map::Validity => self.read_box(gpu, &captured.by_pass.validity.marks, FAR_MARKS),
-            Map::GbufferBase => self.read_box(gpu, &captured.by_pass.gbuffer.base, [0.0; 4]),
-            Map::GbufferReceived => self.read_box(gpu, &captured.by_pass.gbuffer.received, [0.0; 4]),
+            Map::Validity => self.read_box(gpu, (&captured.by_pass.validity.marks, physical), FAR_MARKS),
+            Map::GbufferBase => self.read_box(gpu, (&captured.by_pass.gbuffer.base, physical), [0.0; 4]),
+            Map::GbufferReceived => {
+                self.read_box(gpu, (&captured.by_pass.gbuffer.received, physical), [0.0; 4])
+            }
             Map::Appearance => self.read_appearance(gpu, frame),
             Map::PhysicalVisibility => read_texture(gpu, captured.light.visibility.lights.raw()),
             Map::PhysicalAmbient => read_texture(gpu, captured.light.visibility.ambient.raw()),
@@ -43,10 +46,14 @@ impl Model {
         map.map(Some)
     }
 
-    /// A target of the toy box, laid into the region; beyond the box is `beyond`.
-    fn read_box(&self, gpu: &Gpu, target: &Texture, beyond: [f32; 4]) -> Result<FloatMap, GpuError> {
-        let plan = &self.region.plan;
-        let (origin, size) = (plan.toy_box.origin_px, plan.region.size_px);
+    /// A target of the toy box or of the physical box, laid into the region; beyond the box is `beyond`.
+    fn read_box(
+        &self,
+        gpu: &Gpu,
+        (target, origin): (&Texture, UVec2),
+        beyond: [f32; 4],
+    ) -> Result<FloatMap, GpuError> {
+        let size = self.region.plan.region.size_px;
         let map = read_texture(gpu, target.raw())?;
         let mut texels = vec![beyond; (size.x * size.y) as usize];
         for (y, row) in (origin.y..).zip(map.texels.chunks_exact(map.width as usize)) {
@@ -62,11 +69,15 @@ impl Model {
 
     /// The toy's own colours: those of the frame in the region that the source tells of.
     fn read_appearance(&self, gpu: &Gpu, frame: Option<&Image>) -> Result<FloatMap, GpuError> {
-        let source = self.read_box(gpu, &self.captured.by_pass.appearance.source, [1.0; 4])?;
+        let physical_box = self.region.plan.physical_box;
+        let source = &self.captured.by_pass.appearance.source;
+        let source = self.read_box(gpu, (source, physical_box.origin_px), [1.0; 4])?;
         let frame = frame.map_or_else(Vec::new, |frame| linear_colors(frame, &self.region.rect()));
-        let toy_box = self.region.plan.toy_box;
-        let [first, end] =
-            [toy_box.origin_px, toy_box.origin_px + toy_box.size_px].map(|corner| corner.as_ivec2());
+        let [first, end] = [
+            physical_box.origin_px,
+            physical_box.origin_px + physical_box.size_px,
+        ]
+        .map(|corner| corner.as_ivec2());
         let width = source.width.max(1);
         let color = |(index, number): (u32, &[f32; 4])| {
             let from = source_texel(UVec2::new(index % width, index / width).as_ivec2(), number[0])?;
@@ -84,7 +95,8 @@ impl Model {
     /// Covered fractions of pixels, from the counts of `coverage`.
     fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
         let covered = &self.drawn.by_pass.coverage.covered;
-        let mut map = self.read_box(gpu, covered, [0.0, 0.0, 0.0, 1.0])?;
+        let origin_px = self.region.plan.toy_box.origin_px;
+        let mut map = self.read_box(gpu, (covered, origin_px), [0.0, 0.0, 0.0, 1.0])?;
         #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
         map.texels.iter_mut().for_each(|texel| texel[0] /= all);

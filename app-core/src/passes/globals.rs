@@ -52,6 +52,8 @@ shared_struct! {
         pub region_origin_px: [f32; 2],
         pub toy_box_origin_px: [f32; 2],
         pub toy_box_size_px: [f32; 2],
+        pub physical_box_origin_px: [f32; 2],
+        pub physical_box_size_px: [f32; 2],
         pub n_receivers: u32,
         pub seen_from_behind: u32,
         pub near_m: f32,
@@ -116,7 +118,7 @@ const NEAR_OVER_DISTANCE: f64 = 0.02;
 /// Width of the fade into untouched pixels at an inner border of the region.
 pub(crate) const BORDER_PX: u32 = 24;
 
-/// The globals of the region `rect` of a camera's picture, with the whole of it as the toy box.
+/// The globals of the region `rect` of a camera's picture, with the whole of it as both boxes.
 #[must_use]
 pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globals {
     let world_from_anchor = layout.world_from_anchor();
@@ -149,6 +151,8 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         region_origin_px: rect.origin_px.as_vec2().to_array(),
         toy_box_origin_px: [0.0; 2],
         toy_box_size_px: rect.size_px.as_vec2().to_array(),
+        physical_box_origin_px: [0.0; 2],
+        physical_box_size_px: rect.size_px.as_vec2().to_array(),
         n_receivers: count(layout.receivers.len(), MAX_RECEIVERS),
         seen_from_behind: seen_from_behind(view, layout.receivers),
         near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
@@ -157,12 +161,14 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
 }
 
 impl Globals {
-    /// The same with a part of the region as the toy box, counted from its corner.
+    /// The same with parts of the region as the toy box and the physical box, counted from its corner.
     #[must_use]
-    pub fn with_toy_box(self, toy_box: &PixelRect) -> Self {
+    pub fn with_boxes(self, toy_box: &PixelRect, physical_box: &PixelRect) -> Self {
         Self {
             toy_box_origin_px: toy_box.origin_px.as_vec2().to_array(),
             toy_box_size_px: toy_box.size_px.as_vec2().to_array(),
+            physical_box_origin_px: physical_box.origin_px.as_vec2().to_array(),
+            physical_box_size_px: physical_box.size_px.as_vec2().to_array(),
             ..self
         }
     }

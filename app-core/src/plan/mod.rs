@@ -15,6 +15,8 @@ pub struct SceneFacts {
     /// Pixels of the image that targets of the toy are to hold, in whatever pose it is shown; none where it is out of the
     /// picture.
     pub toy_box: Option<PixelRect>,
+    /// The same of maps of the physical toy.
+    pub physical_box: Option<PixelRect>,
     /// What a pixel is across at the nearest part of the toy, in units of its file; 0 where the camera is within.
     pub pixel_in_object: f64,
     /// Width in pixels of the widest penumbra of each light whose shadows are moved.

@@ -1,6 +1,6 @@
 //! What a scene's frame would cost, before anything is made for it: settings are turned down until it can be afforded.
 
-use glam::{DVec2, DVec3, DVec4, UVec2, Vec4};
+use glam::{DVec2, DVec3, DVec4, Vec4};
 
 use super::Stage;
 use super::footprint::Footprint;
@@ -55,7 +55,7 @@ impl Stage {
     pub(super) fn affordable(&mut self, settings: ModelSettings, footprint: &Footprint) -> Option<Plan> {
         self.turned_down.clear();
         self.cost_warning = None;
-        let facts = self.facts(footprint, (footprint.region, UVec2::ZERO));
+        let facts = self.facts(footprint, (footprint.region, None));
         let covered = self.covered(footprint);
         let mut steps = BALANCED_FRONT.iter();
         let mut first = None;
@@ -92,7 +92,8 @@ impl Stage {
     /// Counts what a scene's first frame would have the device do.
     fn cost(&self, plan: &Plan, footprint: &Footprint, (covered, divisor): (&Covered, u32)) -> Cost {
         let gpu = Gpu::default();
-        let globals = globals(&footprint.view, &plan.region, &self.layout()).with_toy_box(&plan.toy_box);
+        let globals = globals(&footprint.view, &plan.region, &self.layout())
+            .with_boxes(&plan.toy_box, &plan.physical_box);
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let state = SceneState::new(&gpu, grids_over(&self.reached_rects), plan.n_lights, toy);
         let mut model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);

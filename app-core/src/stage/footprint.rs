@@ -25,7 +25,7 @@ use crate::toy::ToyError;
 pub(super) const SPARE_PX: u32 = 8;
 
 /// Farthest that a pixel is looked up around the toy, with one for rounding and one for multisamples.
-const AROUND_TOY_PX: u32 = 10;
+pub(super) const AROUND_TOY_PX: u32 = 10;
 
 /// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec4};
 
-use super::footprint::{Footprint, SPARE_PX};
+use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
 use super::method::Method;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
@@ -138,14 +138,15 @@ impl Stage {
         state.method = match (self.preset.settings(), state.method) {
             (Settings::Model(settings), Method::Model(model)) => {
                 let known = &model.region.plan;
-                let facts = self.facts(footprint, (region, known.toy_box.size_px));
+                let facts = self.facts(footprint, (region, Some(known)));
                 let facts = if is_same_place {
                     facts.steadied(&known.penumbrae_px)
                 } else {
                     facts
                 };
                 let plan = Plan::new(&facts, &self.settings(settings));
-                let globals = globals(&footprint.view, &region, &self.layout()).with_toy_box(&plan.toy_box);
+                let globals = globals(&footprint.view, &region, &self.layout())
+                    .with_boxes(&plan.toy_box, &plan.physical_box);
                 let light_points = self.light_points(&plan);
                 Method::Model(Box::new(model.follow(gpu, plan, &globals, light_points)))
             }
@@ -168,7 +169,7 @@ impl Stage {
         {
             let known = &model.region.plan;
             let region = region_in(&state.method, footprint);
-            let facts = self.facts(footprint, (region, known.toy_box.size_px));
+            let facts = self.facts(footprint, (region, Some(known)));
             let plan = Plan::new(&facts, &self.settings(settings));
             if plan.self_shadow != known.self_shadow {
                 return self.start(gpu, input, footprint);
@@ -207,18 +208,26 @@ impl Stage {
         }
     }
 
-    /// Of a region; the toy box becomes no smaller than one that is known.
+    /// Of a region; its boxes become no smaller than those of a plan that is known.
     pub(super) fn facts(
         &self,
         footprint: &Footprint,
-        (region, known_box_px): (PixelRect, UVec2),
+        (region, known): (PixelRect, Option<&Plan>),
     ) -> SceneFacts {
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_receivers = self.receivers.len() as u32;
+        let physical_toy = self.physical_toy_in(&footprint.view);
+        let looked_at = physical_toy.map(|toy| toy.grown(AROUND_TOY_PX, footprint.view.image_px));
+        let boxed = (&region, footprint.view.image_px);
         SceneFacts {
             region,
-            physical_toy: self.physical_toy_in(&footprint.view),
-            toy_box: toy_box_in(&region, footprint, known_box_px),
+            physical_toy,
+            toy_box: box_in(
+                boxed,
+                footprint.least_toy_box,
+                known.map(|plan| plan.toy_box.size_px),
+            ),
+            physical_box: box_in(boxed, looked_at, known.map(|plan| plan.physical_box.size_px)),
             pixel_in_object: self.pixel_in_object(footprint),
             penumbrae_px: footprint.penumbrae_px.clone(),
             n_receivers,
@@ -268,7 +277,8 @@ impl Stage {
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
-        let globals = globals(&footprint.view, &plan.region, &self.layout()).with_toy_box(&plan.toy_box);
+        let globals = globals(&footprint.view, &plan.region, &self.layout())
+            .with_boxes(&plan.toy_box, &plan.physical_box);
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let n_lights = self.lights.used.len();
         let state = SceneState::new(gpu, grids_over(&self.reached_rects), n_lights, toy);
@@ -311,7 +321,7 @@ impl Stage {
     ) -> (BaselinePlan, Globals, Uniform) {
         let globals = globals(&footprint.view, &region, &self.layout());
         let uniform = uniform(&self.layout(), &footprint.bounds, settings);
-        let plan = BaselinePlan::new(&self.facts(footprint, (region, UVec2::ZERO)), settings);
+        let plan = BaselinePlan::new(&self.facts(footprint, (region, None)), settings);
         (plan, globals, uniform)
     }
 }
@@ -323,18 +333,17 @@ fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
     footprint.region.within(size_px, image_px)
 }
 
-/// The part of the image that is to be the toy box of a region.
-fn toy_box_in(region: &PixelRect, footprint: &Footprint, known_px: UVec2) -> Option<PixelRect> {
-    let needed = footprint
-        .least_toy_box?
-        .grown(SPARE_PX, footprint.view.image_px)
-        .common(region)?;
+/// The part of the image that is to be a box of a region which holds at least some pixels of it.
+fn box_in(
+    (region, image_px): (&PixelRect, UVec2),
+    least: Option<PixelRect>,
+    known_px: Option<UVec2>,
+) -> Option<PixelRect> {
+    let needed = least?.grown(SPARE_PX, image_px).common(region)?;
     // A first one is as large as it must be, as the region is.
-    let size_px = if known_px == UVec2::ZERO {
-        needed.size_px
-    } else {
+    let size_px = known_px.map_or(needed.size_px, |known_px| {
         moving_size(known_px, &needed, region.size_px)
-    };
+    });
     let in_region = PixelRect {
         origin_px: needed.origin_px - region.origin_px,
         ..needed

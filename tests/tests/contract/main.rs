@@ -119,6 +119,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
             region,
             physical_toy: Some(region),
             toy_box: Some(region),
+            physical_box: Some(region),
             pixel_in_object: 0.0,
             penumbrae_px: vec![0.0],
             n_receivers: 1,

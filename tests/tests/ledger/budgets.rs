@@ -77,15 +77,15 @@ fn frames_of_balanced_stay_within_their_budgets() {
     let one = [
         (Pose, 222_000, 1.52),
         (Picture, 222_000, 1.80),
-        (View, 392_000, 2.79),
+        (View, 392_000, 2.69),
     ];
-    assert_held(1, Preset::Balanced, one, 36.0);
+    assert_held(1, Preset::Balanced, one, 34.0);
     let two = [
         (Pose, 332_000, 1.76),
         (Picture, 332_000, 2.05),
-        (View, 609_000, 3.20),
+        (View, 609_000, 3.10),
     ];
-    assert_held(2, Preset::Balanced, two, 39.5);
+    assert_held(2, Preset::Balanced, two, 37.5);
 }
 
 #[test]
@@ -94,15 +94,15 @@ fn frames_of_fast_stay_within_their_budgets() {
     let one = [
         (Pose, 101_000, 1.39),
         (Picture, 101_000, 1.67),
-        (View, 171_000, 2.58),
+        (View, 171_000, 2.47),
     ];
-    assert_held(1, Preset::Fast, one, 34.0);
+    assert_held(1, Preset::Fast, one, 32.0);
     let two = [
         (Pose, 135_000, 1.56),
         (Picture, 135_000, 1.84),
-        (View, 239_000, 2.85),
+        (View, 239_000, 2.74),
     ];
-    assert_held(2, Preset::Fast, two, 37.0);
+    assert_held(2, Preset::Fast, two, 35.0);
 }
 
 #[test]

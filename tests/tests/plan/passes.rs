@@ -39,6 +39,7 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
         region,
         physical_toy: Some(region),
         toy_box: Some(region),
+        physical_box: Some(region),
         pixel_in_object: 0.0,
         penumbrae_px,
         n_receivers: 2,

@@ -52,7 +52,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
-/// Of the toy box's size.
+/// Of the physical box's size.
 pub(crate) struct Targets {
     /// Each light's cosine times its visibility at the pixels that a colour is from.
     pub(crate) received: Texture,
@@ -64,7 +64,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label, format| Texture::target(gpu, label, plan.toy_box.size_px, format);
+        let target = |label, format| Texture::target(gpu, label, plan.physical_box.size_px, format);
         Self {
             received: target("appearance received", RECEIVED_FORMAT),
             base: target("appearance base", BASE_FORMAT),

@@ -47,7 +47,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) self_shadow: &'a self_shadow::Targets,
 }
 
-/// Of the toy box's size.
+/// Of the physical box's size.
 pub(crate) struct Targets {
     pub(crate) base: Texture,
     pub(crate) normal: Texture,
@@ -57,7 +57,7 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label, format| Texture::target(gpu, label, plan.toy_box.size_px, format);
+        let target = |label, format| Texture::target(gpu, label, plan.physical_box.size_px, format);
         Self {
             base: target("gbuffer base", BASE_FORMAT),
             normal: target("gbuffer normal", NORMAL_FORMAT),
@@ -96,7 +96,7 @@ impl Pass {
         let colors = [&targets.base, &targets.normal, &targets.received];
         let colors = colors.map(|texture| Some(cleared(&texture.view)));
         let mut render = recorder.render(SHADER.name, &colors, Some(&targets.depth.view), StoreOp::Store);
-        render.part_of(inputs.plan.part_drawn());
+        render.part_of(inputs.plan.part_drawn(&inputs.plan.physical_box));
         let sided = Sided {
             both: draw,
             culled,

@@ -91,7 +91,7 @@ impl Pass {
             recorder.bind_with(compute, GROUP_PASS, &stride_px, &resources),
         ];
         // As many steps as can begin in the box.
-        let size_px = inputs.plan.toy_box.size_px;
+        let size_px = inputs.plan.physical_box.size_px;
         let sampled_px = size_px.map(|side_px| side_px.div_ceil(stride_px));
         let workgroups = sampled_px.map(|side_px| side_px.div_ceil(WORKGROUP_PX)).extend(1);
         recorder.compute_over(compute, &groups, workgroups.to_array(), n_pixels(sampled_px));

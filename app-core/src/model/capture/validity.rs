@@ -34,7 +34,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer_depth: &'a TextureView,
 }
 
-/// Of the toy box's size.
+/// Of the physical box's size.
 pub(crate) struct Targets {
     pub(crate) marks: Texture,
 }
@@ -42,7 +42,7 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
-            marks: Texture::target(gpu, "validity", plan.toy_box.size_px, FORMAT),
+            marks: Texture::target(gpu, "validity", plan.physical_box.size_px, FORMAT),
         }
     }
 }

@@ -115,7 +115,7 @@ impl Pass {
         ];
         let count = cleared(&targets.covered.view);
         let mut render = targets.order.render(recorder, SHADER.name, count);
-        render.part_of(inputs.region.plan.part_drawn());
+        render.part_of(inputs.region.plan.part_drawn(&inputs.region.plan.toy_box));
         let drawn = (&corners, pose);
         // Before one receiver it is told from the vertices what is behind it.
         let n_plain = if inputs.region.plan.n_receivers == 1 {

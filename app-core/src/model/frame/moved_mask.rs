@@ -89,7 +89,7 @@ impl Pass {
         let group = recorder.bind(draw, GROUP_SCENE, &[(&region.globals).into()]);
         let depth = Some(&targets.depth.view);
         let mut render = recorder.render(SHADER.name, &[Some(mask)], depth, StoreOp::Discard);
-        render.part_of(region.plan.part_drawn());
+        render.part_of(region.plan.part_drawn(&region.plan.toy_box));
         render.begin(draw, &[group]);
         corners.bind(&mut render, &toy.physical);
         render.set_vertices(1, &toy.shown.positions);

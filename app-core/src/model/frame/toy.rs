@@ -202,7 +202,7 @@ impl Pass {
                 .map(Some);
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
-            render.part_of(inputs.plan.part_drawn());
+            render.part_of(inputs.plan.part_drawn(&inputs.plan.toy_box));
             let Some(part) = inputs.shown_toy else { continue };
             render.within((part.origin_px, part.size_px));
             let sided = Sided {
