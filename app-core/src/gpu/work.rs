@@ -9,9 +9,11 @@ use super::shape::Shape;
 ///
 /// Bytes are those that a tiler moves at least: an attachment that is loaded or stored counts whole, whatever is drawn to
 /// it; of a texture that is read each texel counts once a pass, and no more texels a layer than the pass has pixels, or
-/// than it says that it looks at, but shadow maps whole; buffers count whole, indices as far as they are drawn. So of a pass that
-/// looks elsewhere than where it draws, as `toy` does at the real toy's pixels, it is what a shape as large as the drawn one shows. What stays on the chip costs
-/// nothing, nor does what a tiler writes of its own accord for the triangles.
+/// than it says that it looks at, but shadow maps whole; buffers count whole, indices as far as they are drawn. What stays
+/// on the chip costs nothing, nor does what a tiler writes of its own accord for the triangles.
+///
+/// So a pass that looks elsewhere than where it draws, as `toy` does at the real toy's pixels, is counted as if it looked at
+/// as many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Work {
     n_draws: u32,

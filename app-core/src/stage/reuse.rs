@@ -333,13 +333,20 @@ fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
     footprint.region.within(size_px, image_px)
 }
 
-/// The part of the image that is to be a box of a region which holds at least some pixels of it.
+/// The part of the image that is to be a box of a region which holds at least some pixels of it. Where there are none, it keeps its
+/// size for when they are seen again; none where it never had one.
 fn box_in(
     (region, image_px): (&PixelRect, UVec2),
     least: Option<PixelRect>,
     known_px: Option<UVec2>,
 ) -> Option<PixelRect> {
-    let needed = least?.grown(SPARE_PX, image_px).common(region)?;
+    let needed = least.and_then(|least| least.grown(SPARE_PX, image_px).common(region));
+    let Some(needed) = needed else {
+        return known_px.map(|known_px| PixelRect {
+            size_px: known_px.min(region.size_px),
+            ..*region
+        });
+    };
     // A first one is as large as it must be, as the region is.
     let size_px = known_px.map_or(needed.size_px, |known_px| {
         moving_size(known_px, &needed, region.size_px)
