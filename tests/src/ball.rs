@@ -69,7 +69,7 @@ pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
         "meshes",
         json!({ "primitives": [{ "attributes": { "POSITION": position, "NORMAL": normal }, "indices": indices }] }),
     );
-    file.push("nodes", json!({ "mesh": mesh }));
+    file.push("nodes", json!({ "mesh": mesh, "name": "toy" }));
     let times = file.floats("SCALAR", &[0.0, 1.0]);
     let places = file.floats("VEC3", &[0.0, 0.0, 0.0, 0.02, 0.02, 0.0]);
     file.animate("lift", "translation", "LINEAR", [times, places]);
