@@ -14,5 +14,6 @@ fn frame_at(texel: vec2i) -> vec3f {
   let in_picture = texel + vec2i(globals.region_origin_px);
   let stored = textureLoad(frame, in_picture, 0);
   if !IS_PLANAR { return stored.rgb; }
-  return linear_from_srgb(codes_at(stored.r, in_picture));
+  let ycbcr = vec3f(stored.r, chroma_at(in_picture));
+  return linear_from_srgb(codes_of(ycbcr, encoding.srgb_from_ycbcr, encoding.origin));
 }

@@ -1,5 +1,5 @@
-// Planes of luma and chroma (Cb, Cr) of half its size, rounded up, as sRGB codes. A shader binds them as `encoding` and `chroma`. A
-// chroma sample lies amid its four luma samples.
+// Planes of luma and chroma (Cb, Cr) of half its size, rounded up, as sRGB codes. A chroma sample lies
+// amid its four luma samples; a shader binds the samples as `chroma`.
 //
 // Source: ITU-R BT.601-7, 2.5; BT.709-6, 3.
 
@@ -21,8 +21,7 @@ fn chroma_at(texel: vec2i) -> vec2f {
   return 0.75 * above + 0.25 * below;
 }
 
-// sRGB codes of a pixel that has a luma.
-fn codes_at(luma: f32, texel: vec2i) -> vec3f {
-  let ycbcr = vec3f(luma, chroma_at(texel));
-  return saturate(encoding.srgb_from_ycbcr * (ycbcr - encoding.origin));
+// sRGB codes of luma, Cb and Cr. No struct is handed over: drivers of older Adreno keep those at 16 bits.
+fn codes_of(ycbcr: vec3f, srgb_from_ycbcr: mat3x3f, origin: vec3f) -> vec3f {
+  return saturate(srgb_from_ycbcr * (ycbcr - origin));
 }

@@ -5,8 +5,8 @@
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, which of its pixels the toy's colours are from and the light these were seen
-// under, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, alpha the fraction of samples hit; where it differs from the
-// camera's pixel.
+// under, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, alpha the fraction of
+// samples hit; where it differs from the camera's pixel.
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;

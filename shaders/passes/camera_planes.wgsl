@@ -10,5 +10,6 @@
 @fragment
 fn fs_decode(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2i(at.xy);
-  return vec4f(codes_at(textureLoad(luma, texel, 0).r, texel), 1.0);
+  let ycbcr = vec3f(textureLoad(luma, texel, 0).r, chroma_at(texel));
+  return vec4f(codes_of(ycbcr, encoding.srgb_from_ycbcr, encoding.origin), 1.0);
 }

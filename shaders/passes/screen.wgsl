@@ -16,10 +16,9 @@ struct ScreenMap {
   // Part of the region's picture, the rest being the camera image: from 0 to 1.
   effect: f32,
   unused: f32,
-  // Of planes alone: size of the chroma, the map to sRGB codes, luma of black and chroma of grey.
+  // Of planes alone: size of the chroma, and what their codes mean.
   chroma_px: vec2f,
-  srgb_from_ycbcr: mat3x3f,
-  grey: vec4f,
+  encoding: Encoding,
 }
 
 @group(1) @binding(0) var<uniform> image_from_screen: ScreenMap;
@@ -51,11 +50,12 @@ fn picture_at(at: vec2f) -> vec3f {
   return textureSampleLevel(frame, linear_sampler, at / image_from_screen.picture_px, 0.0).rgb;
 }
 
-// Codes of the frame's planes. A chroma sample lies amid its four luma samples.
+// Codes of the frame's planes.
 fn decoded_at(at: vec2f) -> vec3f {
   let y = textureSampleLevel(frame, linear_sampler, at / image_from_screen.picture_px, 0.0).r;
   let cb_cr = textureSampleLevel(chroma, linear_sampler, 0.5 * at / image_from_screen.chroma_px, 0.0).rg;
-  return saturate(image_from_screen.srgb_from_ycbcr * (vec3f(y, cb_cr) - image_from_screen.grey.xyz));
+  let encoding = &image_from_screen.encoding;
+  return codes_of(vec3f(y, cb_cr), encoding.srgb_from_ycbcr, encoding.origin);
 }
 
 @fragment

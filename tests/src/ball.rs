@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
+use app_core::camera_frame::{PlanarImage, Planes};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
 use app_core::toy::Toy;
@@ -12,6 +12,7 @@ use serde_json::json;
 
 use crate::glb::Glb;
 use crate::photographer::world::camera;
+use crate::planar::BT601_FULL;
 
 /// The screen of an iPhone X, across.
 pub const SCREEN_PX: [u32; 2] = [2436, 1125];
@@ -80,11 +81,13 @@ pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
 fn planes(size_px: [u32; 2]) -> Option<PlanarImage> {
     let [width, height] = size_px.map(|side| side as usize);
     let (luma, chroma) = (vec![128; width * height], vec![128; width * height.div_ceil(2)]);
-    let encoding = YcbcrEncoding {
-        coefficients: LumaCoefficients::Bt601,
-        range: CodeRange::Full,
-    };
-    PlanarImage::new(&Planes::nv12(size_px, (&luma, width), (&chroma, width), encoding)).ok()
+    PlanarImage::new(&Planes::nv12(
+        size_px,
+        (&luma, width),
+        (&chroma, width),
+        BT601_FULL,
+    ))
+    .ok()
 }
 
 /// A camera that sees the ball's region some 900 x 700 px large on that screen.

@@ -9,7 +9,7 @@ mod withheld;
 
 use std::ops::Range;
 
-use app_core::camera_frame::{CodeRange, LumaCoefficients, PlaneError, YcbcrEncoding};
+use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::Step;
@@ -22,7 +22,7 @@ use crate::alignment::{Alignments, Lights, Ratio};
 use crate::count::count;
 use crate::metrics::Scores;
 use crate::metrics::flicker::Flicker;
-use crate::planar::planar;
+use crate::planar::{BT601_FULL, planar};
 use crate::progress::Quiet;
 use crate::replay::{self, ReplayError, replay_aligned};
 use crate::report::Report;
@@ -188,12 +188,8 @@ fn times(
 
 /// The same frames as phones deliver them.
 fn as_planes(inputs: Vec<FrameInput>) -> Result<Vec<FrameInput>, PlaneError> {
-    let encoding = YcbcrEncoding {
-        coefficients: LumaCoefficients::Bt601,
-        range: CodeRange::Full,
-    };
     let planes = |input: FrameInput| {
-        let image = planar(input.image.rgba(), encoding)?.into();
+        let image = planar(input.image.rgba(), BT601_FULL)?.into();
         Ok(FrameInput { image, ..input })
     };
     inputs.into_iter().map(planes).collect()

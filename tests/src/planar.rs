@@ -1,10 +1,16 @@
 //! Pictures as a phone's camera hands them over.
 
-use app_core::camera_frame::{PlanarImage, PlaneError, Planes, YcbcrEncoding};
+use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, PlaneError, Planes, YcbcrEncoding};
 use app_core::scene::Image;
 use glam::DVec3;
 
 use crate::reference::camera_planes::encoded;
+
+/// What most phones' planes have.
+pub const BT601_FULL: YcbcrEncoding = YcbcrEncoding {
+    coefficients: LumaCoefficients::Bt601,
+    range: CodeRange::Full,
+};
 
 #[allow(
     clippy::cast_possible_truncation,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use app_core::Core;
-use app_core::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
+use app_core::camera_frame::CameraImage;
 use app_core::frame::{self, FrameInput, FrameReport};
 use app_core::internals::{Change, Inspect, phone_limits, planned_by_model};
 use app_core::preset::Preset;
@@ -19,6 +19,7 @@ use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use glam::{DMat4, DVec3};
 use harness::files::{BUNDLED_SESSION, Folder};
+use harness::planar::{BT601_FULL, planar};
 
 /// A core on a device that writes down what it is given.
 struct Traced {
@@ -149,22 +150,9 @@ fn first_runs(planned: Vec<(frame::Path, &'static str)>) -> Vec<(frame::Path, &'
     first
 }
 
-/// A picture as a phone delivers it, in grey.
-fn in_grey(image: &Image) -> CameraImage {
-    let [width, height] = [image.width_px as usize, image.height_px as usize];
-    let luma: Vec<u8> = image.rgba8.iter().skip(1).step_by(4).copied().collect();
-    let chroma = vec![128; 2 * width.div_ceil(2) * height.div_ceil(2)];
-    let encoding = YcbcrEncoding {
-        coefficients: LumaCoefficients::Bt601,
-        range: CodeRange::Full,
-    };
-    let planes = Planes::nv12(
-        [image.width_px, image.height_px],
-        (&luma, width),
-        (&chroma, 2 * width.div_ceil(2)),
-        encoding,
-    );
-    PlanarImage::new(&planes).unwrap().into()
+/// A picture as a phone delivers it.
+fn as_planes(image: &Image) -> CameraImage {
+    planar(image, BT601_FULL).unwrap().into()
 }
 
 fn later(input: &FrameInput) -> FrameInput {
@@ -182,7 +170,7 @@ fn later(input: &FrameInput) -> FrameInput {
 
 fn photographed_again(input: &FrameInput) -> FrameInput {
     FrameInput {
-        image: in_grey(input.image.rgba()),
+        image: as_planes(input.image.rgba()),
         ..input.clone()
     }
 }
@@ -232,7 +220,7 @@ fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
 fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
     let session = session();
     let mut first = FrameInput::from(&session.frame(0).unwrap());
-    first.image = in_grey(first.image.rgba());
+    first.image = as_planes(first.image.rgba());
     let mut traced = Traced::new("steady");
     // The others run a part of what these run.
     for preset in [Preset::Paper, Preset::Best] {
@@ -282,7 +270,7 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
     let mut first = FrameInput::from(&session.frame(0).unwrap());
     let pixels = first.image.rgba().clone();
     // As a phone delivers it: of pixels the pipelines are compiled when the first come.
-    first.image = in_grey(&pixels);
+    first.image = as_planes(&pixels);
     traced.core.frame(&first).unwrap();
     assert_eq!(traced.given().n_created("Pipeline"), 0);
     first.image = CameraImage::Rgba(pixels);

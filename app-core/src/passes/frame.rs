@@ -8,7 +8,7 @@ use crate::gpu::shader::{Part, part};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
 
-/// Planes as sRGB codes, which a shader binds as `encoding` and `chroma`.
+/// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.
 pub(crate) const PLANES: Part = part!("common/planes", structs: [Encoding]);
 /// The picture as light, which is bound with a method's scene.
 pub(crate) const FRAME: Part = part!("common/frame");

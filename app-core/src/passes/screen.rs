@@ -10,15 +10,19 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Group, Recorder, cleared};
 use crate::gpu::shader::{Shader, part};
-use crate::gpu::shared::{Mat3Columns, shared_struct};
+use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::passes::finished::{Finished, Laid};
-use crate::passes::frame::Frame;
+use crate::passes::frame::{Encoding, Frame, PLANES};
 use crate::passes::in_parts::{fill, n_pixels_of};
 use crate::passes::parts::{FULLSCREEN, SRGB};
 
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&SRGB, &FULLSCREEN, &part!("passes/screen", structs: [ScreenMap])]);
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &SRGB,
+    &FULLSCREEN,
+    &PLANES,
+    &part!("passes/screen", structs: [ScreenMap]),
+]);
 const SLOTS: &[Slot] = &[Slot::per_use::<ScreenMap>(), Slot::Sampler];
 /// Of a picture, and of luma and chroma.
 const FRAME_SLOTS: [&[Slot]; 2] = [&[Slot::Filtered], &[Slot::Filtered, Slot::Filtered]];
@@ -39,8 +43,7 @@ shared_struct! {
         pub effect: f32,
         pub unused: f32,
         pub chroma_px: [f32; 2],
-        pub srgb_from_ycbcr: Mat3Columns,
-        pub grey: [f32; 4],
+        pub encoding: Encoding,
     }
 }
 
@@ -53,9 +56,11 @@ impl ScreenMap {
             y_axis: pair(axes.y_axis),
             origin_px: pair(image_from_screen.translation),
             picture_px: pair(finished.size_px.as_dvec2()),
+            chroma_px: finished.frame.views()[1].size_px().as_vec2().to_array(),
+            encoding: finished.frame.uniform(),
             ..Self::zeroed()
         };
-        map.with_region(finished.region).with_planes(&finished.frame)
+        map.with_region(finished.region)
     }
 
     fn with_region(self, region: Option<Laid<'_>>) -> Self {
@@ -65,19 +70,6 @@ impl ScreenMap {
             effect: laid.effect,
             ..self
         })
-    }
-
-    fn with_planes(self, frame: &Frame<'_>) -> Self {
-        let Frame::Planes(planes) = frame else {
-            return self;
-        };
-        let map = planes.encoding.srgb_from_ycbcr();
-        Self {
-            chroma_px: planes.views[1].size_px().as_vec2().to_array(),
-            srgb_from_ycbcr: map.columns(),
-            grey: map.origin.extend(0.0).to_array(),
-            ..self
-        }
     }
 }
 

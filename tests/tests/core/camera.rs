@@ -8,14 +8,9 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
 use glam::DVec2;
-use harness::planar::planar;
+use harness::planar::{BT601_FULL, planar};
 
 use crate::bundled::{core, first_input, picture_of, scene};
-
-pub(crate) const ENCODING: YcbcrEncoding = YcbcrEncoding {
-    coefficients: LumaCoefficients::Bt601,
-    range: CodeRange::Full,
-};
 
 fn worst(a: &[u8], b: &[u8]) -> u8 {
     assert_eq!(a.len(), b.len());
@@ -50,7 +45,7 @@ fn planes_are_decoded_on_the_device_as_on_the_processor() {
 fn a_frame_of_planes_gives_the_picture_of_its_pixels() {
     let (scene, input) = (scene(), first_input());
     let mut core = core();
-    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING).unwrap());
+    let planes = CameraImage::from(planar(input.image.rgba(), BT601_FULL).unwrap());
     let pixels = CameraImage::Rgba(planes.rgba().clone());
     let [a, b] = [planes, pixels].map(|image| {
         core.set_scene(scene.clone(), Preset::Balanced).unwrap();
@@ -209,7 +204,7 @@ fn a_screen_shows_the_region_over_the_camera_image() {
 fn a_screen_shows_planes_as_their_pixels() {
     let (scene, input) = (scene(), first_input());
     let mut app = App::open();
-    let planes = CameraImage::from(planar(input.image.rgba(), ENCODING).unwrap());
+    let planes = CameraImage::from(planar(input.image.rgba(), BT601_FULL).unwrap());
     let pixels = CameraImage::Rgba(planes.rgba().clone());
     for (preset, effect) in [
         (Preset::Balanced, 1.0),

@@ -8,10 +8,10 @@ use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::wgpu;
 
-use harness::planar::planar;
+use harness::planar::{BT601_FULL, planar};
 
 use crate::bundled::{first_input, scene};
-use crate::camera::{App, ENCODING};
+use crate::camera::App;
 
 /// A texture of a platform's, with its texels.
 fn texture(app: &App, size_px: [u32; 2], format: wgpu::TextureFormat, texels: &[u8]) -> wgpu::Texture {
@@ -83,7 +83,7 @@ fn picture(app: &mut App, image: CameraImage) -> Vec<u8> {
 #[test]
 fn lent_textures_give_the_picture_of_their_bytes_without_a_copy() {
     let mut app = App::open();
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
+    let original = Arc::new(planar(first_input().image.rgba(), BT601_FULL).unwrap());
     let expected = picture(&mut app, CameraImage::Planes(Arc::clone(&original)));
     let (image, n_copies) = lent(&app, &original);
     let image = CameraImage::from(image.unwrap());
@@ -100,7 +100,7 @@ fn lent_textures_give_the_picture_of_their_bytes_without_a_copy() {
 #[test]
 fn textures_of_a_lost_device_are_read_as_bytes() {
     let [mut app, lost] = [App::open(), App::open()];
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
+    let original = Arc::new(planar(first_input().image.rgba(), BT601_FULL).unwrap());
     let expected = picture(&mut app, CameraImage::Planes(Arc::clone(&original)));
     let (image, n_copies) = lent(&lost, &original);
     drop(lost);
@@ -114,7 +114,7 @@ fn textures_of_a_lost_device_are_read_as_bytes() {
 #[test]
 fn what_cannot_be_read_is_black() {
     let app = App::open();
-    let original = Arc::new(planar(first_input().image.rgba(), ENCODING).unwrap());
+    let original = Arc::new(planar(first_input().image.rgba(), BT601_FULL).unwrap());
     let (width, height) = (original.size_px()[0], original.size_px()[1]);
     let image = |read: fn() -> Option<PlanarImage>| {
         let planes = LentPlanes {
@@ -133,9 +133,9 @@ fn what_cannot_be_read_is_black() {
             ),
             read: Box::new(read),
         };
-        PlanarImage::lent([width, height], ENCODING, planes).unwrap()
+        PlanarImage::lent([width, height], BT601_FULL, planes).unwrap()
     };
-    let of_other_size = || PlanarImage::new(&Planes::nv12([1, 1], (&[9], 1), (&[9, 9], 2), ENCODING)).ok();
+    let of_other_size = || PlanarImage::new(&Planes::nv12([1, 1], (&[9], 1), (&[9, 9], 2), BT601_FULL)).ok();
     for read in [(|| None) as fn() -> Option<PlanarImage>, of_other_size] {
         let codes = image(read).rgba().rgba8.clone();
         assert!(codes.chunks(4).all(|pixel| pixel == [0, 0, 0, 255]));
@@ -158,7 +158,7 @@ fn a_texture_that_is_not_its_plane_is_refused() {
             chroma: chroma.clone(),
             read: Box::new(|| None),
         };
-        PlanarImage::lent(size_px, ENCODING, planes).map(drop)
+        PlanarImage::lent(size_px, BT601_FULL, planes).map(drop)
     };
     assert_eq!(lent([8, 6], &luma, &chroma), Ok(()));
     assert_eq!(

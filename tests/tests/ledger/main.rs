@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_core::Core;
-use app_core::camera_frame::{CameraImage, CodeRange, Display, LumaCoefficients, YcbcrEncoding};
+use app_core::camera_frame::{CameraImage, Display};
 use app_core::frame::{self, FrameInput, FrameReport, PassRun};
 use app_core::internals::{Inspect, phone_limits};
 use app_core::preset::Preset;
@@ -20,14 +20,9 @@ use app_core::session::{Capture, Session};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use harness::bench::{FRAME_KINDS, with_new};
 use harness::files::{BUNDLED_SESSION, Folder};
-use harness::planar::planar;
+use harness::planar::{BT601_FULL, planar};
 
 use trace::{Given, Objects};
-
-const BT601: YcbcrEncoding = YcbcrEncoding {
-    coefficients: LumaCoefficients::Bt601,
-    range: CodeRange::Full,
-};
 
 /// A device that writes down what it is given.
 struct Traced {
@@ -145,7 +140,7 @@ fn a_screen_costs_what_a_device_is_given() {
     let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
     core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
     let pixels = input.image.clone();
-    let planes = CameraImage::from(planar(pixels.rgba(), BT601).unwrap());
+    let planes = CameraImage::from(planar(pixels.rgba(), BT601_FULL).unwrap());
     let large = [400, 300];
     let (narrow, small) = ([90, 400], [8, 8]);
     for ([width, height], effect, image) in [
@@ -160,22 +155,9 @@ fn a_screen_costs_what_a_device_is_given() {
         input.image = image.clone();
         input.effect = effect;
         core.frame(&input).unwrap();
-        let target = traced.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let screen = core.hidden_screen([width, height]).unwrap();
         traced.given();
-        core.draw_on(&target, Display::default()).unwrap();
+        core.draw_on(&screen, Display::default()).unwrap();
         let given = traced.given();
         let work = core.count_present([width, height], Display::default()).unwrap();
         let on_screen = PassRun {

@@ -101,11 +101,11 @@ fn a_fault_in_the_reading_is_found() {
             "+ vec2i(globals.region_origin_px);",
             "+ vec2i(globals.region_origin_px) / 2;",
         ),
-        ("linear_from_srgb(codes_at(", "(codes_at("),
+        ("linear_from_srgb(codes_of(", "(codes_of("),
         ("if !IS_PLANAR", "if IS_PLANAR"),
         ("2 * (texel % 2) - 1", "1 - 2 * (texel % 2)"),
         ("own + 2 *", "own - 2 *"),
-        ("* (ycbcr - encoding.origin)", "* ycbcr"),
+        ("* (ycbcr - origin)", "* ycbcr"),
         ("0.75 * above + 0.25", "0.25 * above + 0.75"),
     ];
     check_faults("estimate", &faults, ALLOWED, errors);

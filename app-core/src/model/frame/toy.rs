@@ -203,6 +203,7 @@ impl Pass {
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn(&inputs.plan.toy_box));
+            // Of a toy that is not seen nothing is drawn: the targets are only cleared.
             let Some(part) = inputs.shown_toy else { continue };
             render.within((part.origin_px, part.size_px));
             let sided = Sided {
