@@ -79,97 +79,22 @@
 #![doc = include_str!("../doc/glossary.md")]
 #![forbid(unsafe_code)]
 
-pub mod alignment;
-pub mod app;
-pub mod camera_frame;
-pub mod card;
-pub mod core;
-pub mod frame;
-pub mod governor;
-pub mod gpu;
-pub mod interface;
-pub mod ledger;
-pub mod live;
-pub mod preset;
-pub mod probe;
-pub mod profile;
-pub mod recording;
-pub mod scene;
-pub mod self_test;
-pub mod session;
-pub mod toy;
+pub use app_pipeline::{Core, CoreError, core, governor, gpu, ledger, preset, profile, wgpu};
+pub use app_scene::{camera_frame, card, lens, scene, toy};
 
-mod baseline;
-mod disjoint;
-mod geometry;
-pub mod lens;
-mod model;
-mod passes;
-mod plan;
-mod plates;
-mod readback;
-mod stage;
-mod words;
-
-pub use crate::core::{Core, CoreError};
-pub use wgpu;
-
-/// Internals for the project's own tests and harness. They change without notice.
-#[doc(hidden)]
-pub mod internals {
-    pub use crate::baseline::plan::BaselinePlan;
-    pub use crate::baseline::planned as planned_by_baseline;
-    pub use crate::baseline::uniform::Baseline as BaselineUniform;
-    pub use crate::core::inspect::Inspect;
-    pub use crate::geometry::anchored::AnchoredReceiver;
-    pub use crate::geometry::bounds::{Bounds, Sphere};
-    pub use crate::geometry::color::linear_from_srgb;
-    pub use crate::geometry::facing::Viewers;
-    pub use crate::geometry::light_points::{ambient_directions, light_in_plane, light_points};
-    pub use crate::geometry::outline::Outline;
-    pub use crate::geometry::reach::Reach;
-    pub use crate::geometry::rect::{PixelRect, PlaneRect};
-    pub use crate::geometry::scene_layout::SceneLayout;
-    pub use crate::geometry::seen::{mark_seen, seen_rect};
-    pub use crate::geometry::shadow_atlas::ShadowAtlas;
-    pub use crate::geometry::silhouette::{
-        ByCamera, Edges, Landing, OntoReceiver, Projection, Shape, Silhouette, find_silhouette,
-    };
-    pub use crate::geometry::tiles::{CountedTiles, PixelBox, Tiles};
-    pub use crate::geometry::view::View;
-    pub use crate::geometry::whole_shadow::Caster as ShadowCaster;
-    pub use crate::gpu::context::phone_limits;
-    pub use crate::gpu::device::Kind;
-    pub use crate::gpu::meter::Memory;
-    pub use crate::gpu::shader::{Part, Shader};
-    pub use crate::gpu::shared::{Member, Mirror, NumberKind};
-    pub use crate::model::diagnostics::conditioning::light_conditioning;
-    pub use crate::model::diagnostics::evidence::{Evidence, PixelEvidence};
-    pub use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS, outliers};
-    pub use crate::model::lighting::self_shadow::SelfShadow;
-    pub use crate::model::plan::Plan;
-    pub use crate::model::planned as planned_by_model;
-    pub use crate::model::state::grids::{Grid, Grids, MAX_CELLS, grids_over, holds};
-    pub use crate::model::state::solution::{Fit, N_COLUMNS, N_FIT_SUMS, ReceiverFit};
-    pub use crate::model::state::tints::{TINT_SIDE, TintGrid, TintMap};
-    pub use crate::passes::globals::{Globals, globals};
-    pub use crate::passes::plate::{PlateView, PlateViews};
-    pub use crate::plan::{Change, LeftOut, SceneFacts};
-    pub use crate::plates::exposure::match_plates;
-    pub use crate::plates::overlap::compared_plates;
-    pub use crate::readback::inject::InjectedVisibility;
-    pub use crate::readback::{FloatMap, Map};
-    pub use crate::session::tags::{exif_orientation, png_chunks};
-
-    /// Every shader of the registry.
-    pub fn shaders() -> impl Iterator<Item = &'static Shader> {
-        let rooms = [
-            crate::model::lighting::SHADERS,
-            crate::model::capture::SHADERS,
-            crate::model::frame::SHADERS,
-            crate::passes::SHADERS,
-            crate::baseline::SHADERS,
-        ];
-        rooms.into_iter().flatten().copied()
-    }
+/// One frame in, one report out.
+pub mod frame {
+    pub use app_pipeline::frame::*;
+    pub use app_scene::frame::FrameInput;
 }
+
+#[cfg(feature = "alignment")]
+pub use app_alignment as alignment;
+#[cfg(feature = "alignment")]
+pub use app_alignment::probe;
+#[cfg(feature = "live")]
+pub use app_live::{app, interface, live, self_test};
+#[cfg(feature = "session")]
+pub use app_session as session;
+#[cfg(feature = "session")]
+pub use app_session::recording;

@@ -2,8 +2,8 @@
 //!
 //! Pictures differ in 8-bit codes, maps in their own unit.
 
-use app_core::internals::FloatMap;
 use app_core::scene::Image;
+use app_pipeline::readback::FloatMap;
 use thiserror::Error;
 
 /// Something made of texels with four channels, rows from the top.

@@ -15,7 +15,7 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 use serde_json::{Value, json};
 
-use crate::stored::Stored;
+use desk::stored::Stored;
 
 /// Time between two frames.
 const FRAME_NS: u64 = 40_000_000;

@@ -9,9 +9,10 @@ use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_p
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
 
-use crate::check::wrong_of_picture;
-use crate::glb::container;
-use crate::import::{self, Format};
+use desk::check::wrong_of_picture;
+use desk::import;
+use desk::import::Format;
+use measure::glb::container;
 
 /// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
 pub const INDEX: &[u8] = include_bytes!("../fuzz/seeds/capture/good.json");

@@ -14,9 +14,9 @@ use image::ImageReader;
 use thiserror::Error;
 
 use crate::compare::{Check, CompareError, Difference, Pair};
-use crate::files::{BUNDLED_SESSION, Folder, FolderError};
-use crate::metrics::{Scores, SizeError, score};
-use crate::output::{WriteError, make_folder, write_png};
+use desk::files::{BUNDLED_SESSION, Folder, FolderError};
+use desk::metrics::{Scores, SizeError, score};
+use desk::output::{WriteError, make_folder, write_png};
 
 /// What makes or remakes a golden.
 pub const BLESS_COMMAND: &str = "cargo xtask bless";

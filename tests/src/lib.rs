@@ -1,40 +1,7 @@
-//! Replay harness: runs the core over recorded sessions on a desktop, scores what it makes and reports what it took.
+//! What tests alone use: goldens and their comparison, fuzzing's functions, a recording without end.
 
-pub mod alignment;
-pub mod ball;
-pub mod bench;
-pub mod card;
-pub mod check;
 pub mod compare;
-pub mod convert;
-pub mod count;
 pub mod endless;
-pub mod false_color;
-pub mod files;
 pub mod fuzz;
-pub mod gizmo;
-pub mod glb;
 pub mod golden;
-pub mod heap;
-pub mod import;
-mod lights_drawn;
-pub mod metrics;
-pub mod opened;
-pub mod output;
-pub mod page;
-pub mod photographer;
-pub mod planar;
-pub mod process;
-pub mod profiled;
-pub mod program;
-pub mod progress;
-pub mod random;
-pub mod reference;
-pub mod replay;
-pub mod report;
-pub mod scaling;
 pub mod session_format;
-pub mod sized;
-pub mod stability;
-pub mod stored;
-pub mod view;

@@ -3,19 +3,19 @@
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "core/bundled.rs"]
+#[path = "pictures/core/bundled.rs"]
 mod bundled;
 
 use std::fs;
 use std::sync::Arc;
 
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_core::toy::Toy;
-use harness::files::BUNDLED_SESSION;
-use harness::glb::{chunks, container};
-use harness::process::peak_mib;
+use app_pipeline::core::inspect::Inspect;
+use desk::files::BUNDLED_SESSION;
+use measure::glb::{chunks, container};
+use measure::process::peak_mib;
 use serde_json::{Value, json};
 
 use bundled::{core, first_input, picture_of, scene};

@@ -10,13 +10,15 @@ use anyhow::{Context, Result};
 use crate::command::line;
 use crate::toolchain::Toolchain;
 use crate::vulkan;
+use crate::{PROGRAMS, Program};
 
 /// Replays the bundled session and names what to look at.
 pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     let out = toolchain.root.join("target/demo");
+    let replay = PROGRAMS.iter().find(|program| program.name == "replay");
     let code = run(
         toolchain,
-        "replay",
+        replay.context("no program replays")?,
         &[
             "--preset".into(),
             "flat,paper,balanced,best".into(),
@@ -30,18 +32,13 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     Ok(code)
 }
 
-/// Runs a program of the harness with `args` and hands on its exit code.
-pub(crate) fn run(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
-    if !asks_only(args) {
+/// Runs a program with `args` and hands on its exit code.
+pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
+    if program.needs_device && !asks_only(args) {
         vulkan::ensure()?;
     }
-    run_on_processor(toolchain, program, args)
-}
-
-/// Runs one that needs no graphics device.
-pub(crate) fn run_on_processor(toolchain: &Toolchain, program: &str, args: &[OsString]) -> Result<ExitCode> {
     let mut cargo = toolchain.cargo("run");
-    cargo.args(["--package", "tests", "--bin", program]);
+    cargo.args(["--package", program.package, "--bin", program.name]);
     // A first build takes minutes, which must not look like a standstill.
     if asks_only(args) || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
         cargo.arg("--quiet");

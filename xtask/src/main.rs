@@ -14,215 +14,248 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use anyhow::{Context, Result, bail};
+use lexopt::Arg::{Long, Short, Value};
+use lexopt::{Parser, ValueExt};
 
-use crate::phone::{ANDROID, Action, Arcore, IOS};
+use crate::phone::{ANDROID, Action, Arcore, IOS, Phone};
 use crate::toolchain::Toolchain;
 
-/// The project's commands
-#[derive(Parser)]
-#[command(name = "cargo xtask", bin_name = "cargo xtask")]
-enum Command {
-    /// Replay the bundled session into target/demo
-    Demo,
-    /// Replay a session: pictures, times, errors (`replay --help` tells more)
-    #[command(disable_help_flag = true)]
-    Replay {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Say what is wrong with a session, and draw what it predicts over its first frame (`check --help` tells more)
-    #[command(disable_help_flag = true)]
-    Check {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Write a session anew with cameras, pose and lights aligned by its pictures (`align --help` tells more)
-    #[command(disable_help_flag = true)]
-    Align {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Make a recording of a session's folder, or a folder of a recording (`convert --help` tells more)
-    #[command(disable_help_flag = true)]
-    Convert {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Make a session of a recording of nerfstudio, Record3D or Stray Scanner (`import --help` tells more)
-    #[command(disable_help_flag = true)]
-    Import {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Measure presets over sessions: time against error (`bench --help` tells more)
-    #[command(disable_help_flag = true)]
-    Bench {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// What frames of a session must cost on any device, without one (`ledger --help` tells more)
-    #[command(disable_help_flag = true)]
-    Ledger {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Profile a session, or read a profile of a phone: a trace for Perfetto, and a table of tasks (`profile --help` tells more)
-    #[command(disable_help_flag = true)]
-    Profile {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Measure numerical stability on hard cases against bounds (`stability --help` tells more)
-    #[command(disable_help_flag = true)]
-    Stability {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Run the app on a desktop, with a session as its camera (`view --help` tells more)
-    #[command(disable_help_flag = true)]
-    View {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Write a card to print and to lay beside the toy (`card --help` tells more)
-    #[command(disable_help_flag = true)]
-    Card {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Rewrite the golden pictures and the schema of sessions (`bless --help` tells more)
-    #[command(disable_help_flag = true)]
-    Bless {
-        /// Handed on to the harness
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        args: Vec<OsString>,
-    },
-    /// Format every source file
-    Fmt,
-    /// Check everything that must hold before a change is taken
-    Test,
-    /// Package both shells and hold their sizes against the budgets
-    Size {
-        /// Take the sizes anew, within the budgets
-        #[arg(long)]
-        record: bool,
-    },
-    /// Write the table of what the shells call of their platforms
-    Calls,
-    /// The iPhone shell
-    #[command(subcommand)]
-    Ios(IosCommand),
-    /// The Android shell
-    #[command(subcommand)]
-    Android(AndroidCommand),
+/// Programs that are run with whatever stands after their name.
+const PROGRAMS: [Program; 12] = [
+    Program::new("replay", "desk", "Replay a session: pictures, times, errors").on_device(),
+    Program::new(
+        "check",
+        "desk",
+        "Say what is wrong with a session, and draw what it predicts over its first frame",
+    ),
+    Program::new(
+        "align",
+        "desk",
+        "Write a session anew with cameras, pose and lights aligned by its pictures",
+    ),
+    Program::new(
+        "convert",
+        "desk",
+        "Make a recording of a session's folder, or a folder of a recording",
+    ),
+    Program::new(
+        "import",
+        "desk",
+        "Make a session of a recording of nerfstudio, Record3D or Stray Scanner",
+    ),
+    Program::new("card", "desk", "Write a card to print and to lay beside the toy"),
+    Program::new(
+        "bench",
+        "measure",
+        "Measure presets over sessions: time against error",
+    )
+    .on_device(),
+    Program::new(
+        "ledger",
+        "measure",
+        "What frames of a session must cost on any device, without one",
+    ),
+    Program::new(
+        "profile",
+        "measure",
+        "A trace for Perfetto and a table of tasks, of a session or of a phone's profile",
+    )
+    .on_device(),
+    Program::new(
+        "stability",
+        "measure",
+        "Measure numerical stability on hard cases against bounds",
+    )
+    .on_device(),
+    Program::new(
+        "view",
+        "view",
+        "Run the app on a desktop, with a session as its camera",
+    )
+    .on_device(),
+    Program::new(
+        "bless",
+        "tests",
+        "Rewrite the golden pictures and the schema of sessions",
+    )
+    .on_device(),
+];
+
+/// Commands of this program's own, and what they do.
+const COMMANDS: [(&str, &str); 7] = [
+    ("demo", "Replay the bundled session into target/demo"),
+    ("test", "Check everything that must hold before a change is taken"),
+    ("fmt", "Format every source file"),
+    (
+        "size [--record]",
+        "Package both shells and hold their sizes against the budgets; or take the sizes anew, within them",
+    ),
+    (
+        "calls",
+        "Write the table of what the shells call of their platforms",
+    ),
+    (
+        "ios check|build|package",
+        "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links)",
+    ),
+    (
+        "android check|build|package [--arcore AAR --sha256 HEX]",
+        "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore one to install)",
+    ),
+];
+
+/// What is left to do once all arguments are read.
+type Work = Box<dyn FnOnce(&Toolchain) -> Result<ExitCode>>;
+
+/// A program of the workspace.
+#[derive(Clone, Copy)]
+struct Program {
+    name: &'static str,
+    package: &'static str,
+    about: &'static str,
+    needs_device: bool,
 }
 
-#[derive(Clone, Copy, Subcommand)]
-enum IosCommand {
-    /// Type check and lint for the phone
-    Check,
-    /// Build the library
-    Build,
-    /// Make an app: by Xcode on a Mac, elsewhere one that shows that it links
-    Package,
-}
-
-#[derive(Subcommand)]
-enum AndroidCommand {
-    /// Type check and lint for the phone
-    Check,
-    /// Build the library with the NDK
-    Build,
-    /// Make a package: with NDK, SDK and ARCore one to install, else one that shows that it links
-    Package {
-        /// ARCore's archive, com.google.ar:core, an .aar
-        #[arg(long, requires = "sha256")]
-        arcore: Option<PathBuf>,
-        /// What its SHA-256 must be, in hexadecimal
-        #[arg(long, requires = "arcore")]
-        sha256: Option<String>,
-    },
-}
-
-impl From<IosCommand> for Action {
-    fn from(command: IosCommand) -> Self {
-        match command {
-            IosCommand::Check => Self::Check,
-            IosCommand::Build => Self::Build,
-            IosCommand::Package => Self::Package(None),
+impl Program {
+    const fn new(name: &'static str, package: &'static str, about: &'static str) -> Self {
+        Self {
+            name,
+            package,
+            about,
+            needs_device: false,
         }
     }
-}
 
-impl From<AndroidCommand> for Action {
-    fn from(command: AndroidCommand) -> Self {
-        match command {
-            AndroidCommand::Check => Self::Check,
-            AndroidCommand::Build => Self::Build,
-            AndroidCommand::Package { arcore, sha256 } => {
-                let arcore = arcore.zip(sha256);
-                Self::Package(arcore.map(|(archive, sha256)| Arcore { archive, sha256 }))
-            }
+    /// One that draws.
+    const fn on_device(self) -> Self {
+        Self {
+            needs_device: true,
+            ..self
         }
     }
 }
 
 fn main() -> ExitCode {
-    run(Command::parse()).unwrap_or_else(|error| {
+    run(Parser::from_env()).unwrap_or_else(|error| {
         eprintln!("error: {error:#}");
         ExitCode::FAILURE
     })
 }
 
-fn run(command: Command) -> anyhow::Result<ExitCode> {
-    let toolchain = Toolchain::pinned()?;
-    match command {
-        Command::Demo => return harness::demo(&toolchain),
-        Command::Replay { args } => return harness::run(&toolchain, "replay", &args),
-        Command::Check { args } => return harness::run_on_processor(&toolchain, "check", &args),
-        Command::Align { args } => return harness::run_on_processor(&toolchain, "align", &args),
-        Command::Convert { args } => return harness::run_on_processor(&toolchain, "convert", &args),
-        Command::Import { args } => return harness::run_on_processor(&toolchain, "import", &args),
-        Command::Bench { args } => return harness::run(&toolchain, "bench", &args),
-        Command::Ledger { args } => return harness::run_on_processor(&toolchain, "ledger", &args),
-        Command::Profile { args } => return harness::run(&toolchain, "profile", &args),
-        Command::Stability { args } => return harness::run(&toolchain, "stability", &args),
-        Command::View { args } => return harness::run(&toolchain, "view", &args),
-        Command::Card { args } => return harness::run_on_processor(&toolchain, "card", &args),
-        Command::Bless { args } => return bless(&toolchain, &args),
-        Command::Fmt => command::run(&mut format::rustfmt(&toolchain, &[])?)?,
-        Command::Test => test::run(&toolchain)?,
-        Command::Size { record } => {
-            for phone in [&IOS, &ANDROID] {
-                phone::run(&toolchain, phone, Action::Package(None))?;
-            }
-            phone::size::hold(&toolchain.root, record)?;
+fn run(mut args: Parser) -> Result<ExitCode> {
+    let command = match args.next()? {
+        None => {
+            eprint!("{}", help());
+            return Ok(ExitCode::from(2));
         }
-        Command::Calls => {
-            let table = phone::calls::table(&toolchain.root)?;
-            std::fs::write(toolchain.root.join("xtask/doc/calls.md"), table)?;
+        Some(Long("help") | Short('h')) => {
+            print!("{}", help());
+            return Ok(ExitCode::SUCCESS);
         }
-        Command::Ios(command) => phone::run(&toolchain, &IOS, command.into())?,
-        Command::Android(command) => phone::run(&toolchain, &ANDROID, command.into())?,
+        Some(Value(command)) => command.string()?,
+        Some(other) => return Err(other.unexpected().into()),
+    };
+    if let Some(program) = PROGRAMS.iter().find(|program| program.name == command) {
+        let rest: Vec<OsString> = args.raw_args()?.collect();
+        let toolchain = Toolchain::pinned()?;
+        return match program.name {
+            "bless" => bless(&toolchain, program, &rest),
+            _ => harness::run(&toolchain, program, &rest),
+        };
     }
+    let action = parsed(&command, &mut args)?;
+    action(&Toolchain::pinned()?)
+}
+
+/// What a command of this program's own does, once all of its arguments are read.
+fn parsed(command: &str, args: &mut Parser) -> Result<Work> {
+    type Step = fn(&Toolchain) -> Result<()>;
+    let step: Step = match command {
+        "demo" => {
+            end(args)?;
+            return Ok(Box::new(harness::demo));
+        }
+        "ios" => return phone_action(&IOS, args),
+        "android" => return phone_action(&ANDROID, args),
+        "size" => {
+            let record = match args.next()? {
+                Some(Long("record")) => true,
+                Some(other) => return Err(other.unexpected().into()),
+                None => false,
+            };
+            end(args)?;
+            return Ok(Box::new(move |toolchain| size(toolchain, record)));
+        }
+        "fmt" => |toolchain| command::run(&mut format::rustfmt(toolchain, &[])?),
+        "test" => test::run,
+        "calls" => |toolchain| {
+            let table = phone::calls::table(&toolchain.root)?;
+            Ok(std::fs::write(toolchain.root.join("xtask/doc/calls.md"), table)?)
+        },
+        _ => bail!("there is no command \"{command}\"\n\n{}", help()),
+    };
+    end(args)?;
+    Ok(Box::new(move |toolchain| {
+        step(toolchain).map(|()| ExitCode::SUCCESS)
+    }))
+}
+
+fn phone_action(phone: &'static Phone, args: &mut Parser) -> Result<Work> {
+    let (mut action, mut archive, mut sha256) = (None, None, None);
+    while let Some(arg) = args.next()? {
+        match arg {
+            Value(word) if action.is_none() => action = Some(word.string()?),
+            Long("arcore") if phone.is_android() => archive = Some(PathBuf::from(args.value()?)),
+            Long("sha256") if phone.is_android() => sha256 = Some(args.value()?.string()?),
+            other => return Err(other.unexpected().into()),
+        }
+    }
+    let arcore = match (archive, sha256) {
+        (Some(archive), Some(sha256)) => Some(Arcore { archive, sha256 }),
+        (None, None) => None,
+        _ => bail!("--arcore and --sha256 go together"),
+    };
+    let action = match action.as_deref().context("check, build or package?")? {
+        "package" => Action::Package(arcore),
+        _ if arcore.is_some() => bail!("--arcore is for a package"),
+        "check" => Action::Check,
+        "build" => Action::Build,
+        other => bail!("\"{other}\" is none of check, build and package"),
+    };
+    Ok(Box::new(move |toolchain| {
+        phone::run(toolchain, phone, action).map(|()| ExitCode::SUCCESS)
+    }))
+}
+
+fn size(toolchain: &Toolchain, record: bool) -> Result<ExitCode> {
+    for phone in [&IOS, &ANDROID] {
+        phone::run(toolchain, phone, Action::Package(None))?;
+    }
+    phone::size::hold(&toolchain.root, record)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses what stands after the last argument.
+fn end(args: &mut Parser) -> Result<()> {
+    args.next()?.map_or(Ok(()), |arg| Err(arg.unexpected().into()))
+}
+
+fn help() -> String {
+    let own = COMMANDS
+        .iter()
+        .map(|(command, about)| format!("  {command}\n      {about}\n"));
+    let programs = PROGRAMS.iter().map(|program| {
+        let Program { name, about, .. } = program;
+        format!("  {name} …\n      {about} (`{name} --help` says more)\n")
+    });
+    let lines: String = own.chain(programs).collect();
+    format!("The project's commands.\n\nUsage: cargo xtask <command>\n\nCommands:\n{lines}")
 }
 
 /// Rewrites the goldens of the bundled session, the schema of sessions and, unless some of those are named, the goldens
 /// of the scenes that only tests know.
-fn bless(toolchain: &Toolchain, args: &[OsString]) -> anyhow::Result<ExitCode> {
+fn bless(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
     if args.is_empty() {
         let mut test = toolchain.cargo("test");
         test.args([
@@ -237,5 +270,5 @@ fn bless(toolchain: &Toolchain, args: &[OsString]) -> anyhow::Result<ExitCode> {
         // It never ends in success, so that no script goes on without anyone having looked.
         let _ = command::run(&mut test);
     }
-    harness::run(toolchain, "bless", args)
+    harness::run(toolchain, program, args)
 }

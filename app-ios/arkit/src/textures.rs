@@ -5,8 +5,8 @@
 
 use std::ptr::{self, NonNull};
 
-use app_core::camera_frame::{LentPlanes, PlanarImage};
-use app_core::gpu::DeviceHandle;
+use app_core::camera_frame::PlanarImage;
+use app_core::gpu::{DeviceHandle, LentTextures};
 use app_core::wgpu::{self, TextureFormat, hal};
 use objc2_core_foundation::{CFRetained, Type};
 use objc2_core_video::{
@@ -58,13 +58,13 @@ impl TextureCache {
         let luma = (MTLPixelFormat::R8Unorm, TextureFormat::R8Unorm);
         let chroma = (MTLPixelFormat::RG8Unorm, TextureFormat::Rg8Unorm);
         let kept = Kept(buffer.retain());
-        let planes = LentPlanes {
+        let planes = LentTextures {
             device: self.device.clone(),
             luma: self.texture((buffer, 0), size_px, luma)?,
             chroma: self.texture((buffer, 1), half_px, chroma)?,
             read: Box::new(move || read::copied(kept.buffer())),
         };
-        PlanarImage::lent(size_px, encoding, planes).ok()
+        planes.into_image(size_px, encoding).ok()
     }
 
     /// One plane of a buffer.

@@ -11,8 +11,8 @@ use app_core::preset::Preset;
 use app_core::self_test;
 use app_core::wgpu;
 use clap::Parser;
+use desk::output::{make_folder, write_png, write_whole};
 use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
-use harness::output::{make_folder, write_png, write_whole};
 use harness::session_format::{SCHEMA_FILE, SCHEMA_NAME, schema_text};
 
 /// Rewrite the golden pictures from what the presets make on the software adapter, and session.schema.json.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use desk::program::exit_code;
 use harness::endless::write;
-use harness::program::exit_code;
 
 fn main() -> ExitCode {
     let out = env::args_os().nth(1).map(PathBuf::from).context("no file");

@@ -3,10 +3,10 @@
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::resources::texture_of;
-use app_core::internals::shaders;
 use app_core::wgpu;
+use app_pipeline::shaders;
 use glam::{DVec4, UVec2, Vec4};
-use harness::reference::raster::Raster;
+use reference::raster::Raster;
 
 /// A binding's number, and what is bound.
 pub(crate) type Binding<'a> = (u32, wgpu::BindingResource<'a>);

@@ -1,8 +1,8 @@
 //! `appearance` on scattered evidence of surfaces at several depths.
 
 use glam::{DVec4, IVec2, UVec2};
-use harness::reference::appearance::{REACH_PX, Seen, ToyPixel, clean};
-use harness::reference::raster::Raster;
+use reference::appearance::{REACH_PX, Seen, ToyPixel, clean};
+use reference::raster::Raster;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;

@@ -4,18 +4,19 @@
 use std::sync::LazyLock;
 
 use app_core::core::CoreError;
-use app_core::internals::light_in_plane;
-use app_core::internals::{Inspect, Map};
 use app_core::preset::{BASELINE, Preset};
 use app_core::scene::{Light, Surface};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::Map;
+use app_scene::geometry::light_points::light_in_plane;
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::box_filter::{box_sums, mean};
-use harness::reference::census::seen_sets;
-use harness::reference::model::Region;
-use harness::reference::pcss::{Softness, soft_visibility};
-use harness::reference::raster::Raster;
-use harness::reference::search::{Found, Rings, Start, search, term};
-use harness::reference::sets::LightSet;
+use reference::box_filter::{box_sums, mean};
+use reference::census::seen_sets;
+use reference::model::Region;
+use reference::pcss::{Softness, soft_visibility};
+use reference::raster::Raster;
+use reference::search::{Found, Rings, Start, search, term};
+use reference::sets::LightSet;
 
 use crate::cores::core_on;
 use crate::device::Device;

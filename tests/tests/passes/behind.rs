@@ -1,10 +1,10 @@
 //! A receiver seen from behind is none: what is known is where its front is, and what light falls there.
 
-use app_core::internals::View;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
+use app_pipeline::geometry::view::View;
 use glam::{DVec2, DVec3, UVec2};
-use harness::reference::model::{Region, centre_px};
+use reference::model::{Region, centre_px};
 
 use crate::composite::shows_toy;
 use crate::cores::core_on;

@@ -1,9 +1,9 @@
 //! The toy before the lights: what casts shadows, and from which points.
 
-use app_core::internals::{ambient_directions, light_points};
 use app_core::toy::PosedMesh;
+use app_scene::geometry::light_points::{ambient_directions, light_points};
 use glam::{DMat4, DVec3, DVec4};
-use harness::reference::occlusion::{Caster, Occluder};
+use reference::occlusion::{Caster, Occluder};
 
 use crate::stand::Stand;
 

@@ -1,11 +1,11 @@
 //! `composite` where it shows the receiver, in codes of the finished picture.
 
-use app_core::internals::PixelRect;
 use app_core::toy::PosedMesh;
+use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
-use harness::reference::composite::{Shown, inside_border, receiver_color};
-use harness::reference::model::centre_px;
-use harness::reference::raster::Raster;
+use reference::composite::{Shown, inside_border, receiver_color};
+use reference::model::centre_px;
+use reference::raster::Raster;
 
 use crate::errors::Errors;
 use crate::photo::unrounded_code;

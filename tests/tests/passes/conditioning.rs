@@ -1,9 +1,9 @@
 //! Which lights' strengths the real shadow tells, and what is taken for the others.
 
 use app_core::frame::Warning;
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::Light;
+use app_pipeline::core::inspect::Inspect;
 use glam::DVec3;
 
 use crate::cores::core_on;

@@ -2,8 +2,8 @@
 
 use app_core::preset::Preset;
 use glam::DVec2;
-use harness::reference::model::centre_px;
-use harness::reference::raster::Raster;
+use reference::model::centre_px;
+use reference::raster::Raster;
 
 use crate::device::Device;
 use crate::errors::Errors;

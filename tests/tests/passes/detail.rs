@@ -2,9 +2,9 @@
 
 use app_core::wgpu;
 use glam::{DVec3, DVec4};
-use harness::reference::detail::{separate, told};
-use harness::reference::model::{Pictures, centre_px};
-use harness::reference::raster::Raster;
+use reference::detail::{separate, told};
+use reference::model::{Pictures, centre_px};
+use reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;

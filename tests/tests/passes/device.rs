@@ -3,9 +3,9 @@
 use std::sync::LazyLock;
 
 use app_core::gpu::GpuError;
-use app_core::internals::shaders;
-use app_core::internals::{Grid, Grids};
 use app_core::wgpu;
+use app_pipeline::model::state::grids::{Grid, Grids};
+use app_pipeline::shaders;
 use glam::UVec2;
 use wgpu::util::DeviceExt;
 

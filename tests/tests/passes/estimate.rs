@@ -1,13 +1,13 @@
 //! `estimate` on scrambled inputs; and, without a plate, the place made up from the frame.
 
 use app_core::frame::Warning;
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_core::wgpu;
+use app_pipeline::core::inspect::Inspect;
 use glam::{DVec3, DVec4};
-use harness::reference::estimate::{ESTIMATED, Known, complete};
-use harness::reference::raster::Raster;
+use reference::estimate::{ESTIMATED, Known, complete};
+use reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::cores::core_on;
@@ -39,9 +39,8 @@ fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
         let report = core.frame(&input(&stand, &frame)).unwrap();
         assert_eq!(report.warnings, [Warning::PlateEstimated], "{}", setup.name);
         let fitted = solution(&core.read_fit().unwrap().unwrap(), 1);
-        let direct_fraction = |solution: &harness::reference::model::Solution| -> DVec3 {
-            solution.receivers[0].direct_fractions[0]
-        };
+        let direct_fraction =
+            |solution: &reference::model::Solution| -> DVec3 { solution.receivers[0].direct_fractions[0] };
         let pairs = direct_fraction(&fitted)
             .to_array()
             .into_iter()

@@ -2,12 +2,13 @@
 
 use app_core::core::Core;
 use app_core::frame::Path;
-use app_core::internals::PixelRect;
-use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Scene;
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::readback::Map;
 use glam::{DVec3, UVec2};
-use harness::reference::model::centre_px;
+use reference::model::centre_px;
 
 use crate::cores::core_on;
 use crate::photo::Photo;

@@ -1,9 +1,9 @@
 //! `fill` on grids of any size and any certainty, without the passes before it.
 
 use glam::{DVec3, UVec2};
-use harness::reference::fill::fill;
-use harness::reference::grid::Cell;
-use harness::reference::raster::Raster;
+use reference::fill::fill;
+use reference::grid::Cell;
+use reference::raster::Raster;
 
 use crate::device::Device;
 use crate::errors::Errors;

@@ -2,12 +2,12 @@
 
 use app_core::scene::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
-use harness::reference::fit::{
+use reference::fit::{
     FitConstants, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, ToySample, fit_receiver, fit_toy, receiver_samples,
     toy_radiance,
 };
-use harness::reference::model::{ReceiverSolution, Solution, centre_px};
-use harness::reference::raster::Raster;
+use reference::model::{ReceiverSolution, Solution, centre_px};
+use reference::raster::Raster;
 
 use crate::composite::check_receiver;
 use crate::device::Device;

@@ -2,8 +2,8 @@
 
 use app_core::camera_frame::{CodeRange, LumaCoefficients, YcbcrEncoding};
 use glam::{DVec4, UVec2};
-use harness::reference::camera_planes::{chroma_at, decoded};
-use harness::reference::raster::Raster;
+use reference::camera_planes::{chroma_at, decoded};
+use reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;

@@ -1,8 +1,8 @@
 //! Cameras close to the table's plane, which see little of the shadow: a warning says so where it matters, and only there.
 
 use app_core::frame::Warning;
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
+use app_pipeline::core::inspect::Inspect;
 use glam::{DVec3, UVec2};
 
 use crate::cores::core_on;

@@ -2,9 +2,10 @@
 
 use app_core::core::CoreError;
 use app_core::frame::Path;
-use app_core::internals::InjectedVisibility;
-use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::Preset;
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::inject::InjectedVisibility;
+use app_pipeline::readback::{FloatMap, Map};
 
 use crate::cores::core_on;
 use crate::photo::photograph;

@@ -1,11 +1,12 @@
 //! The light and the exposure of one picture against those of another: what changes is followed, and nothing else.
 
 use app_core::core::Core;
-use app_core::internals::{Inspect, linear_from_srgb};
 use app_core::preset::Preset;
 use app_core::scene::Image;
+use app_pipeline::core::inspect::Inspect;
+use app_scene::geometry::color::linear_from_srgb;
 use glam::{DVec3, UVec2};
-use harness::reference::model::centre_px;
+use reference::model::centre_px;
 
 use crate::composite::shows_toy;
 use crate::cores::core_on;
@@ -77,7 +78,7 @@ fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
             );
             let fitted = solution(&core.read_fit().unwrap().unwrap(), 2);
             let name = format!("{}, {what}", setup.name);
-            let values = |solution: &harness::reference::model::Solution| {
+            let values = |solution: &reference::model::Solution| {
                 let colors = solution.intensities.iter().chain([&solution.gain]);
                 colors.flat_map(|color| color.to_array()).collect::<Vec<_>>()
             };

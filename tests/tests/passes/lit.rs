@@ -1,11 +1,11 @@
 //! `lit` on scrambled inputs, and onto what was known before.
 
 use glam::{DVec4, UVec2};
-use harness::reference::grid::{Taken, accumulate};
-use harness::reference::lit::pool;
+use reference::grid::{Taken, accumulate};
+use reference::lit::pool;
 
-use app_core::internals::MAX_CELLS;
 use app_core::wgpu;
+use app_pipeline::model::state::grids::MAX_CELLS;
 
 use crate::alone::{check_faults, source};
 use crate::device::Device;

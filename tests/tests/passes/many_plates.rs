@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use app_core::core::CoreError;
-use app_core::internals::{compared_plates, match_plates};
 use app_core::preset::Preset;
 use app_core::scene::{FieldError, Image, InputError, MAX_SCENE_PLATES, Plate, Scene};
+use app_pipeline::plates::exposure::match_plates;
+use app_pipeline::plates::overlap::compared_plates;
 use glam::{DMat4, DVec3};
 
 use crate::cores::any_core;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
+use app_pipeline::core::inspect::Inspect;
 use glam::{DVec2, DVec3, DVec4};
-use harness::reference::grid::PlaneGrid;
+use reference::grid::PlaneGrid;
 
 use crate::cores::{SharedCore, core_on};
 use crate::photo::Photo;
@@ -32,7 +32,7 @@ fn setup() -> Setup {
 }
 
 /// A colour that the table throws back there.
-fn reflection(point: harness::reference::model::ReceiverPoint) -> DVec3 {
+fn reflection(point: reference::model::ReceiverPoint) -> DVec3 {
     let from_middle = point.in_plane - BEHIND_TOY;
     0.05 * (-from_middle.length_squared() / 0.0008).exp() * DVec3::new(1.0, 0.7, 0.3)
 }

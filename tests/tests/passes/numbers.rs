@@ -1,7 +1,7 @@
 //! Numbers that look random and are the same in every run, over rectangles.
 
 use glam::{DVec4, UVec2};
-use harness::reference::raster::Raster;
+use reference::raster::Raster;
 
 /// A number from 0 to 1 that looks random, in steps of 2^-16 so that 32 bits hold it.
 /// Source: the hash "pcg" of Jarzynski and Olano 2020.

@@ -2,9 +2,9 @@
 
 use app_core::toy::PosedMesh;
 use glam::DVec4;
-use harness::reference::occlusion::Caster;
-use harness::reference::raster::Raster;
-use harness::reference::visibility::visibility_map;
+use reference::occlusion::Caster;
+use reference::raster::Raster;
+use reference::visibility::visibility_map;
 
 use crate::device::Device;
 use crate::errors::Errors;

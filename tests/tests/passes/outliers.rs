@@ -4,8 +4,8 @@ use app_core::preset::Preset;
 use app_core::scene::{Image, Light, Scene};
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, UVec2, Vec3};
-use harness::reference::model::{ReceiverPoint, centre_px};
-use harness::reference::visibility::visibility_map;
+use reference::model::{ReceiverPoint, centre_px};
+use reference::visibility::visibility_map;
 
 use crate::composite::shows_toy;
 use crate::cores::core_on;

@@ -1,15 +1,16 @@
 //! Shadows of two lights that the real ones tell about, fully or not: the published method on injected visibilities.
 
 use app_core::frame::{FrameInput, UnseenShadow, Warning};
-use app_core::internals::InjectedVisibility;
-use app_core::internals::PixelRect;
-use app_core::internals::{FloatMap, Inspect, Map};
 use app_core::preset::{BASELINE, Preset, Settings};
 use app_core::scene::{Light, Scene};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::readback::inject::InjectedVisibility;
+use app_pipeline::readback::{FloatMap, Map};
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::eligible::masks;
-use harness::reference::raster::Raster;
-use harness::reference::sets::LightSet;
+use reference::eligible::masks;
+use reference::raster::Raster;
+use reference::sets::LightSet;
 
 use crate::cores::{SharedCore, core_on};
 use crate::device::Device;

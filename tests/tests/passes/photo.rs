@@ -5,11 +5,11 @@ use std::sync::Arc;
 use app_core::scene::Image;
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, DVec4, UVec2};
-use harness::reference::fit::toy_radiance;
-use harness::reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
-use harness::reference::raster::Raster;
-use harness::reference::self_shadow::received;
-use harness::reference::visibility::visibility_map;
+use reference::fit::toy_radiance;
+use reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
+use reference::raster::Raster;
+use reference::self_shadow::received;
+use reference::visibility::visibility_map;
 
 use crate::stand::Stand;
 use crate::toy;

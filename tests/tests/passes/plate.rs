@@ -1,13 +1,13 @@
 //! `plate` against its reference: cameras all around a table and a wall, and pictures of nothing but detail.
 
-use app_core::internals::{PlateView, PlateViews};
 use app_core::scene::MAX_RECEIVERS;
+use app_pipeline::passes::plate::{PlateView, PlateViews};
 use glam::{DMat3, DVec3, DVec4, UVec2};
-use harness::reference::plate::{PlatePhoto, Viewpoint, choose};
-use harness::reference::raster::Raster;
+use reference::plate::{PlatePhoto, Viewpoint, choose};
+use reference::raster::Raster;
 
-use app_core::internals::PixelRect;
 use app_core::wgpu;
+use app_pipeline::geometry::rect::PixelRect;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;

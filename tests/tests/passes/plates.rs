@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use app_core::frame::Warning;
-use app_core::internals::PixelRect;
-use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Image, Plate, Scene};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::readback::Map;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
-use harness::reference::model::{ReceiverPoint, Region, centre_px};
-use harness::reference::raster::Raster;
+use reference::model::{ReceiverPoint, Region, centre_px};
+use reference::raster::Raster;
 
 use crate::cores::{SharedCore, core_on};
 use crate::device::Device;

@@ -1,7 +1,7 @@
 //! `residual` with `fill`, from the light that the device fitted.
 
-use harness::reference::fill::fill;
-use harness::reference::residual::pool;
+use reference::fill::fill;
+use reference::residual::pool;
 
 use crate::errors::Errors;
 use crate::run::runs;

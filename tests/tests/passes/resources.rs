@@ -3,7 +3,7 @@
 use app_core::wgpu;
 use bytemuck::Pod;
 use glam::{DVec4, UVec2};
-use harness::reference::raster::Raster;
+use reference::raster::Raster;
 use wgpu::util::DeviceExt;
 
 use crate::alone::{Bindings, RESULT_FORMAT};

@@ -1,11 +1,11 @@
 //! `retarget` where it shows the receiver, on scattered masks, half shadows of two lights and terms of some of their sets.
 
-use app_core::internals::BaselineUniform;
-use app_core::internals::PixelRect;
 use app_core::wgpu;
+use app_pipeline::baseline::uniform::Baseline as BaselineUniform;
+use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::raster::Raster;
-use harness::reference::retarget::{Layers, Shade, receiver_color};
+use reference::raster::Raster;
+use reference::retarget::{Layers, Shade, receiver_color};
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;

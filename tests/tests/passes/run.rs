@@ -4,16 +4,18 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::core::CoreError;
 use app_core::frame::FrameInput;
-use app_core::internals::PixelRect;
-use app_core::internals::Plan;
-use app_core::internals::{Fit, Inspect, ReceiverFit};
-use app_core::internals::{FloatMap, Map, TintMap};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene, Uncertainty};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::model::plan::Plan;
+use app_pipeline::model::state::solution::{Fit, ReceiverFit};
+use app_pipeline::model::state::tints::TintMap;
+use app_pipeline::readback::{FloatMap, Map};
 use glam::{DVec3, DVec4, UVec2, Vec4};
-use harness::reference::grid::PlaneGrid;
-use harness::reference::model::{Pictures, ReceiverSolution, Region, Solution};
-use harness::reference::raster::Raster;
+use reference::grid::PlaneGrid;
+use reference::model::{Pictures, ReceiverSolution, Region, Solution};
+use reference::raster::Raster;
 
 use crate::cores::core_on;
 use crate::device::Device;

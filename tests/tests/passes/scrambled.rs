@@ -1,14 +1,15 @@
 //! Inputs of the passes that learn which hold everything that can be, in neighbouring pixels: what is seen and what is not,
 //! light and none, photographed or estimated.
 
-use app_core::internals::PixelRect;
-use app_core::internals::{Fit, Grid, Grids, MAX_CELLS, N_COLUMNS, ReceiverFit};
 use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::wgpu;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::model::state::grids::{Grid, Grids, MAX_CELLS};
+use app_pipeline::model::state::solution::{Fit, N_COLUMNS, ReceiverFit};
 use glam::{DVec3, DVec4, UVec2};
-use harness::reference::grid::PlaneGrid;
-use harness::reference::model::{Pictures, Region, Solution};
-use harness::reference::raster::Raster;
+use reference::grid::PlaneGrid;
+use reference::model::{Pictures, Region, Solution};
+use reference::raster::Raster;
 
 use crate::alone::Bindings;
 use crate::device::Device;

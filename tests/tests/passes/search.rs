@@ -1,13 +1,13 @@
 //! `search` on few and scattered samples, some of them nowhere: warps that point within the region and beyond it.
 
-use app_core::internals::BaselineUniform;
-use app_core::internals::PixelRect;
 use app_core::scene::MAX_RECEIVERS;
 use app_core::wgpu;
+use app_pipeline::baseline::uniform::Baseline as BaselineUniform;
+use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
-use harness::reference::raster::Raster;
-use harness::reference::search::{Rings, Start, search, term};
-use harness::reference::sets::LightSet;
+use reference::raster::Raster;
+use reference::search::{Rings, Start, search, term};
+use reference::sets::LightSet;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;

@@ -1,10 +1,10 @@
 //! `self_shadow` with `object`: depth maps against rays.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
-use harness::reference::model::centre_px;
-use harness::reference::occlusion::Occluder;
-use harness::reference::raster::Raster;
-use harness::reference::self_shadow::received;
+use reference::model::centre_px;
+use reference::occlusion::Occluder;
+use reference::raster::Raster;
+use reference::self_shadow::received;
 
 use crate::errors::Errors;
 use crate::run::{Run, runs};

@@ -3,13 +3,17 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use app_core::internals::Globals;
-use app_core::internals::{AnchoredReceiver, SceneLayout, View, globals};
-use app_core::internals::{Bounds, PixelRect};
 use app_core::scene::{Camera, Intrinsics, Pose, Receiver, Surface};
 use app_core::toy::{PosedMesh, Toy};
+use app_pipeline::geometry::anchored::AnchoredReceiver;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::geometry::scene_layout::SceneLayout;
+use app_pipeline::geometry::view::View;
+use app_pipeline::passes::globals::Globals;
+use app_pipeline::passes::globals::globals;
+use app_scene::geometry::bounds::Bounds;
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
-use harness::reference::model::Region;
+use reference::model::Region;
 
 use crate::setups::Setup;
 use crate::toy;

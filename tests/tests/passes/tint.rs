@@ -1,13 +1,13 @@
 //! `tint` and `tint_fill`: what the device made of a frame, and what becomes of parts that no camera saw.
 
-use app_core::internals::Inspect;
 use app_core::preset::Preset;
+use app_pipeline::core::inspect::Inspect;
 use glam::{DVec2, DVec3, UVec2};
-use harness::reference::fit::toy_radiance;
-use harness::reference::model::centre_px;
-use harness::reference::occlusion::Occluder;
-use harness::reference::raster::Raster;
-use harness::reference::tint::{SeenPaint, tints};
+use reference::fit::toy_radiance;
+use reference::model::centre_px;
+use reference::occlusion::Occluder;
+use reference::raster::Raster;
+use reference::tint::{SeenPaint, tints};
 
 use crate::cores::core_on;
 use crate::errors::Errors;

@@ -1,6 +1,6 @@
 //! A toy of four boxes, as a binary glTF file: two legs, a body, and a head that moves.
 
-use harness::glb::container;
+use measure::glb::container;
 use serde_json::{Value, json};
 
 /// Name of the clip, which lasts one second.

@@ -2,8 +2,8 @@
 
 use app_core::wgpu;
 use glam::UVec2;
-use harness::reference::raster::Raster;
-use harness::reference::validity::mark;
+use reference::raster::Raster;
+use reference::validity::mark;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;

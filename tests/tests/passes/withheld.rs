@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use app_core::core::Core;
 use app_core::frame::FrameInput;
-use app_core::internals::{Inspect, Map};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::Map;
 use glam::UVec2;
-use harness::reference::withhold::withhold;
+use reference::withhold::withhold;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::cores::core_on;

@@ -78,7 +78,7 @@ impl Phone {
         Ok(build)
     }
 
-    fn is_android(&self) -> bool {
+    pub(crate) fn is_android(&self) -> bool {
         self.target == ANDROID.target
     }
 }

@@ -1,0 +1,500 @@
+//! Alignment: camera, toy and lights, corrected by what the photograph shows.
+//!
+//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
+//! the picture at once. The **table** beside the toy gives the camera (`camera`), since plates say what it looks like. Frame against
+//! plate is the best segmentation there is: the **outline** of the toy gives its pose (`pose`); the outline of its **shadow**, a
+//! second view of the toy from the light, gives the light (`lights`).
+//! Both papers name misregistration as their largest error and leave it there.
+//!
+//! ```text
+//! frame, plates ─► camera ─► pyramid ─┐
+//! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
+//! ```
+//!
+//! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
+//! before all else the distortion of the **lens** ([`Aligner::lens`]), of which photographs are freed.
+//!
+//! What is held fixed, since pictures do not tell it from the rest: the first plate's camera, to which all others are relative, the
+//! principal point, and the receivers.
+//! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out, but for
+//! the last of them. A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
+//!
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
+//! lights, once a session: more the more triangles and lights there are. A camera takes about as long as a pose, once a view and
+//! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and a focal length 2 to 12 s more, once a session.
+
+#![forbid(unsafe_code)]
+
+mod camera;
+mod directions;
+mod error;
+pub mod faces;
+mod kept_lights;
+mod lights;
+mod mask;
+pub mod no_light;
+mod outlines;
+mod photograph;
+mod picture;
+pub mod plate_taker;
+mod pose;
+pub mod pose_filter;
+pub mod probe;
+mod raster;
+mod ratio;
+mod receivers;
+mod rectangle;
+pub(crate) mod report;
+mod shape;
+mod view;
+mod warning;
+mod withheld;
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use crate::probe::ProbeReport;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene, check};
+use app_scene::toy::ToyError;
+use kept_lights::KeptLights;
+use lights::Watched;
+use mask::Mask;
+use photograph::{MOST_OUTLINE_PX, Photograph};
+use ratio::{Ratio, Unknown};
+use view::{AlignedView, Seen};
+
+pub use directions::LightSearch;
+pub use error::AlignError;
+pub use no_light::NoLight;
+pub use outlines::Outlines;
+pub use report::{
+    AlignmentReport, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment, LightDeviation,
+    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome,
+};
+pub use warning::AlignmentWarning;
+
+/// Each plate takes as long as a frame; more than so many stay as they are given.
+const MOST_ALIGNED_PLATES: usize = 32;
+/// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
+///
+/// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
+const DISCOVERY_OUTLINE_PX: f64 = 1.5;
+
+/// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
+/// tracker is not yet corrected, and by the pose.
+const CAMERA_GROWN: f64 = 0.05;
+const POSE_GROWN: f64 = 0.01;
+
+/// Where the toy and the lights of a frame are, by its picture.
+#[derive(Clone, Debug)]
+pub struct Alignment {
+    /// The camera: as given, where it was not corrected.
+    pub camera: Camera,
+    /// Transform of the real toy, from object space to world: as given, where it was not corrected.
+    pub world_from_object: DMat4,
+    /// The lights; none where those that were given stay.
+    pub lights: Option<Arc<[Light]>>,
+    /// Plates in the light of this frame, once it is another than they were taken in, which [`Aligner::scene`] has from then on: the core
+    /// is to be given that scene anew. Whoever sees other plates here than with the frame before does so.
+    pub relit_plates: Option<Arc<[Plate]>>,
+    /// What was found.
+    pub report: AlignmentReport,
+    /// What could not be aligned.
+    pub warnings: Vec<AlignmentWarning>,
+}
+
+impl Alignment {
+    /// The input that it was found for, corrected.
+    #[must_use]
+    pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
+        FrameInput {
+            camera: self.camera,
+            world_from_object: self.world_from_object,
+            lights: self.lights.clone().or_else(|| input.lights.clone()),
+            ..input.clone()
+        }
+    }
+}
+
+/// Aligns the frames of one scene, one after the other.
+///
+/// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
+/// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
+/// the first frame that shows their shadow, and kept while that is where they cast it. Where it is elsewhere, a lamp was moved or
+/// switched on: lights are found anew, and plates are taken as they would be in the new light. Where none are listed they are looked
+/// for around those that the scene's probe tells of, or without one all over the hemisphere. Lights that a probe tells stand as it
+/// tells them where no shadow does.
+#[derive(Debug)]
+pub struct Aligner {
+    scene: Scene,
+    /// Looked for where it was asked for.
+    ratio: Ratio,
+    are_plates_aligned: bool,
+    cameras: camera::Finder,
+    view: Option<AlignedView>,
+    /// The pose in the latest view that showed where the toy is.
+    held: Option<DMat4>,
+    lights: Option<KeptLights>,
+    /// The scene's plates, where they are in another light than they were taken in.
+    relit_plates: Option<Arc<[Plate]>>,
+    are_shadows_withheld: bool,
+    /// Once it was needed.
+    probe: Option<ProbeReport>,
+}
+
+/// Lights that were moved or switched on after the plates were taken.
+struct Relit {
+    lights: KeptLights,
+    /// In their light.
+    plates: Arc<[Plate]>,
+}
+
+impl Aligner {
+    /// Knows a scene, and none of its frames.
+    #[must_use]
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            ratio: Ratio::default(),
+            are_plates_aligned: false,
+            cameras: camera::Finder::default(),
+            view: None,
+            held: None,
+            lights: None,
+            relit_plates: None,
+            are_shadows_withheld: false,
+            probe: None,
+        }
+    }
+
+    /// Reads no shadow but in the first view: lights are those of that view, and of later pictures nothing is read where these
+    /// lights cast a shadow, nor close beside. For measuring how well such shadows are predicted.
+    pub fn withhold_shadows(&mut self) {
+        self.are_shadows_withheld = true;
+    }
+
+    /// Looks for the focal length as well, in the first view that shows toy and shadows: up to 3 % off, the same for all frames and plates.
+    /// That takes several times as long as all else, and a toy or a receiver of another size or height can be taken for it.
+    #[must_use]
+    pub fn with_unknown_focal_length(mut self) -> Self {
+        self.ratio = Ratio::of(Unknown::FocalLength);
+        self
+    }
+
+    /// Looks for the scale of the world in place of the focal length, in the same way: lengths that are up to 3 % larger or smaller than the
+    /// toy's model says, such as those of a tracker whose metre is none. Poses of the toy are scaled, and all else stays as it is given.
+    #[must_use]
+    pub fn with_unknown_world_scale(mut self) -> Self {
+        self.ratio = Ratio::of(Unknown::WorldScale);
+        self
+    }
+
+    /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
+    /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
+    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and a light move by enough to
+    /// show. Where the picture shows the toy nowhere near, it is where the input says.
+    ///
+    /// # Errors
+    /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
+    pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
+        error::check(&self.scene, input)?;
+        let given: Arc<[Light]> = match &input.lights {
+            Some(lights) => Arc::clone(lights),
+            None => self.scene.lights.as_slice().into(),
+        };
+        let input = &self.with_ratio(input, &given)?;
+        let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
+        // Lights that were found stay as long as no others are listed.
+        let kept = self.lights.take().filter(|lights| lights.given == given);
+        if is_view_known && kept.is_some() {
+            self.lights = kept;
+            return Ok(self.aligned(input));
+        }
+        self.align_plates();
+        if given.is_empty() && self.probe.is_none() {
+            self.probe = self.scene.probe.as_ref().map(ProbeReport::of).transpose()?;
+        }
+        let seen = match self.view.take().filter(|_| is_view_known) {
+            Some(view) => Seen::again(&self.scene, view, input),
+            None => self.see(input, kept.as_ref())?,
+        };
+        self.lights = Some(match kept {
+            Some(kept) if self.are_shadows_withheld => kept,
+            Some(kept) => self.watch_lights(kept, &seen)?,
+            None => self.find_lights(given, &seen)?,
+        });
+        if seen.view.is_trusted(MOST_OUTLINE_PX) {
+            self.held = Some(seen.view.world_from_object);
+        }
+        self.view = Some(seen.view);
+        Ok(self.aligned(input))
+    }
+
+    /// The input with the focal length or the scale that was found; in a view that is not known it is looked for, until it was seen.
+    fn with_ratio(&mut self, input: &FrameInput, given: &Arc<[Light]>) -> Result<FrameInput, AlignError> {
+        let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
+        let is_withheld = self.are_shadows_withheld && self.lights.is_some();
+        if self.ratio.is_open() && !is_view_known && !is_withheld {
+            let lights = self.about(given, input)?;
+            if self.ratio.find(&mut self.scene, input, &lights) {
+                self.are_plates_aligned = false;
+                (self.view, self.held, self.lights) = (None, None, None);
+            }
+        }
+        Ok(FrameInput {
+            camera: self.ratio.camera(&input.camera),
+            world_from_object: self.ratio.pose(&input.world_from_object),
+            ..input.clone()
+        })
+    }
+
+    /// Looks for the distortion of the lens that a frame and the plates were taken with, as if they were of a pinhole: two radial terms.
+    /// All photographs are to be freed of it before they are aligned ([`app_session::Capture::open_with_lens`]).
+    ///
+    /// # Errors
+    /// As [`Self::align`].
+    pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
+        error::check(&self.scene, input)?;
+        let given = input
+            .lights
+            .clone()
+            .unwrap_or_else(|| self.scene.lights.as_slice().into());
+        let lights = self.about(&given, input)?;
+        Ok(ratio::find_lens(&self.scene, input, &lights))
+    }
+
+    /// About where the lights are: as given, or as they are found with the focal length given.
+    fn about(&self, given: &Arc<[Light]>, input: &FrameInput) -> Result<Arc<[Light]>, AlignError> {
+        if !given.is_empty() {
+            return Ok(Arc::clone(given));
+        }
+        let found = Self::new(self.scene.clone()).align(input)?;
+        Ok(found.lights.unwrap_or_default())
+    }
+
+    /// Camera and pose in a view that is not known.
+    fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
+        let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
+        let Scene {
+            plates, receivers, ..
+        } = &self.scene;
+        let given = (input.image.rgba(), &input.camera, withheld.as_ref());
+        let found = self
+            .cameras
+            .find(given, (plates, receivers), &self.scene.uncertainty.camera);
+        let (camera, camera_report) = corrected(&input.camera, found);
+        let mut input_seen = FrameInput {
+            camera,
+            ..input.clone()
+        };
+        let withheld = self.withheld(input, (&camera, POSE_GROWN), kept)?;
+        let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
+        let found = photograph.pose(&self.scene, &input_seen, self.held)?;
+        input_seen.world_from_object = found.world_from_object;
+        Ok(Seen {
+            view: AlignedView {
+                image: input.image.clone(),
+                given_camera: input.camera,
+                given: input.world_from_object,
+                camera,
+                camera_report,
+                world_from_object: found.world_from_object,
+                report: found.report,
+            },
+            photograph,
+            input: input_seen,
+        })
+    }
+
+    /// What of a view is not to be read.
+    fn withheld(
+        &self,
+        input: &FrameInput,
+        (camera, grown): (&Camera, f64),
+        lights: Option<&KeptLights>,
+    ) -> Result<Option<Mask>, ToyError> {
+        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
+            return Ok(None);
+        };
+        let placed = FrameInput {
+            camera: *camera,
+            world_from_object: self.held.unwrap_or(input.world_from_object),
+            ..input.clone()
+        };
+        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
+    }
+
+    /// The lights in a view, as far as it can tell.
+    fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        if given.is_empty() {
+            return self.discover_lights(given, seen);
+        }
+        let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
+            seen.photograph
+                .lights(&self.scene, &seen.input, (&given, &self.scene.uncertainty.lights))?
+        } else {
+            None
+        };
+        let lights = KeptLights::listed(given, found);
+        let watched = self.watch(&lights, seen)?;
+        Ok(lights.seen(watched))
+    }
+
+    /// Lights in a view that nobody lists, or that are not where they are listed.
+    fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
+        let found = match &seen.view.report {
+            Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
+                seen.photograph
+                    .discover(&self.scene, &seen.input, &pose.deviation, told)?
+            }
+            _ => Err(NoLight::PoseUnknown),
+        };
+        let lights = KeptLights::discovered(given, found, told);
+        let watched = self.watch(&lights, seen)?;
+        Ok(lights.seen(watched))
+    }
+
+    /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
+    fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let now = self.watch(&kept, seen)?;
+        if !kept.are_found() && now.is_none_or(|now| kept.watch(now)) {
+            return self.find_lights(kept.given, seen);
+        }
+        let Some(now) = now.filter(|now| kept.watch(*now)) else {
+            return Ok(kept);
+        };
+        if kept.discovered.is_none() {
+            // One that was moved may be anywhere.
+            let lights = (kept.in_use(), &LightUncertainty::default());
+            let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
+            let moved = KeptLights::listed(Arc::clone(&kept.given), found);
+            if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
+                return Ok(moved.in_place_of(&kept, now));
+            }
+        }
+        if let Some(Relit { lights, plates }) = self.relight(&kept, seen)? {
+            self.scene.plates = plates.to_vec();
+            self.relit_plates = Some(plates);
+            return Ok(lights);
+        }
+        kept.searched_in_vain(now);
+        Ok(kept)
+    }
+
+    /// Lights that explain a view in place of those that were there when the plates were taken, and the plates in their light; none where
+    /// they do not explain it as well.
+    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<Relit>, ToyError> {
+        let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
+            return Ok(None);
+        };
+        let relit = Self::new(Scene {
+            plates,
+            ..self.scene.clone()
+        });
+        let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
+        let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
+        let now = relit
+            .watch(&others, &seen)?
+            .filter(|now| kept.are_replaced_by(*now));
+        Ok(now.map(|now| Relit {
+            lights: others.in_place_of(kept, now),
+            plates: relit.scene.plates.into(),
+        }))
+    }
+
+    /// What lights leave unexplained of a view; none where it does not tell.
+    fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
+        if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
+            return Ok(None);
+        }
+        seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
+    }
+
+    /// Whether pictures can tell where so many lights are; without a plate those that nobody lists alone.
+    fn can_tell_lights(&self, lights: &[Light]) -> bool {
+        lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
+    }
+
+    /// Corrects the cameras of the first plates, each against those before it, once.
+    fn align_plates(&mut self) {
+        if std::mem::replace(&mut self.are_plates_aligned, true) {
+            return;
+        }
+        for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
+            let (aligned, rest) = self.scene.plates.split_at_mut(index);
+            let Plate { image, camera } = &mut rest[0];
+            let found = self.cameras.find(
+                (image, camera, None),
+                (aligned, &self.scene.receivers),
+                &self.scene.uncertainty.camera,
+            );
+            (*camera, _) = corrected(camera, found);
+        }
+    }
+
+    fn aligned(&self, input: &FrameInput) -> Alignment {
+        let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
+        let discovered = lights.and_then(|lights| lights.discovered.as_ref());
+        let report = AlignmentReport {
+            focal_length: self.ratio.report(Unknown::FocalLength),
+            world_scale: self.ratio.report(Unknown::WorldScale),
+            camera: view.and_then(|view| view.camera_report),
+            pose: view.and_then(|view| view.report),
+            lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
+            light_errors: lights.and_then(|lights| lights.errors),
+            discovered: discovered
+                .and_then(|found| found.clone().ok())
+                .unwrap_or_default(),
+            no_light: discovered.and_then(|found| found.as_ref().err().copied()),
+            unexplained: lights.and_then(KeptLights::unexplained),
+            probe: self.probe.clone().filter(|_| discovered.is_some()),
+        };
+        let applied = lights.and_then(|lights| lights.applied.clone());
+        let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
+        let warnings = off.map(|pose| AlignmentWarning::Misaligned {
+            outline_px: pose.shown_px(),
+        });
+        let none = report.no_light.filter(|_| applied.is_none());
+        let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
+        let doubt = lights.and_then(KeptLights::doubt);
+        let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
+        Alignment {
+            camera: view.map_or(input.camera, |view| view.camera),
+            world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
+            lights: applied,
+            relit_plates: self.relit_plates.clone(),
+            report,
+            warnings: self
+                .ratio
+                .warning()
+                .into_iter()
+                .chain(warnings)
+                .chain(none)
+                .chain(changed)
+                .collect(),
+        }
+    }
+}
+
+/// A camera as found: as given, where that explains the picture no better.
+fn corrected(given: &Camera, found: Option<camera::Found>) -> (Camera, Option<CameraAlignment>) {
+    let Some(found) = found else {
+        return (*given, None);
+    };
+    let corrected = Camera {
+        world_from_camera: found.world_from_camera,
+        ..*given
+    };
+    let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
+    let camera = if is_applied { corrected } else { *given };
+    (camera, Some(found.report(is_applied)))
+}

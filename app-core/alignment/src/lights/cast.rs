@@ -1,0 +1,223 @@
+//! Shadows in the picture: the toy flattened onto each receiver from points over a light.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
+
+use super::floor::FloorPixel;
+use super::lamp::{Lamp, disc};
+use crate::raster::{Coverage, Rasterizer, project};
+use crate::receivers::SeenReceiver;
+use crate::shape::Shape;
+use app_scene::scene::Intrinsics;
+
+/// No direction of ambient light is lower, as a sine: its shadow would have no end.
+const LOWEST: f64 = 0.1;
+
+/// Parts of the light from all around: even, and rising along each axis of a receiver.
+pub(super) const N_AMBIENT: usize = 3;
+
+/// What the toy takes of each.
+pub(super) type Ambient = [f32; N_AMBIENT];
+
+/// A toy that casts shadows, and the picture that they are seen in.
+pub(super) struct Caster<'a> {
+    pub(super) shape: &'a Shape,
+    pub(super) receivers: &'a [SeenReceiver],
+    /// The shape's points in the plane space of each receiver.
+    in_planes: Vec<Vec<DVec3>>,
+    intrinsics: Intrinsics,
+    size_px: IVec2,
+}
+
+impl<'a> Caster<'a> {
+    pub(super) fn new(
+        shape: &'a Shape,
+        receivers: &'a [SeenReceiver],
+        intrinsics: Intrinsics,
+        size_px: IVec2,
+    ) -> Self {
+        Self {
+            shape,
+            receivers,
+            in_planes: in_planes(shape, receivers),
+            intrinsics,
+            size_px,
+        }
+    }
+
+    /// With another toy.
+    pub(super) fn of_shape<'b>(&self, shape: &'b Shape) -> Caster<'b>
+    where
+        'a: 'b,
+    {
+        Caster {
+            shape,
+            receivers: self.receivers,
+            in_planes: in_planes(shape, self.receivers),
+            intrinsics: self.intrinsics,
+            size_px: self.size_px,
+        }
+    }
+
+    /// The part of a lamp's light that the toy takes from each pixel.
+    pub(super) fn lamp(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        lamp: &Lamp,
+        disc: &[DVec2],
+    ) -> Vec<f32> {
+        let mut taken = vec![[0.0]; pixels.len()];
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            let plane_from_camera = &receiver.plane_from_camera;
+            let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
+            let points = lamp.points(plane_from_camera, self.shape.centre, disc);
+            let weighted = points.into_iter().map(|point| (point, [irradiance(point, foot)]));
+            self.add(raster, pixels, index, weighted.collect(), &mut taken);
+        }
+        taken.into_iter().map(|[taken]| taken).collect()
+    }
+
+    /// Irradiance of each pixel's receiver from a lamp, over that at the foot of the toy there.
+    pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
+        let seen = self.receivers.iter().map(|receiver| {
+            let plane_from_camera = receiver.plane_from_camera;
+            let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
+            let middle = lamp.points(&plane_from_camera, self.shape.centre, &[DVec2::ZERO])[0];
+            (plane_from_camera, middle, irradiance(middle, foot))
+        });
+        let seen: Vec<_> = seen.collect();
+        let lit = pixels.iter().map(|pixel| {
+            let (plane_from_camera, middle, at_foot) = seen[pixel.receiver];
+            if lamp.is_far() || at_foot <= 0.0 {
+                return 1.0;
+            }
+            let at = plane_from_camera.transform_point3(pixel.point);
+            #[allow(clippy::cast_possible_truncation, reason = "a ratio, to 7 digits")]
+            let lit = (irradiance(middle, at) / at_foot) as f32;
+            lit
+        });
+        lit.collect()
+    }
+
+    /// Rectangles of pixels around the hard shadows from each point of a lamp, as the first and the last.
+    pub(super) fn rects(&self, raster: &mut Rasterizer, lamp: &Lamp, disc: &[DVec2]) -> Vec<[IVec2; 2]> {
+        let mut rects = Vec::new();
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            for point in lamp.points(&receiver.plane_from_camera, self.shape.centre, disc) {
+                let coverage = self.hard(raster, index, point);
+                if coverage.size_px != IVec2::ZERO {
+                    let first = coverage.origin_px;
+                    rects.push([first, first + coverage.size_px - 1]);
+                }
+            }
+        }
+        rects
+    }
+
+    /// The parts of the light from all around that the toy takes from each pixel: of an even one, and of ones that rise along
+    /// each axis of the receiver.
+    pub(super) fn ambient(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        n_directions: usize,
+    ) -> Vec<Ambient> {
+        // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
+        let lifted = |at: DVec2| {
+            let sine = (1.0 - at.length_squared()).max(0.0).sqrt().max(LOWEST);
+            (DVec4::new(at.x, sine, at.y, 0.0), [1.0, at.x, at.y])
+        };
+        let mut taken = vec![[0.0; N_AMBIENT]; pixels.len()];
+        for index in 0..self.receivers.len() {
+            let directions = disc(n_directions).into_iter().map(lifted);
+            self.add(raster, pixels, index, directions.collect(), &mut taken);
+        }
+        taken
+    }
+
+    /// Each point with a weight for each part; the first is that of its light.
+    fn add<const N: usize>(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[FloorPixel],
+        receiver: usize,
+        points: Vec<(DVec4, [f64; N])>,
+        taken: &mut [[f32; N]],
+    ) {
+        let total: f64 = points.iter().map(|(_, weights)| weights[0]).sum();
+        for (point, weights) in points.into_iter().filter(|(_, weights)| weights[0] > 0.0) {
+            let coverage = self.hard(raster, receiver, point);
+            #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
+            let weights = weights.map(|weight| (weight / total) as f32);
+            let mut first = pixels.partition_point(|pixel| pixel.at.y < coverage.origin_px.y);
+            for (at, end) in coverage.rows() {
+                // No more than two rows on.
+                let next = &pixels[first..pixels.len().min(first + 2 * self.size_px.x as usize)];
+                first += next.partition_point(|pixel| (pixel.at.y, pixel.at.x) < (at.y, at.x));
+                let row = taken[first..].iter_mut().zip(&pixels[first..]);
+                let row = row.take_while(|(_, pixel)| pixel.at.y == at.y && pixel.at.x < end);
+                for (taken, pixel) in row.filter(|(_, pixel)| pixel.receiver == receiver) {
+                    let covered = coverage.at(pixel.at);
+                    for (taken, weight) in taken.iter_mut().zip(weights) {
+                        *taken += weight * covered;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The hard shadow from one point.
+    fn hard(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
+        let camera_from_plane = self.receivers[receiver].plane_from_camera.inverse();
+        let in_plane = self.in_planes[receiver].iter();
+        let flat = in_plane.map(|point| on_plane(*point, light, &camera_from_plane));
+        let corners = project(flat, &self.intrinsics);
+        raster.coverage(&corners, &self.shape.faces, self.size_px)
+    }
+}
+
+fn in_planes(shape: &Shape, receivers: &[SeenReceiver]) -> Vec<Vec<DVec3>> {
+    let receivers = receivers.iter();
+    receivers
+        .map(|receiver| in_plane(shape, &receiver.plane_from_camera))
+        .collect()
+}
+
+fn in_plane(shape: &Shape, plane_from_camera: &DMat4) -> Vec<DVec3> {
+    let points = shape.points.iter();
+    points
+        .map(|point| plane_from_camera.transform_point3(*point))
+        .collect()
+}
+
+/// A shape's points on a receiver, along rays from a point of a light, homogeneous in plane space; in camera space.
+pub(super) fn flattened(shape: &Shape, plane_from_camera: &DMat4, light: DVec4) -> Vec<DVec3> {
+    let camera_from_plane = plane_from_camera.inverse();
+    let in_plane = in_plane(shape, plane_from_camera);
+    in_plane
+        .into_iter()
+        .map(|point| on_plane(point, light, &camera_from_plane))
+        .collect()
+}
+
+/// Where the ray from a light through a point meets the plane, in camera space; behind the camera where it does not.
+fn on_plane(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
+    const BEHIND: DVec3 = DVec3::Z;
+    let to_light = light.truncate() - light.w * point;
+    if to_light.y > 0.0 {
+        camera_from_plane.transform_point3(point - to_light * (point.y / to_light.y))
+    } else {
+        BEHIND
+    }
+}
+
+/// Irradiance of the plane from a point of a light, up to a factor.
+fn irradiance(point: DVec4, at: DVec3) -> f64 {
+    let to = point.truncate() - point.w * at;
+    let falloff = if point.w == 0.0 {
+        to.length()
+    } else {
+        to.length().powi(3)
+    };
+    if to.y > 0.0 { to.y / falloff } else { 0.0 }
+}

@@ -1,0 +1,90 @@
+//! Pixels of the receivers beside the toy, which the shadow is read from.
+
+use glam::{DVec3, IVec2};
+
+use super::backdrop::{Backdrop, QUADRATIC, polynomial};
+use crate::picture::{Color, Level, noise_deviation};
+use crate::raster::Coverage;
+use crate::receivers::{SeenReceiver, receiver_at};
+use crate::rectangle::places;
+
+/// Pixels as near to the toy may mix with it.
+const CLEAR_PX: i32 = 2;
+/// What the model of light leaves unexplained, over the plate.
+const UNEXPLAINED: f32 = 0.02;
+/// Linear light of the codes 4 and 250: beyond, a pixel says little.
+const DARKEST: f32 = 0.0012;
+const BRIGHTEST: f32 = 0.956;
+
+/// A pixel that shows a receiver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FloorPixel {
+    /// Where, in pixels of the level.
+    pub(super) at: IVec2,
+    /// Index of the receiver.
+    pub(super) receiver: usize,
+    /// The receiver's point there, in camera space.
+    pub(super) point: DVec3,
+    /// Terms of the gain there, a polynomial over the plane; 1 and zeros where it is even.
+    pub(super) gain: [f32; QUADRATIC],
+    /// Of the photograph.
+    pub(super) frame: Color,
+    /// Of the plate.
+    pub(super) plate: Color,
+    /// One over the expected variance of each channel; 0 where it says nothing.
+    pub(super) precision: Color,
+}
+
+/// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate. `around` is the toy's centre
+/// in camera space, and a length in metres that places are told in.
+pub(super) fn floor_pixels(
+    level: &Level,
+    (coverage, backdrop): (&Coverage, Option<&Backdrop<QUADRATIC>>),
+    receivers: &[SeenReceiver],
+    around: (DVec3, f64),
+    is_wanted: impl Fn(IVec2) -> bool,
+) -> Vec<FloorPixel> {
+    // A receiver on its own gets no light of another, and a plate shows what it is like.
+    let is_even = receivers.len() == 1 && level.plate.is_some();
+    let n_terms = if is_even { 1 } else { QUADRATIC };
+    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
+    let pixels = clear.filter_map(|at| {
+        let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
+        let frame = level.frame.get(at)?;
+        let (plate, texture) = match (&level.plate, backdrop) {
+            (Some(plate), _) => (plate.get(at)?, 0.0),
+            (None, backdrop) => backdrop?.at(receivers, receiver, point)?,
+        };
+        let unexplained = UNEXPLAINED.hypot(texture);
+        let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel], unexplained));
+        let terms = polynomial(&receivers[receiver], point, around);
+        #[allow(clippy::cast_possible_truncation, reason = "a place, to 7 digits")]
+        let gain = std::array::from_fn(|term| if term < n_terms { terms[term] as f32 } else { 0.0 });
+        Some(FloorPixel {
+            at,
+            receiver,
+            point,
+            gain,
+            frame,
+            plate,
+            precision,
+        })
+    });
+    pixels.collect()
+}
+
+fn precision(frame: f32, plate: f32, unexplained: f32) -> f32 {
+    let is_useful = |value: f32| value > DARKEST && value < BRIGHTEST;
+    if is_useful(frame) && is_useful(plate) {
+        let deviation = noise_deviation(frame).hypot(unexplained * plate);
+        1.0 / (deviation * deviation)
+    } else {
+        0.0
+    }
+}
+
+fn is_near_toy(coverage: &Coverage, at: IVec2) -> bool {
+    let mut around =
+        (-CLEAR_PX..=CLEAR_PX).flat_map(|y| (-CLEAR_PX..=CLEAR_PX).map(move |x| IVec2::new(x, y)));
+    around.any(|step| coverage.at(at + step) > 0.0)
+}

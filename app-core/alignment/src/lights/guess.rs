@@ -1,0 +1,105 @@
+//! Lights that something else than their shadow tells of: a ray to each, whose length may be unknown.
+
+use glam::{DMat4, DVec2, DVec3};
+
+use super::hemisphere::climb;
+use super::lamp::Lamp;
+use super::leftover::Leftover;
+use super::prior::Prior;
+use super::shadows::{ROBUST_FAR, Shadows};
+use crate::probe::TrackedLight;
+use crate::raster::Rasterizer;
+use app_scene::scene::MAX_LIGHTS;
+
+/// Lengths of a ray that are tried where none is known, in metres; besides them one without end.
+const LENGTHS_M: [f64; 8] = [0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 5.0];
+/// A lamp's middle alone.
+const POINT: [DVec2; 1] = [DVec2::ZERO];
+/// Rounds of one more lamp beside those before it.
+const N_ROUNDS: usize = 5;
+
+/// What else than shadows tells of lights.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hints {
+    /// What a probe tells: they are looked for around these alone.
+    pub(crate) guesses: Vec<Guess>,
+    /// Direction towards a light, in camera space, that is looked along where shadows tell of none; it may be far off.
+    ///
+    /// Measured on five sessions without a plate whose light is not found: an exact direction led to none either. What they lack is
+    /// evidence, not a start.
+    pub(crate) estimated: Option<DVec3>,
+}
+
+/// A ray to a light, in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guess {
+    origin: DVec3,
+    direction: DVec3,
+    /// None where it is not known.
+    distance_m: Option<f64>,
+    /// Tangent of the angular radius.
+    spread: f64,
+}
+
+impl Guess {
+    /// Of a light that a probe tells.
+    pub(crate) fn new(light: &TrackedLight, camera_from_world: &DMat4) -> Option<Self> {
+        let seen = &light.seen;
+        Some(Self {
+            origin: camera_from_world.transform_point3(seen.origin_in_world),
+            direction: camera_from_world
+                .transform_vector3(seen.direction_in_world)
+                .try_normalize()?,
+            distance_m: light.distance_m,
+            spread: seen.angular_radius_rad.tan(),
+        })
+    }
+
+    /// As lamps of a toy: a near light stands elsewhere over the toy than over the ray's origin.
+    fn lamps(&self, toy: DVec3, radius_m: f64) -> Vec<Lamp> {
+        let at = |distance_m: f64| {
+            let to = self.origin + distance_m * self.direction - toy;
+            // No lamp stands in the toy.
+            (to.length() > 2.0 * radius_m).then(|| Lamp {
+                direction: to.normalize(),
+                nearness: to.length().recip(),
+                spread: self.spread,
+            })
+        };
+        let far = Lamp {
+            direction: self.direction,
+            nearness: 0.0,
+            spread: self.spread,
+        };
+        match self.distance_m.and_then(at) {
+            Some(lamp) => vec![lamp],
+            None => LENGTHS_M.into_iter().filter_map(at).chain([far]).collect(),
+        }
+    }
+}
+
+/// A lamp for each guess, strongest first: of the lengths of its ray that which explains most of what is left, turned to the best
+/// direction around it, and moved by steps.
+pub(super) fn guessed(shadows: &Shadows<'_>, raster: &mut Rasterizer, guesses: &[Guess]) -> Vec<Lamp> {
+    let shape = shadows.caster.shape;
+    let mut lamps: Vec<Lamp> = Vec::new();
+    for guess in guesses.iter().take(MAX_LIGHTS) {
+        let taken = shadows.taken_of_all(raster, &lamps);
+        let shaded = shadows.shaded(&taken);
+        let shading = shaded.fit(shadows.caster.receivers.len(), ROBUST_FAR);
+        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
+        let mut explained = |lamp: &Lamp| leftover.explained(&shadows.taken(raster, lamp, &POINT));
+        let tried = guess.lamps(shape.centre, shape.radius_m);
+        let scored = tried.into_iter().map(|lamp| (explained(&lamp), lamp));
+        let Some((_, best)) = scored.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            continue;
+        };
+        let (_, lamp) = climb(&best, explained);
+        let mut priors: Vec<Prior> = lamps.iter().map(Prior::held).collect();
+        lamps.push(lamp);
+        priors.push(Prior::free(&lamp, shape.radius_m));
+        // Where nothing tells it, it stays.
+        let _ = shadows.rounds(raster, (&mut lamps, &priors), (N_ROUNDS, ROBUST_FAR));
+    }
+    lamps
+}

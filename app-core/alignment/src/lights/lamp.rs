@@ -1,0 +1,127 @@
+//! A light by numbers that can be moved a little.
+
+use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
+
+use app_scene::geometry::light_points::{outline_radius_m, vogel_disc};
+use app_scene::scene::Light;
+
+/// Numbers of a lamp: two angles, its nearness, and its spread.
+pub(super) const N_PARTS: usize = 4;
+/// Index of the nearness among them.
+pub(super) const NEARNESS: usize = 2;
+/// Index of the spread.
+pub(super) const SPREAD: usize = 3;
+
+/// A light seen from the toy, in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lamp {
+    /// Unit vector from the toy.
+    pub(super) direction: DVec3,
+    /// One over its distance in metres; 0 for a light too far away for that to matter.
+    pub(super) nearness: f64,
+    /// Tangent of the angular radius.
+    pub(super) spread: f64,
+}
+
+impl Lamp {
+    /// None for a light around the middle of the toy.
+    pub(super) fn new(light: &Light, camera_from_world: &DMat4, toy: DVec3) -> Option<Self> {
+        let (to, radius_m) = match *light {
+            Light::Sphere {
+                position_in_world,
+                radius_m,
+            } => (
+                camera_from_world.transform_point3(position_in_world) - toy,
+                Some(radius_m),
+            ),
+            Light::Directional {
+                direction_to_light_in_world,
+                ..
+            } => (
+                camera_from_world.transform_vector3(direction_to_light_in_world),
+                None,
+            ),
+        };
+        let distance_m = to.length();
+        let spread = match *light {
+            Light::Directional {
+                angular_radius_rad, ..
+            } => angular_radius_rad.tan(),
+            Light::Sphere { radius_m, .. } if radius_m < distance_m => {
+                outline_radius_m(radius_m, distance_m) / distance_m
+            }
+            Light::Sphere { .. } => return None,
+        };
+        Some(Self {
+            direction: to.try_normalize()?,
+            nearness: radius_m.map_or(0.0, |_| distance_m.recip()),
+            spread,
+        })
+    }
+
+    /// Back in the world.
+    pub(super) fn light(&self, world_from_camera: &DMat4, toy: DVec3) -> Light {
+        if self.is_far() {
+            Light::Directional {
+                direction_to_light_in_world: world_from_camera.transform_vector3(self.direction).normalize(),
+                angular_radius_rad: self.spread.atan(),
+            }
+        } else {
+            let distance_m = self.nearness.recip();
+            Light::Sphere {
+                position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
+                radius_m: self.spread.atan().sin() * distance_m,
+            }
+        }
+    }
+
+    /// Whether its distance does not matter.
+    pub(super) fn is_far(&self) -> bool {
+        self.nearness <= 0.0
+    }
+
+    /// Turned by two angles in radians about axes across its direction, nearer by the third number, its spread more by the fourth.
+    pub(super) fn moved(&self, step: &[f64; N_PARTS]) -> Self {
+        let (across, along) = self.direction.any_orthonormal_pair();
+        let turn = DQuat::from_scaled_axis(step[0] * across + step[1] * along);
+        Self {
+            direction: (turn * self.direction).normalize(),
+            nearness: (self.nearness + step[NEARNESS]).max(0.0),
+            spread: (self.spread + step[SPREAD]).max(0.0),
+        }
+    }
+
+    /// Points over its disc in a space, homogeneous.
+    pub(super) fn points(&self, space_from_camera: &DMat4, toy: DVec3, disc: &[DVec2]) -> Vec<DVec4> {
+        let (across, along) = self.direction.any_orthonormal_pair();
+        let point = |at: &DVec2| {
+            let to = self.direction + self.spread * (at.x * across + at.y * along);
+            if self.is_far() {
+                space_from_camera.transform_vector3(to).extend(0.0)
+            } else {
+                let place = toy + to / self.nearness;
+                space_from_camera.transform_point3(place).extend(1.0)
+            }
+        };
+        disc.iter().map(point).collect()
+    }
+}
+
+/// At least three points over the unit disc, of equal areas, with the disc's own mean and variance, of which a spiral of few is a
+/// little off.
+pub(super) fn disc(n_points: usize) -> Vec<DVec2> {
+    let mut points: Vec<DVec2> = vogel_disc(n_points).collect();
+    let mean_of = |values: &mut dyn Iterator<Item = DVec2>| {
+        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
+        let n = n_points as f64;
+        values.sum::<DVec2>() / n
+    };
+    let mean = mean_of(&mut points.iter().copied());
+    let variance = mean_of(&mut points.iter().map(|point| (*point - mean) * (*point - mean)));
+    // Along each axis a disc has a variance of 1/4.
+    let scale = 0.5 / DVec2::new(variance.x.sqrt(), variance.y.sqrt());
+    for point in &mut points {
+        *point = (*point - mean) * scale;
+    }
+    points
+}

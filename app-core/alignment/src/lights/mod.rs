@@ -1,0 +1,254 @@
+//! The lights, by the shadows of the toy on the receivers.
+//!
+//! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
+//! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
+//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed they are looked for
+//! all over the hemisphere (`discover`), or around those that a probe tells of (`guess`).
+
+mod backdrop;
+mod cast;
+mod discover;
+mod evidence;
+mod floor;
+mod follow;
+mod guess;
+mod hemisphere;
+mod lamp;
+mod leftover;
+mod prior;
+mod refine;
+mod relight;
+mod shading;
+mod shadows;
+mod step;
+mod uncertainty;
+mod watch;
+
+use glam::{DMat4, DVec2, DVec3, IVec2};
+
+use super::picture::Pyramid;
+use super::raster::Rasterizer;
+use super::receivers::SeenReceiver;
+use super::report::{DiscoveredLight, LightDeviation, PoseDeviation};
+use super::shape::Shape;
+use crate::no_light::NoLight;
+use app_scene::scene::{Light, LightUncertainty};
+use cast::flattened;
+pub(super) use discover::scores;
+pub(super) use follow::{Around, Followed, View};
+pub(super) use guess::{Guess, Hints};
+use lamp::{Lamp, N_PARTS, disc};
+use prior::Prior;
+pub(super) use relight::Relight;
+pub(super) use watch::{Watched, watch};
+
+use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
+
+/// Directions that are tried around the given one, in steps of `SEARCH_STEP_RAD`.
+const SEARCH_STEP_RAD: f64 = 3.5 * std::f64::consts::PI / 180.0;
+const SEARCH_STEPS: i32 = 4;
+/// Where they are said to be off by more, in wider steps, up to an angle.
+const FAR_STEP_RAD: f64 = 2.0 * SEARCH_STEP_RAD;
+const MOST_SEARCH_RAD: f64 = std::f64::consts::PI / 3.0;
+/// Points over a lamp then.
+const N_SEARCH_POINTS: usize = 7;
+/// Gauss-Newton rounds: level, number, and scale of the weights.
+const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
+
+/// Lights that were found, and how they were judged.
+pub(super) struct Found {
+    /// In the order that they were given in.
+    pub(super) lights: Vec<FoundLight>,
+    /// Mean loss with the given lights, and with those found, of the same pixels.
+    pub(super) losses: [f64; 2],
+}
+
+/// One of them.
+pub(super) struct FoundLight {
+    /// In the world.
+    pub(super) light: Light,
+    /// From the given direction, in radians.
+    pub(super) turned_rad: f64,
+    /// Over the given distance.
+    pub(super) distance_ratio: f64,
+    /// Tangent of the angular radius, as given.
+    pub(super) given_spread: f64,
+    /// As found.
+    pub(super) spread: f64,
+    /// One deviation of the direction, by noise alone.
+    pub(super) deviation_rad: f64,
+}
+
+/// Finds the lights around those given, no farther from them than they are uncertain; none where too little of a receiver shows their shadows, where one of them stands in the
+/// middle of the toy, or where one would have to darken what it shines on.
+pub(super) fn find(
+    (lights, uncertainty): (&[Light], &LightUncertainty),
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+) -> Option<Found> {
+    let camera_from_world = world_from_camera.inverse();
+    let given: Option<Vec<Lamp>> = lights
+        .iter()
+        .map(|light| Lamp::new(light, &camera_from_world, shape.centre))
+        .collect();
+    let given = given?;
+    let mut raster = Rasterizer::default();
+    let priors: Vec<Prior> = given.iter().map(|lamp| Prior::given(lamp, uncertainty)).collect();
+    let mut lamps = given.clone();
+    let smallest = Shadows::new(
+        &mut raster,
+        (shape, receivers),
+        pyramid.level(Pyramid::SMALLEST),
+        None,
+    );
+    smallest.search(&mut raster, &mut lamps, uncertainty);
+    let mut losses = None;
+    let mut deviations_rad = Vec::new();
+    for (level, n_rounds, robust) in ROUNDS {
+        let mut shadows = Shadows::new(
+            &mut raster,
+            (shape, receivers),
+            pyramid.level(level),
+            Some(&[&given[..], &lamps[..]].concat()),
+        );
+        if shadows.pixels.len() < LEAST_PIXELS {
+            return None;
+        }
+        let shading = shadows.shading(&mut raster, &lamps, robust);
+        shadows.light(&lamps, &shading);
+        for _ in 0..n_rounds {
+            deviations_rad = shadows.step(&mut raster, &mut lamps, &priors, robust)?;
+        }
+        let shadings = [&given, &lamps].map(|lamps| shadows.shading(&mut raster, lamps, robust));
+        if !shadings[1].has_light_of_all(lamps.len()) {
+            return None;
+        }
+        losses = Some(shadings.map(|shading| shading.loss));
+        if lamps
+            .iter()
+            .all(|lamp| shadows.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
+        {
+            break;
+        }
+    }
+    let found = given.iter().zip(&lamps).zip(deviations_rad);
+    Some(Found {
+        lights: found
+            .map(|((given, lamp), deviation_rad)| FoundLight {
+                light: lamp.light(world_from_camera, shape.centre),
+                turned_rad: given.direction.angle_between(lamp.direction),
+                distance_ratio: ratio(lamp, given),
+                given_spread: given.spread,
+                spread: lamp.spread,
+                deviation_rad,
+            })
+            .collect(),
+        losses: losses?,
+    })
+}
+
+/// The toy's points flattened onto each receiver from points over the unit disc of a light, in camera space.
+pub(super) fn flat_shadows(
+    light: &Light,
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    camera_from_world: &DMat4,
+    disc: &[DVec2],
+) -> Vec<Vec<DVec3>> {
+    let Some(lamp) = Lamp::new(light, camera_from_world, shape.centre) else {
+        return Vec::new();
+    };
+    let flat = receivers.iter().flat_map(|receiver| {
+        let plane_from_camera = &receiver.plane_from_camera;
+        let points = lamp.points(plane_from_camera, shape.centre, disc);
+        points
+            .into_iter()
+            .map(|point| flattened(shape, plane_from_camera, point))
+    });
+    flat.collect()
+}
+
+fn ratio(found: &Lamp, given: &Lamp) -> f64 {
+    if found.is_far() || given.is_far() {
+        1.0
+    } else {
+        given.nearness / found.nearness
+    }
+}
+
+impl Shadows<'_> {
+    /// Turns each lamp to the best of the directions around it, one after the other.
+    fn search(&self, raster: &mut Rasterizer, lamps: &mut [Lamp], uncertainty: &LightUncertainty) {
+        let disc = disc(N_SEARCH_POINTS);
+        let mut taken: Vec<Vec<f32>> = lamps.iter().map(|lamp| self.taken(raster, lamp, &disc)).collect();
+        let loss = |taken: &[Vec<f32>]| {
+            let shading = self.shaded(taken).fit(self.caster.receivers.len(), ROBUST_FAR);
+            shading.loss
+        };
+        for (index, lamp) in lamps.iter_mut().enumerate() {
+            let mut best = (loss(&taken), *lamp, taken[index].clone());
+            for step in directions(uncertainty.direction_rad) {
+                let turned = lamp.moved(&step);
+                taken[index] = self.taken(raster, &turned, &disc);
+                let loss = loss(&taken);
+                if loss < best.0 {
+                    best = (loss, turned, taken[index].clone());
+                }
+            }
+            (*lamp, taken[index]) = (best.1, best.2);
+        }
+    }
+}
+
+/// Steps to directions on a disc around a lamp's own, of a radius where one is known.
+fn directions(most_rad: Option<f64>) -> impl Iterator<Item = [f64; N_PARTS]> {
+    let usual_rad = f64::from(SEARCH_STEPS) * SEARCH_STEP_RAD;
+    let most_rad = most_rad.unwrap_or(usual_rad).min(MOST_SEARCH_RAD);
+    let near = grid(SEARCH_STEP_RAD, most_rad.min(usual_rad));
+    let far = grid(FAR_STEP_RAD, most_rad).filter(move |step| step[0].hypot(step[1]) > usual_rad);
+    near.chain(far)
+}
+
+/// Steps on a square grid of a spacing, but for none, up to a radius.
+fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
+    #[allow(clippy::cast_possible_truncation, reason = "a handful")]
+    let n = (most_rad / apart_rad * (1.0 + 1e-9)) as i32;
+    let all = (-n..=n).flat_map(move |y| (-n..=n).map(move |x| IVec2::new(x, y)));
+    let around = all.filter(move |step| *step != IVec2::ZERO && step.length_squared() <= n * n);
+    around.map(move |step| {
+        let [x, y] = (step.as_dvec2() * apart_rad).to_array();
+        [x, y, 0.0, 0.0]
+    })
+}
+
+/// Finds lights that nobody lists, strongest first; `pose` is how well the toy's is known. Where a probe tells of lights, those that cast
+/// a shadow, made exact by it.
+pub(super) fn discover(
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+    pose: &PoseDeviation,
+    hints: &Hints,
+) -> Result<Vec<DiscoveredLight>, NoLight> {
+    let mut found = discover::discover(shape, receivers, pyramid, pose, hints)?;
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let lights = found.iter().map(|found| {
+        let lamp = &found.lamp;
+        let [across, along, nearness_per_m, spread] = found.deviations;
+        DiscoveredLight {
+            light: lamp.light(world_from_camera, shape.centre),
+            direction_in_world: world_from_camera.transform_vector3(lamp.direction).normalize(),
+            distance_m: (!lamp.is_far()).then(|| lamp.nearness.recip()),
+            angular_radius_rad: lamp.spread.atan(),
+            share: found.share,
+            deviation: LightDeviation {
+                direction_rad: across.hypot(along),
+                nearness_per_m,
+                angular_radius_rad: spread / (1.0 + lamp.spread * lamp.spread),
+            },
+        }
+    });
+    Ok(lights.collect())
+}

@@ -1,0 +1,124 @@
+//! Lamps that were counted, made exact in a larger picture.
+
+use super::evidence::doubtful;
+use super::lamp::{Lamp, N_PARTS, NEARNESS};
+use super::prior::Prior;
+use super::shading::Shading;
+use super::shadows::{ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
+use crate::raster::Rasterizer;
+use crate::report::PoseDeviation;
+
+/// Most rounds in one picture.
+const N_ROUNDS: usize = 3;
+/// A nearness of fewer deviations is none; without a plate a receiver's own colours pass for the way that a lamp's light falls off.
+///
+/// Measured without: the sun at 3.5 in a real room, bulbs at 9 and more.
+const TOLD: f64 = 3.0;
+const TOLD_WITHOUT_PLATE: f64 = 6.0;
+
+/// A lamp that was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Discovered {
+    pub(super) lamp: Lamp,
+    /// Of the light on the receiver nearest to the toy.
+    pub(super) share: f64,
+    /// Deviations of its parts.
+    pub(super) deviations: [f64; N_PARTS],
+}
+
+/// Lamps in a picture.
+pub(super) struct Refined<'a> {
+    pub(super) shadows: Shadows<'a>,
+    pub(super) lamps: Vec<Lamp>,
+}
+
+impl Refined<'_> {
+    /// Moves the lamps to where they explain most, without those that prove to be none.
+    pub(super) fn refine(&mut self, raster: &mut Rasterizer) {
+        let shading = self.shading(raster);
+        self.shadows.light(&self.lamps, &shading);
+        let radius_m = self.shadows.caster.shape.radius_m;
+        while !self.lamps.is_empty() {
+            let priors: Vec<Prior> = self
+                .lamps
+                .iter()
+                .map(|lamp| Prior::free(lamp, radius_m))
+                .collect();
+            // Where nothing tells them they stay.
+            let _ = self
+                .shadows
+                .rounds(raster, (&mut self.lamps, &priors), (N_ROUNDS, ROBUST_NEAR));
+            let shading = self.shading(raster);
+            match doubtful(&self.lamps, &shading, &self.shadows) {
+                Some(index) => drop(self.lamps.remove(index)),
+                None => break,
+            }
+        }
+    }
+
+    /// Whether a larger picture tells no more.
+    pub(super) fn is_wide(&self) -> bool {
+        let mut lamps = self.lamps.iter();
+        lamps.all(|lamp| self.shadows.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
+    }
+
+    /// How well the lamps are known. Those whose nearness is not told are taken for ones at infinity.
+    pub(super) fn measured(mut self, raster: &mut Rasterizer, pose: &PoseDeviation) -> Vec<Discovered> {
+        let radius_m = self.shadows.caster.shape.radius_m;
+        let told = if self.shadows.has_plate {
+            TOLD
+        } else {
+            TOLD_WITHOUT_PLATE
+        };
+        let deviations = self.deviations(raster, pose);
+        let far: Vec<bool> = self
+            .lamps
+            .iter()
+            .zip(&deviations)
+            .map(|(lamp, deviations)| lamp.nearness < told * deviations[NEARNESS])
+            .collect();
+        for (lamp, _) in self.lamps.iter_mut().zip(&far).filter(|(_, far)| **far) {
+            lamp.nearness = 0.0;
+        }
+        if far.contains(&true) {
+            let priors = self.lamps.iter().map(|lamp| {
+                if lamp.is_far() {
+                    Prior::far(lamp)
+                } else {
+                    Prior::free(lamp, radius_m)
+                }
+            });
+            let priors: Vec<Prior> = priors.collect();
+            let _ = self
+                .shadows
+                .rounds(raster, (&mut self.lamps, &priors), (N_ROUNDS, ROBUST_NEAR));
+        }
+        let shading = self.shading(raster);
+        let found = self.lamps.iter().zip(deviations).enumerate();
+        found
+            .map(|(index, (lamp, deviations))| Discovered {
+                lamp: *lamp,
+                share: shading.share(0, index),
+                deviations,
+            })
+            .collect()
+    }
+
+    fn deviations(&self, raster: &mut Rasterizer, pose: &PoseDeviation) -> Vec<[f64; N_PARTS]> {
+        let covariance = self.shadows.covariance(raster, &self.lamps, pose, ROBUST_NEAR);
+        (0..self.lamps.len())
+            .map(|lamp| {
+                [0, 1, 2, 3].map(|part| {
+                    let place = N_PARTS * lamp + part;
+                    covariance.as_ref().map_or(f64::INFINITY, |covariance| {
+                        covariance[(place, place)].max(0.0).sqrt()
+                    })
+                })
+            })
+            .collect()
+    }
+
+    fn shading(&self, raster: &mut Rasterizer) -> Shading {
+        self.shadows.shading(raster, &self.lamps, ROBUST_NEAR)
+    }
+}

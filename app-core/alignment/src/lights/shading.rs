@@ -1,0 +1,176 @@
+//! The light on the receivers for given shadows: linear in what each lamp and the ambient light give.
+//!
+//! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x what the toy takes of it, for each receiver
+//! and channel: the additive model of `fit`, without the toy's bounce, which the ambient factors take up. They rise to a side.
+//!
+//! Where there are several receivers the gain bends over each: a wall throws back less light onto a table, since the shadow lies on
+//! it too, and the table darkens over a wide place, which an even gain would leave to a penumbra that is too wide. Without
+//! a plate it makes up for what the backdrop is off. On one receiver with a plate it stays even, or it would take up what tells the scale
+//! of the world.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::backdrop::QUADRATIC;
+use super::cast::{Ambient, N_AMBIENT};
+use super::floor::FloorPixel;
+use app_scene::scene::MAX_LIGHTS;
+
+/// Those of the gain, ambient factors, and one factor a lamp.
+pub(super) const N_FACTORS: usize = FIRST_LAMP + MAX_LIGHTS;
+/// Index of the first lamp's.
+pub(super) const FIRST_LAMP: usize = QUADRATIC + N_AMBIENT;
+
+pub(super) type Factors = SVector<f64, N_FACTORS>;
+pub(super) type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
+
+/// Keeps factors of what no pixel shows at 0.
+pub(super) const PRIOR: f64 = 1e-3;
+/// Rounds of reweighting.
+const N_ROUNDS: usize = 3;
+
+/// The pixels that a shading explains, with what the toy takes of each light there.
+pub(super) struct Shaded<'a> {
+    pub(super) pixels: &'a [FloorPixel],
+    pub(super) ambient: &'a [Ambient],
+    pub(super) lamps: &'a [Vec<f32>],
+}
+
+/// Factors of each receiver and channel.
+pub(super) struct Shading {
+    pub(super) factors: Vec<[Factors; 3]>,
+    /// Mean robust loss of a channel of a pixel, in variances; of the factors before the last round.
+    pub(super) loss: f64,
+}
+
+impl Shading {
+    /// The part of the light on a receiver below the toy that a lamp gives, in the mean over the channels.
+    pub(super) fn share(&self, receiver: usize, lamp: usize) -> f64 {
+        let of_channels = self.factors[receiver].iter();
+        let shares = of_channels.map(|factors| factors[FIRST_LAMP + lamp] / factors[0].max(PRIOR));
+        shares.sum::<f64>() / 3.0
+    }
+
+    /// Whether each of the lamps gives light, over all receivers and channels.
+    pub(super) fn has_light_of_all(&self, n_lamps: usize) -> bool {
+        let given = |lamp: usize| -> f64 {
+            let factors = self.factors.iter().flatten();
+            factors.map(|factors| factors[FIRST_LAMP + lamp]).sum()
+        };
+        (0..n_lamps).all(|lamp| given(lamp) > 0.0)
+    }
+}
+
+/// One channel of one pixel against a shading.
+pub(super) struct Residual {
+    /// Frame less model, in linear light.
+    pub(super) residual: f64,
+    /// Robust weight: one over a variance, or less.
+    pub(super) weight: f64,
+    /// Derivatives by the factors.
+    pub(super) row: Factors,
+    loss: f64,
+}
+
+impl Shaded<'_> {
+    /// Of one pixel: the gain's terms, then less what is taken.
+    pub(super) fn columns(&self, index: usize) -> Factors {
+        let mut columns = Factors::zeros();
+        for (term, value) in self.pixels[index].gain.iter().enumerate() {
+            columns[term] = f64::from(*value);
+        }
+        for (part, taken) in self.ambient[index].iter().enumerate() {
+            columns[QUADRATIC + part] = -f64::from(*taken);
+        }
+        for (lamp, taken) in self.lamps.iter().enumerate() {
+            columns[FIRST_LAMP + lamp] = -f64::from(taken[index]);
+        }
+        columns
+    }
+
+    /// One channel of a pixel; none where it says nothing. `robust` is the scale of the weights, in deviations.
+    pub(super) fn residual(
+        &self,
+        (index, channel): (usize, usize),
+        columns: &Factors,
+        factors: &Factors,
+        robust: f64,
+    ) -> Option<Residual> {
+        let pixel = &self.pixels[index];
+        let precision = f64::from(pixel.precision[channel]);
+        if precision <= 0.0 {
+            return None;
+        }
+        let row = columns * f64::from(pixel.plate[channel]);
+        let residual = f64::from(pixel.frame[channel]) - row.dot(factors);
+        // Geman and McClure 1987.
+        let square = residual * residual * precision;
+        let excess = square / (robust * robust);
+        Some(Residual {
+            residual,
+            weight: precision / (1.0 + excess).powi(2),
+            row,
+            loss: square / (1.0 + excess),
+        })
+    }
+
+    /// Fits all factors by iteratively reweighted least squares, at first as if a receiver were as the plate shows it.
+    pub(super) fn fit(&self, n_receivers: usize, robust: f64) -> Shading {
+        let mut lit = Factors::zeros();
+        lit[0] = 1.0;
+        let mut shading = Shading {
+            factors: vec![[lit; 3]; n_receivers],
+            loss: f64::INFINITY,
+        };
+        for round in 0..N_ROUNDS {
+            // The first round knows no factors to judge by.
+            let scale = if round == 0 { f64::INFINITY } else { robust };
+            shading = self.refit(&shading, scale);
+        }
+        shading
+    }
+
+    fn refit(&self, from: &Shading, robust: f64) -> Shading {
+        let mut normals = vec![[Normal::identity() * PRIOR; 3]; from.factors.len()];
+        let mut sides = vec![[Factors::zeros(); 3]; from.factors.len()];
+        let (mut loss, mut n) = (0.0, 0.0);
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let columns = self.columns(index);
+            for channel in 0..3 {
+                let factors = &from.factors[pixel.receiver][channel];
+                let Some(one) = self.residual((index, channel), &columns, factors, robust) else {
+                    continue;
+                };
+                loss += one.loss;
+                n += 1.0;
+                let normal = &mut normals[pixel.receiver][channel];
+                add_outer(normal, &one.row, one.weight, FIRST_LAMP + self.lamps.len());
+                let seen = f64::from(pixel.frame[channel]);
+                sides[pixel.receiver][channel] += one.row * (one.weight * seen);
+            }
+        }
+        let solved = normals.iter().zip(&sides).zip(&from.factors);
+        let solved = solved.map(|((normals, sides), before)| {
+            [0, 1, 2].map(|channel| {
+                let factor = normals[channel].cholesky();
+                factor.map_or(before[channel], |factor| factor.solve(&sides[channel]))
+            })
+        });
+        Shading {
+            factors: solved.collect(),
+            loss: if n > 0.0 { loss / n } else { 0.0 },
+        }
+    }
+}
+
+/// Adds `weight` times the outer product of the first `n` entries, to the lower triangle alone, which is what Cholesky's method reads.
+pub(super) fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
+    for j in 0..n {
+        let scaled = weight * row[j];
+        // An even gain has terms that are 0 everywhere.
+        if scaled != 0.0 {
+            for i in j..n {
+                normal[(i, j)] += scaled * row[i];
+            }
+        }
+    }
+}

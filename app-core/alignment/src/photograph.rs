@@ -1,0 +1,388 @@
+//! A photograph with its plate, and what is made of a toy's pose and lights that are found in it.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
+use super::mask::Mask;
+use super::picture::{Picture, Pyramid};
+use super::receivers::{SeenReceiver, plate_for};
+use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
+use super::shape::Shape;
+use super::{lights, pose};
+use crate::no_light::NoLight;
+use crate::probe::TrackedLight;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
+use app_scene::toy::ToyError;
+
+/// A found pose is applied where the outline's loss falls to less than this part of the given pose's.
+///
+/// With exact poses it falls to .9 in the finest band and to .99 in the wide one, by what the model of the outline's pixels lacks;
+/// without a plate a shadow beside the toy draws it along, and the wide one fell to .8.
+const POSE_GAIN: f64 = 0.5;
+/// A pose whose outline stays farther from the picture's, in pixels, was not found.
+pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
+/// A toy rests on a plane from which its lowest point is no farther, over its radius.
+const RESTING: f64 = 0.05;
+/// Found lights are applied where the loss falls to less than this part of the given lights'.
+const LIGHT_GAIN: f64 = 0.96;
+/// And where one of them turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
+/// nearer or farther by more, as a logarithm.
+const LEAST_TURN: f64 = 0.06;
+const LEAST_TURN_RAD: f64 = 0.0015;
+const LEAST_GROWTH: f64 = 0.15;
+const LEAST_DISTANCE: f64 = 0.1;
+/// A direction is told where it turned by as many deviations.
+const TOLD: f64 = 3.0;
+
+/// Of a bound, by which what lies on it may be beyond it for rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// A photograph with its plate, and where the receivers are in it.
+pub(super) struct Photograph {
+    pyramid: Pyramid,
+    receivers: Vec<SeenReceiver>,
+    camera_from_world: DMat4,
+}
+
+impl Photograph {
+    /// Of what is withheld nothing is read.
+    pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
+        let camera_from_world = input.camera.world_from_camera.inverse();
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+        let plate = plate_for(&scene.plates, &receivers, &input.camera);
+        let frame = Picture::without(input.image.rgba(), withheld);
+        Self {
+            pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
+            receivers,
+            camera_from_world,
+        }
+    }
+
+    /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
+    fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
+        (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
+    }
+
+    /// Where the toy is, starting from where it was before and else from where it is given; the start stays where nothing better is
+    /// found.
+    pub(super) fn pose(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        held: Option<DMat4>,
+    ) -> Result<FoundPose, ToyError> {
+        let given = input.world_from_object;
+        let uncertainty = &scene.uncertainty.toy;
+        if let Some(held) = held.filter(|held| *held != given) {
+            let found = self.pose_from(scene, input, (&held, &PoseUncertainty::default()))?;
+            if found.is_seen() && found.is_within(uncertainty) {
+                return Ok(found);
+            }
+        }
+        let found = self.pose_from(scene, input, (&given, uncertainty))?;
+        if held.is_some() || found.is_seen() {
+            return Ok(found);
+        }
+        // The first view: a person may have put it there.
+        let resting = self.pose_resting(scene, input)?;
+        Ok(resting.filter(FoundPose::is_seen).unwrap_or(found))
+    }
+
+    /// Where a toy is that rests on a receiver, as it does where it is given; none where it does not.
+    fn pose_resting(&self, scene: &Scene, input: &FrameInput) -> Result<Option<FoundPose>, ToyError> {
+        let start = input.world_from_object;
+        let shape = self.shape(scene, &start)?;
+        let mut receivers = self.receivers.iter();
+        let normal =
+            receivers.find_map(|receiver| receiver.normal_under(&shape.points, RESTING * shape.radius_m));
+        Ok(normal.map(|normal| {
+            let found = pose::find_resting(&shape, &self.pyramid, normal, &scene.uncertainty.toy);
+            self.judged(input, (&start, &shape), found)
+        }))
+    }
+
+    /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
+    /// none where too little of it is seen.
+    pub(super) fn tried_pose(
+        &self,
+        scene: &Scene,
+        (start, known): (&DMat4, pose::Start),
+    ) -> Result<Option<(DMat4, f64)>, ToyError> {
+        let camera_from_object = self.camera_from_object(start);
+        let shape = Shape::new(scene, &camera_from_object)?;
+        let found = pose::tried(&shape, &self.pyramid, known);
+        Ok(found.map(|(motion, outline_px)| {
+            let corrected = self.camera_from_world.inverse() * motion * camera_from_object;
+            (corrected, outline_px)
+        }))
+    }
+
+    /// The smallest level with as many pixels, or the largest.
+    pub(super) fn level_of(&self, n_pixels: i32) -> usize {
+        let mut levels = (0..=Pyramid::SMALLEST).rev();
+        let found = levels.find(|level| {
+            let size_px = self.pyramid.level(*level).frame.size_px;
+            size_px.x * size_px.y >= n_pixels
+        });
+        found.unwrap_or(0)
+    }
+
+    /// The toy in a pose.
+    pub(super) fn shape(&self, scene: &Scene, world_from_object: &DMat4) -> Result<Shape, ToyError> {
+        Shape::new(scene, &self.camera_from_object(world_from_object))
+    }
+
+    /// A toy's shape, and what it is seen in.
+    pub(super) fn seen<'a>(&'a self, shape: &'a Shape) -> lights::View<'a> {
+        lights::View {
+            shape,
+            receivers: &self.receivers,
+            pyramid: &self.pyramid,
+        }
+    }
+
+    fn pose_from(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        (start, uncertainty): (&DMat4, &PoseUncertainty),
+    ) -> Result<FoundPose, ToyError> {
+        let shape = self.shape(scene, start)?;
+        let found = pose::find(&shape, &self.pyramid, uncertainty);
+        Ok(self.judged(input, (start, &shape), found))
+    }
+
+    /// A pose that was found from a start, or the start where it is no better.
+    fn judged(
+        &self,
+        input: &FrameInput,
+        (start, shape): (&DMat4, &Shape),
+        found: Option<pose::Found>,
+    ) -> FoundPose {
+        let camera_from_object = self.camera_from_object(start);
+        let Some(found) = found else {
+            return FoundPose {
+                world_from_object: *start,
+                report: None,
+            };
+        };
+        let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
+        let is_better = found.is_better(POSE_GAIN)
+            && found.found.outline_px() <= MOST_OUTLINE_PX
+            && check::similarity(corrected.to_cols_array()).is_ok();
+        let world_from_object = if is_better { corrected } else { *start };
+        let middle = camera_from_object.inverse().transform_point3(shape.centre);
+        let (moved_m, turned_rad) = apart(&input.world_from_object, &corrected, middle);
+        let picture_px = self.pyramid.picture_px();
+        FoundPose {
+            world_from_object,
+            report: Some(PoseAlignment {
+                is_applied: world_from_object != input.world_from_object,
+                is_held: !is_better && *start != input.world_from_object,
+                moved_m,
+                turned_rad,
+                given_outline_px: picture_px * found.given.outline_px(),
+                outline_px: picture_px * found.found.outline_px(),
+                deviation: found.deviation,
+            }),
+        }
+    }
+
+    /// Where the lights are, by the toy in its place; none where too little of their shadows is seen.
+    pub(super) fn lights(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        (given, uncertainty): (&[Light], &LightUncertainty),
+    ) -> Result<Option<FoundLights>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let found = lights::find(
+            (given, uncertainty),
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        );
+        Ok(found.map(|found| {
+            let [before, after] = found.losses;
+            let lights: Arc<[Light]> = found.lights.iter().map(|found| found.light).collect();
+            let is_applied = after < LIGHT_GAIN * before
+                && found.lights.iter().any(FoundLight::is_moved)
+                && lights.iter().all(|light| check::light("lights", light).is_ok());
+            FoundLights {
+                applied: is_applied.then_some(lights),
+                report: found
+                    .lights
+                    .iter()
+                    .map(|found| found.report(is_applied))
+                    .collect(),
+                errors: found.losses,
+            }
+        }))
+    }
+
+    /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.
+    pub(super) fn watch(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<Watched>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(lights::watch(
+            lights,
+            &shape,
+            &self.receivers,
+            &self.pyramid,
+            world_from_camera,
+        ))
+    }
+
+    /// The scene's plates in the light of this photograph; none without one.
+    pub(super) fn relit_plates(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+    ) -> Result<Option<Vec<Plate>>, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let relight = Relight::of(&shape, &self.receivers, &self.pyramid, &self.camera_from_world);
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        Ok(relight.map(|relight| {
+            let plates = scene.plates.iter();
+            let relit = plates.map(|plate| relight.plate(plate, &scene.receivers, toy_in_world));
+            relit.collect()
+        }))
+    }
+
+    /// Lights that nobody lists, by the toy in its place, which is known as well as `pose` says; around those that a probe tells of,
+    /// where there are any.
+    pub(super) fn discover(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        pose: &PoseDeviation,
+        told: &[TrackedLight],
+    ) -> Result<Discovered, ToyError> {
+        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+        let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
+        let middle_in_world = input.world_from_object.transform_point3(middle);
+        let guesses = told.iter();
+        let guesses = guesses.filter_map(|light| Guess::new(light, &self.camera_from_world));
+        let estimated = input.light_estimate.and_then(|light| light.direction_in_world());
+        let hints = Hints {
+            guesses: guesses.collect(),
+            estimated: estimated.map(|direction| self.camera_from_world.transform_vector3(direction)),
+        };
+        let found = lights::discover(
+            &shape,
+            &self.receivers,
+            &self.pyramid,
+            world_from_camera,
+            pose,
+            &hints,
+        );
+        Ok(found.and_then(|mut found| {
+            for found in &mut found {
+                found.seen_from(middle_in_world);
+            }
+            let can_be = |found: &DiscoveredLight| check::light("lights", &found.light).is_ok();
+            if found.iter().all(can_be) {
+                Ok(found)
+            } else {
+                Err(NoLight::NoneDominant)
+            }
+        }))
+    }
+}
+
+/// Between two poses: metres that a point of the object moves, and the angle in radians.
+fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
+    let moved_m = a.transform_point3(point).distance(b.transform_point3(point));
+    let [a, b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
+    (moved_m, (b * a.inverse()).to_scaled_axis().length())
+}
+
+/// Lights of which nothing was known, or why there are none.
+pub(super) type Discovered = Result<Vec<DiscoveredLight>, NoLight>;
+
+/// A pose, as given, as held or corrected.
+pub(super) struct FoundPose {
+    /// From object space.
+    pub(super) world_from_object: DMat4,
+    /// None where too little of the outline is seen.
+    pub(super) report: Option<PoseAlignment>,
+}
+
+impl FoundPose {
+    /// Whether the outline is where the picture has it.
+    pub(super) fn is_seen(&self) -> bool {
+        self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
+    }
+
+    /// Whether it is no farther from where it was given than that is uncertain.
+    fn is_within(&self, uncertainty: &PoseUncertainty) -> bool {
+        let is_within =
+            |away: f64, most: Option<f64>| most.is_none_or(|most| away <= (1.0 + ROUNDING) * most);
+        self.report.is_none_or(|pose| {
+            is_within(pose.moved_m, uncertainty.position_m)
+                && is_within(pose.turned_rad, uncertainty.rotation_rad)
+        })
+    }
+}
+
+/// Lights that were looked for.
+pub(super) struct FoundLights {
+    /// None where those that were given stay.
+    pub(super) applied: Option<Arc<[Light]>>,
+    /// Of each.
+    pub(super) report: Vec<LightAlignment>,
+    /// Mean losses with the given and with the found ones.
+    pub(super) errors: [f64; 2],
+}
+
+impl DiscoveredLight {
+    /// Tells its direction, distance and size as seen from a place.
+    fn seen_from(&mut self, place_in_world: DVec3) {
+        if let Light::Sphere {
+            position_in_world,
+            radius_m,
+        } = self.light
+        {
+            let to = position_in_world - place_in_world;
+            self.direction_in_world = to.normalize_or(self.direction_in_world);
+            self.distance_m = Some(to.length());
+            self.angular_radius_rad = (radius_m / to.length()).min(1.0).asin();
+        }
+    }
+}
+
+impl FoundLight {
+    /// Whether it was found elsewhere by enough to show, and by more than noise.
+    fn is_moved(&self) -> bool {
+        let least_rad = (LEAST_TURN * self.given_spread)
+            .max(LEAST_TURN_RAD)
+            .max(TOLD * self.deviation_rad);
+        let growth = (self.spread - self.given_spread).abs();
+        self.turned_rad > least_rad
+            || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
+            || self.distance_ratio.ln().abs() > LEAST_DISTANCE
+    }
+
+    fn report(&self, is_applied: bool) -> LightAlignment {
+        LightAlignment {
+            is_applied,
+            is_moved: self.is_moved(),
+            turned_rad: self.turned_rad,
+            distance_ratio: self.distance_ratio,
+            size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
+            deviation_rad: self.deviation_rad,
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Pictures in linear light, and ever smaller copies of them.
+
+use glam::{DVec2, IVec2, UVec2};
+
+use super::mask::Mask;
+use super::rectangle::{index_in, places};
+use app_scene::geometry::color::linear_of_codes;
+use app_scene::scene::{Image, Intrinsics};
+
+/// Linear red, green and blue.
+pub(super) type Color = [f32; 3];
+
+/// Marks a pixel of which nothing is known.
+pub(super) const UNKNOWN: Color = [f32::NAN; 3];
+
+/// A picture in linear light, rows from the top.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    /// Width and height in pixels.
+    pub(super) size_px: IVec2,
+    pixels: Vec<Color>,
+}
+
+impl Picture {
+    /// Decodes a picture of a size that was checked; nothing is known of what is withheld.
+    pub(super) fn without(image: &Image, withheld: Option<&Mask>) -> Self {
+        let mut picture = Self::decode(image);
+        if let Some(withheld) = withheld {
+            for (pixel, at) in picture.pixels.iter_mut().zip(places(picture.size_px)) {
+                if withheld.has(at) {
+                    *pixel = UNKNOWN;
+                }
+            }
+        }
+        picture
+    }
+
+    /// Decodes a picture of a size that was checked.
+    pub(super) fn decode(image: &Image) -> Self {
+        let table = linear_of_codes();
+        let texels = image.rgba8.chunks_exact(4);
+        Self {
+            size_px: UVec2::new(image.width_px, image.height_px).as_ivec2(),
+            pixels: texels
+                .map(|texel| [0, 1, 2].map(|channel| table[usize::from(texel[channel])]))
+                .collect(),
+        }
+    }
+
+    /// A picture of given pixels, rows from the top.
+    pub(super) fn of(size_px: IVec2, pixels: Vec<Color>) -> Self {
+        Self { size_px, pixels }
+    }
+
+    /// A pixel; none outside the picture, nor where nothing is known.
+    pub(super) fn get(&self, at: IVec2) -> Option<Color> {
+        let pixel = self.pixels.get(index_in(self.size_px, at)?);
+        pixel.copied().filter(|color| !color[0].is_nan())
+    }
+
+    /// The value at a place in pixels, bilinear between the centres of four; none where one of them is unknown.
+    pub(super) fn sample(&self, at_px: DVec2) -> Option<Color> {
+        let is_inside = at_px.cmpge(DVec2::ZERO).all() && at_px.cmple(self.size_px.as_dvec2()).all();
+        let corner = is_inside.then(|| (at_px - 0.5).floor())?;
+        let [right, down] = (at_px - 0.5 - corner).as_vec2().to_array();
+        let corner = corner.as_ivec2();
+        let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(corner + step));
+        let weights = [
+            (1.0 - right) * (1.0 - down),
+            right * (1.0 - down),
+            (1.0 - right) * down,
+            right * down,
+        ];
+        let mut sum = [0.0; 3];
+        for (color, weight) in four.into_iter().zip(weights) {
+            let color = color?;
+            sum = [0, 1, 2].map(|channel| sum[channel] + weight * color[channel]);
+        }
+        Some(sum)
+    }
+
+    /// Half as large, each pixel the mean of four; an odd last row or column is left out.
+    fn halved(&self) -> Self {
+        let size_px = self.size_px / 2;
+        let mean = |at: IVec2| {
+            let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(2 * at + step));
+            let [Some(a), Some(b), Some(c), Some(d)] = four else {
+                return UNKNOWN;
+            };
+            [0, 1, 2].map(|channel| 0.25 * (a[channel] + b[channel] + c[channel] + d[channel]))
+        };
+        Self {
+            size_px,
+            pixels: places(size_px).map(mean).collect(),
+        }
+    }
+}
+
+/// The photograph and its plate, as large as they were taken or smaller.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    /// Projection, in pixels of this level.
+    pub(super) intrinsics: Intrinsics,
+    /// The photograph.
+    pub(super) frame: Picture,
+    /// The plate from the same view, where there is one.
+    pub(super) plate: Option<Picture>,
+}
+
+/// Photograph and plate, each level half as large as the one before.
+#[derive(Clone, Debug)]
+pub(super) struct Pyramid {
+    levels: Vec<Level>,
+    picture_px: f64,
+}
+
+impl Pyramid {
+    /// The last of the levels.
+    pub(super) const SMALLEST: usize = 3;
+    /// Larger photographs are halved first: what is lost is less than a phone's lens resolves.
+    const MOST_PIXELS: i32 = 4096 * 3072 / 4;
+
+    /// All levels, from the largest.
+    pub(super) fn new(frame: Picture, plate: Option<Picture>, intrinsics: Intrinsics) -> Self {
+        let mut level = Level {
+            intrinsics,
+            frame,
+            plate,
+        };
+        let mut picture_px = 1.0;
+        while level.frame.size_px.x * level.frame.size_px.y > Self::MOST_PIXELS {
+            level = level.halved();
+            picture_px *= 2.0;
+        }
+        let mut levels = vec![level];
+        for above in 0..Self::SMALLEST {
+            levels.push(levels[above].halved());
+        }
+        Self { levels, picture_px }
+    }
+
+    /// Pixels of the photograph in one of the largest level.
+    pub(super) fn picture_px(&self) -> f64 {
+        self.picture_px
+    }
+
+    /// The smallest level that shows shadows well enough to tell lights by.
+    ///
+    /// In 9,000 pixels a toy of a third of the picture's width is some 50 pixels wide.
+    pub(super) fn smallest_for_shadows(&self) -> usize {
+        const PIXELS: i32 = 9000;
+        let is_enough = |level: &Level| level.frame.size_px.x * level.frame.size_px.y >= PIXELS;
+        self.levels.iter().rposition(is_enough).unwrap_or(0)
+    }
+
+    /// A level from 0, the largest, to [`Pyramid::SMALLEST`].
+    pub(super) fn level(&self, level: usize) -> &Level {
+        &self.levels[level]
+    }
+}
+
+impl Level {
+    fn halved(&self) -> Self {
+        Self {
+            intrinsics: self.intrinsics.scaled(0.5),
+            frame: self.frame.halved(),
+            plate: self.plate.as_ref().map(Picture::halved),
+        }
+    }
+}
+
+/// Noise of a photograph, in 8-bit sRGB codes.
+const NOISE_CODES: f32 = 2.0;
+
+/// Standard deviation that a photograph's noise has in linear light.
+///
+/// Source: the derivative of IEC 61966-2-1.
+pub(super) fn noise_deviation(linear: f32) -> f32 {
+    let slope = if linear <= 0.003_130_8 {
+        1.0 / 12.92
+    } else {
+        2.4 / 1.055 * linear.powf(1.4 / 2.4)
+    };
+    NOISE_CODES / 255.0 * slope
+}

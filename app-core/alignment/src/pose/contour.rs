@@ -1,0 +1,75 @@
+//! The toy's outline in the picture.
+
+use glam::{DVec2, IVec2};
+
+use crate::raster::Coverage;
+
+/// Covered at least as much, a pixel is within the outline.
+const INSIDE: f32 = 0.5;
+/// The Sobel gradient of an upright edge is 4, that of a slanted one 4.2; that of a limb thinner than two pixels is less.
+const LEAST_GRADIENT: f64 = 1.5;
+/// Pixels at the border of the picture that have no neighbours to look at.
+const BORDER_PX: i32 = 2;
+
+/// A piece of the outline, about a pixel long.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Element {
+    /// Where it is.
+    pub(super) at_px: DVec2,
+    /// Unit vector out of the toy.
+    pub(super) normal: DVec2,
+    /// Its length.
+    pub(super) length_px: f64,
+    /// Depth of the toy's rim there.
+    pub(super) depth_m: f64,
+}
+
+impl Element {
+    /// The pixel at a distance from it, positive out of the toy.
+    pub(super) fn pixel(&self, distance_px: f64) -> IVec2 {
+        (self.at_px + distance_px * self.normal).floor().as_ivec2()
+    }
+}
+
+/// Pieces of the outline of what is covered, row by row.
+pub(super) fn contour(coverage: &Coverage, size_px: IVec2) -> Vec<Element> {
+    const NEIGHBOURS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+    let pixels = coverage.pixels().filter(|at| {
+        let is_within = at.cmpge(IVec2::splat(BORDER_PX)).all() && at.cmplt(size_px - BORDER_PX).all();
+        let is_covered = |at| coverage.at(at) >= INSIDE;
+        is_within && is_covered(*at) && !NEIGHBOURS.iter().all(|step| is_covered(*at + *step))
+    });
+    pixels.filter_map(|at| element(coverage, at)).collect()
+}
+
+fn element(coverage: &Coverage, at: IVec2) -> Option<Element> {
+    let near = |x, y| f64::from(coverage.at(at + IVec2::new(x, y)));
+    let gradient = DVec2::new(
+        near(1, -1) + 2.0 * near(1, 0) + near(1, 1) - near(-1, -1) - 2.0 * near(-1, 0) - near(-1, 1),
+        near(-1, 1) + 2.0 * near(0, 1) + near(1, 1) - near(-1, -1) - 2.0 * near(0, -1) - near(1, -1),
+    );
+    if gradient.length() < LEAST_GRADIENT {
+        return None;
+    }
+    let normal = -gradient.normalize();
+    let across = normal.abs().max_element();
+    Some(Element {
+        at_px: at.as_dvec2() + 0.5 + normal * ((near(0, 0) - 0.5) * across),
+        normal,
+        length_px: 1.0 / across,
+        depth_m: rim_depth_m(coverage, at)?,
+    })
+}
+
+/// Depth at the pixel's centre, or the least beside it where the rim passes the centre by.
+fn rim_depth_m(coverage: &Coverage, at: IVec2) -> Option<f64> {
+    let own_m = coverage.depth_m(at);
+    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| IVec2::new(x, y)));
+    let nearest_m = match own_m.is_finite() {
+        true => own_m,
+        false => around
+            .map(|step| coverage.depth_m(at + step))
+            .fold(own_m, f32::min),
+    };
+    nearest_m.is_finite().then(|| f64::from(nearest_m))
+}

@@ -1,0 +1,108 @@
+//! The pose of a toy that rests on a receiver, from farther off: a ghost that was dropped by hand is centimetres and tens of degrees away,
+//! but upright and on its plane.
+//!
+//! With six freedoms the coarse rounds tilt such a toy until some outline fits. So these rounds hold it to the plane, one turn about the
+//! normal and two shifts, from several turns, and from several places where it may be far away; only what fits best is then freed.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3, IVec2};
+
+use super::motion::{Held, Motion};
+use super::{Found, Search};
+use crate::picture::Pyramid;
+use crate::shape::Shape;
+use app_scene::scene::PoseUncertainty;
+
+/// Between turns about the normal that are started from, and the farthest of them where nobody says how far it may be turned.
+const TURN_RAD: f64 = PI / 12.0;
+const MOST_TURN_RAD: f64 = PI / 4.0;
+/// Between places that are started from, over the toy's radius; none but that given where nobody says how far away it may be.
+const SHIFT: f64 = 0.4;
+/// At most so many places either way.
+const MOST_SHIFTS: i32 = 4;
+/// Starts that are followed through all rounds: the best after the first rounds of those that there are.
+const N_FOLLOWED: usize = 7;
+const N_FIRST_ROUNDS: usize = 4;
+/// Coarse rounds are gone through as often: each time they reach as far again.
+const N_ROUNDS: usize = 2;
+/// Of the starts, those that are freed.
+const N_FREED: usize = 2;
+
+/// Finds the pose, starting from that of `shape`, which rests on a plane of that normal; none where too little of the outline is seen.
+pub(crate) fn find_resting(
+    shape: &Shape,
+    pyramid: &Pyramid,
+    normal: DVec3,
+    uncertainty: &PoseUncertainty,
+) -> Option<Found> {
+    let mut search = Search::new(shape, pyramid, uncertainty);
+    let start = Motion::none(shape.centre, shape.radius_m);
+    let given = search.fit(&start)?;
+    let held = Held::to_plane(normal);
+    let mut starts: Vec<(f64, Motion)> = Vec::new();
+    for mut motion in search.followed(&start, &held) {
+        for _ in 0..N_ROUNDS {
+            motion = search.coarse(motion, Some(&held));
+        }
+        if let Some(fit) = search.fit(&motion) {
+            starts.push((fit.wide_loss_px2, motion));
+        }
+    }
+    starts.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let freed = starts.iter().take(N_FREED);
+    let freed = freed.filter_map(|(_, motion)| search.freed(given, *motion));
+    let outline_px = |found: &Found| found.found.outline_px();
+    freed.min_by(|a, b| outline_px(a).total_cmp(&outline_px(b)))
+}
+
+impl Search<'_> {
+    /// Starts that are worth to be followed: all, where they are few.
+    fn followed(&mut self, start: &Motion, held: &Held) -> Vec<Motion> {
+        let radius_m = self.shape.radius_m;
+        let turns: Vec<f64> = turns(self.uncertainty.rotation_rad.unwrap_or(MOST_TURN_RAD)).collect();
+        let shifts = shifts(self.uncertainty.position_m.unwrap_or(0.0), SHIFT * radius_m);
+        let starts = shifts.flat_map(|shift| {
+            let shifted = start.then(&held.shift(shift));
+            let turned = turns.iter().map(move |turn| held.turn(*turn, radius_m));
+            turned.map(move |turn| shifted.then(&turn))
+        });
+        let starts: Vec<Motion> = starts.collect();
+        if starts.len() <= N_FOLLOWED {
+            return starts;
+        }
+        let mut ranked: Vec<(f64, Motion)> = Vec::new();
+        for start in starts {
+            let motion = self.by_lines(start, Some(held), &Self::COARSE[..N_FIRST_ROUNDS]);
+            if let Some(fit) = self.fit(&motion) {
+                ranked.push((fit.wide_loss_px2, motion));
+            }
+        }
+        ranked.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let best = ranked.into_iter().take(N_FOLLOWED);
+        best.map(|(_, motion)| motion).collect()
+    }
+}
+
+/// None, and more to either side; each once, up to half a turn.
+fn turns(most_rad: f64) -> impl Iterator<Item = f64> {
+    #[allow(clippy::cast_possible_truncation, reason = "a dozen at most")]
+    let n = (most_rad.min(PI) / TURN_RAD).round() as i32;
+    let turns = (1..=n).flat_map(|step| [f64::from(step), -f64::from(step)]);
+    let is_all_round = f64::from(n) * TURN_RAD > PI - 0.5 * TURN_RAD;
+    let n_turns = if is_all_round { 2 * n - 1 } else { 2 * n };
+    #[allow(clippy::cast_sign_loss, reason = "no fewer than none")]
+    let turns = turns.take(n_turns.max(0) as usize);
+    std::iter::once(0.0).chain(turns).map(|step| step * TURN_RAD)
+}
+
+/// On a disc of a radius, in metres, the middle first.
+fn shifts(most_m: f64, apart_m: f64) -> impl Iterator<Item = DVec2> {
+    #[allow(clippy::cast_possible_truncation, reason = "bounded")]
+    let n = (most_m / apart_m).min(f64::from(MOST_SHIFTS)) as i32;
+    let all = (-n..=n).flat_map(move |y| (-n..=n).map(move |x| IVec2::new(x, y)));
+    let around = all.filter(move |at| *at != IVec2::ZERO && at.length_squared() <= n * n);
+    std::iter::once(IVec2::ZERO)
+        .chain(around)
+        .map(move |at| apart_m * at.as_dvec2())
+}

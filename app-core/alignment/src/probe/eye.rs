@@ -1,0 +1,42 @@
+//! Lines of sight.
+
+use glam::{DMat4, DVec2, DVec3};
+
+use app_scene::scene::{Camera, Intrinsics};
+
+/// A camera in a probe's space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    intrinsics: Intrinsics,
+    probe_from_camera: DMat4,
+    camera_from_probe: DMat4,
+}
+
+impl Eye {
+    pub(super) fn new(camera: &Camera, world_from_probe: &DMat4) -> Self {
+        let probe_from_camera = world_from_probe.inverse() * camera.world_from_camera;
+        Self {
+            intrinsics: camera.intrinsics,
+            probe_from_camera,
+            camera_from_probe: probe_from_camera.inverse(),
+        }
+    }
+
+    /// Where the camera's centre is.
+    pub(super) fn place(&self) -> DVec3 {
+        self.probe_from_camera.w_axis.truncate()
+    }
+
+    /// Unit vector along the line of sight through a pixel.
+    pub(super) fn sight(&self, at_px: DVec2) -> DVec3 {
+        let k = &self.intrinsics;
+        let in_camera = DVec3::new((at_px.x - k.cx_px) / k.fx_px, (k.cy_px - at_px.y) / k.fy_px, -1.0);
+        self.probe_from_camera.transform_vector3(in_camera).normalize()
+    }
+
+    /// Where a point is seen, in pixels; none behind the camera.
+    pub(super) fn pixel(&self, point: DVec3) -> Option<DVec2> {
+        self.intrinsics
+            .pixel_of(self.camera_from_probe.transform_point3(point))
+    }
+}

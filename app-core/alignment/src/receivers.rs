@@ -1,0 +1,122 @@
+//! Receivers as the camera sees them, and the plate as it would have taken it.
+
+use glam::{DMat4, DVec2, DVec3, IVec2};
+
+use super::picture::{Picture, UNKNOWN};
+use super::rectangle::places;
+use app_scene::geometry::nearest_receivers::nearest_receivers;
+use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
+
+/// Cameras whose matrices differ by less are one.
+pub(super) const SAME_CAMERA: f64 = 1e-9;
+
+/// A receiver, seen from the camera.
+#[derive(Clone, Debug)]
+pub(super) struct SeenReceiver {
+    /// Rigid.
+    pub(super) plane_from_camera: DMat4,
+    half_extent_m: DVec2,
+}
+
+impl SeenReceiver {
+    /// The receivers nearest to the toy, no more than shadows are moved on.
+    pub(super) fn near(receivers: &[Receiver], toy_in_world: DVec3, camera_from_world: &DMat4) -> Vec<Self> {
+        let nearest = nearest_receivers(receivers, &[toy_in_world]);
+        let seen = nearest.into_iter().take(MAX_RECEIVERS);
+        seen.map(|index| Self::new(&receivers[index], camera_from_world))
+            .collect()
+    }
+
+    /// One of them.
+    pub(super) fn new(receiver: &Receiver, camera_from_world: &DMat4) -> Self {
+        Self {
+            plane_from_camera: (*camera_from_world * receiver.world_from_plane).inverse(),
+            half_extent_m: receiver.half_extent_m,
+        }
+    }
+
+    /// Its normal in camera space, where the lowest of points is within a distance of its plane; rounded to 32 bits, as poses are.
+    pub(super) fn normal_under(&self, points: &[DVec3], most_m: f64) -> Option<DVec3> {
+        let heights_m = points
+            .iter()
+            .map(|point| self.plane_from_camera.transform_point3(*point).y);
+        let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
+        let normal = self.plane_from_camera.inverse().y_axis.truncate().as_vec3();
+        (lowest_m.abs() <= most_m).then(|| normal.as_dvec3().normalize())
+    }
+
+    /// Depth in metres at which a ray of depth 1 from the camera meets its front; none where it does not.
+    fn depth_m(&self, ray: DVec3) -> Option<f64> {
+        let eye = self.plane_from_camera.w_axis.truncate();
+        let along = self.plane_from_camera.transform_vector3(ray);
+        // Towards the plane from its front, so that the division is of a positive by a positive number.
+        if eye.y <= 0.0 || along.y >= 0.0 {
+            return None;
+        }
+        let depth_m = eye.y / -along.y;
+        let at = eye + depth_m * along;
+        let is_on = at.x.abs() <= self.half_extent_m.x && at.z.abs() <= self.half_extent_m.y;
+        is_on.then_some(depth_m)
+    }
+}
+
+/// Normal of the first receiver, in camera space.
+pub(super) fn up(receivers: &[SeenReceiver]) -> DVec3 {
+    receivers.first().map_or(DVec3::Y, |receiver| {
+        receiver.plane_from_camera.inverse().y_axis.truncate()
+    })
+}
+
+/// The nearest receiver that a pixel shows: its index, and the point in camera space.
+pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2) -> Option<(usize, DVec3)> {
+    let centre = at.as_dvec2() + 0.5;
+    let ray = DVec3::new(
+        (centre.x - k.cx_px) / k.fx_px,
+        -(centre.y - k.cy_px) / k.fy_px,
+        -1.0,
+    );
+    let hits = receivers.iter().enumerate();
+    let hits = hits.filter_map(|(index, receiver)| Some((index, receiver.depth_m(ray)?)));
+    let nearest = hits.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    nearest.map(|(index, depth_m)| (index, depth_m * ray))
+}
+
+/// Plates, from the one taken nearest to a camera: metres away, and less the more it looks the same way.
+pub(super) fn nearest<'a>(plates: &'a [Plate], camera: &Camera) -> Vec<&'a Plate> {
+    let distance = |plate: &Plate| {
+        let (there, here) = (&plate.camera.world_from_camera, &camera.world_from_camera);
+        let turn = there.z_axis.dot(here.z_axis);
+        (there.w_axis - here.w_axis).length() - turn
+    };
+    let mut plates: Vec<&Plate> = plates.iter().collect();
+    plates.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    plates
+}
+
+/// The plate taken nearest to the camera, carried over by the receivers' planes where it is from elsewhere; none where there is
+/// no plate.
+pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &Camera) -> Option<Picture> {
+    let plate = nearest(plates, camera).into_iter().next()?;
+    let picture = Picture::decode(&plate.image);
+    let is_same = plate.camera.intrinsics == camera.intrinsics
+        && plate
+            .camera
+            .world_from_camera
+            .abs_diff_eq(camera.world_from_camera, SAME_CAMERA);
+    Some(if is_same {
+        picture
+    } else {
+        carried(&picture, &plate.camera, receivers, camera)
+    })
+}
+
+fn carried(picture: &Picture, from: &Camera, receivers: &[SeenReceiver], to: &Camera) -> Picture {
+    let plate_camera_from_camera = from.world_from_camera.inverse() * to.world_from_camera;
+    let color = |at: IVec2| {
+        let (_, point) = receiver_at(receivers, &to.intrinsics, at)?;
+        let point = plate_camera_from_camera.transform_point3(point);
+        picture.sample(from.intrinsics.pixel_of(point)?)
+    };
+    let pixels = places(picture.size_px).map(|at| color(at).unwrap_or(UNKNOWN));
+    Picture::of(picture.size_px, pixels.collect())
+}

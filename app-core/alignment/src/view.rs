@@ -1,0 +1,58 @@
+//! A view: one picture with its camera, and where the toy is in it.
+
+use glam::DMat4;
+
+use super::photograph::Photograph;
+use super::report::{CameraAlignment, PoseAlignment};
+use app_scene::camera_frame::CameraImage;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Camera, Scene};
+
+/// A view with its photograph.
+pub(super) struct Seen {
+    pub(super) view: AlignedView,
+    pub(super) photograph: Photograph,
+    /// The frame's, with the camera and the pose that were found.
+    pub(super) input: FrameInput,
+}
+
+/// Camera and pose in the latest view.
+#[derive(Clone, Debug)]
+pub(super) struct AlignedView {
+    pub(super) image: CameraImage,
+    pub(super) given_camera: Camera,
+    pub(super) given: DMat4,
+    pub(super) camera: Camera,
+    pub(super) camera_report: Option<CameraAlignment>,
+    pub(super) world_from_object: DMat4,
+    pub(super) report: Option<PoseAlignment>,
+}
+
+impl Seen {
+    /// A view that is known.
+    pub(super) fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
+        let input = FrameInput {
+            camera: view.camera,
+            world_from_object: view.world_from_object,
+            ..input.clone()
+        };
+        Self {
+            photograph: Photograph::new(scene, &input, None),
+            view,
+            input,
+        }
+    }
+}
+
+impl AlignedView {
+    pub(super) fn is_of(&self, input: &FrameInput) -> bool {
+        self.image.is(&input.image)
+            && self.given_camera == input.camera
+            && self.given == input.world_from_object
+    }
+
+    /// Whether the outline is where the picture has it, within some pixels.
+    pub(super) fn is_trusted(&self, most_px: f64) -> bool {
+        self.report.is_some_and(|pose| pose.shown_px() <= most_px)
+    }
+}

@@ -1,0 +1,53 @@
+//! What could not be aligned, in words.
+
+use std::fmt;
+
+use crate::no_light::NoLight;
+
+/// A part of the frame that stays as it is given, for a reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum AlignmentWarning {
+    /// The toy's outline is not where the picture has it, and no pose was found that brings it there.
+    Misaligned {
+        /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
+        outline_px: f64,
+    },
+    /// No light was found by the toy's shadow.
+    LightNotFound {
+        /// Why.
+        reason: NoLight,
+    },
+    /// The shadows are no longer where the lights cast them, and no lights were found that do.
+    LightsChanged {
+        /// The part of the shadows that no light explains, from 0 to 1.
+        unexplained: f64,
+    },
+    /// The focal length was asked for, and toy and shadows do not determine it.
+    FocalLengthNotTold,
+    /// The scale of the world was asked for, and toy and shadows do not determine it.
+    WorldScaleNotTold,
+}
+
+impl fmt::Display for AlignmentWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
+            Self::LightsChanged { unexplained } => write!(
+                f,
+                "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",
+                100.0 * unexplained
+            ),
+            Self::Misaligned { outline_px } => write!(
+                f,
+                "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+            ),
+            Self::FocalLengthNotTold => f.write_str(
+                "the focal length was asked for, but toy and shadow do not tell it: that given is taken",
+            ),
+            Self::WorldScaleNotTold => f.write_str(
+                "the scale of the world was asked for, but toy and shadow do not tell it: that given is taken",
+            ),
+        }
+    }
+}

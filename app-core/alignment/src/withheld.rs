@@ -1,0 +1,49 @@
+//! Shadows that are not to be read, since they are what is to be predicted: pixels of which alignment is to know nothing.
+
+use glam::{DVec2, UVec2};
+
+use super::lights::flat_shadows;
+use super::mask::Mask;
+use super::raster::{Rasterizer, project};
+use super::receivers::SeenReceiver;
+use super::shape::Shape;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Light, Scene};
+use app_scene::toy::ToyError;
+
+/// Points around the rim of a light whose shadows are put together.
+const N_RIM: u8 = 16;
+
+/// All shadows of the toy where `input` has it, grown to all sides by a part of the picture's width: other places of toy and camera
+/// are covered as far as that reaches.
+pub(super) fn shadows(
+    scene: &Scene,
+    input: &FrameInput,
+    lights: &[Light],
+    grown: f64,
+) -> Result<Mask, ToyError> {
+    let camera_from_world = input.camera.world_from_camera.inverse();
+    let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
+    let toy_in_world = input.world_from_object.w_axis.truncate();
+    let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+    let size_px = UVec2::new(scene.width_px, scene.height_px).as_ivec2();
+    let turn = std::f64::consts::TAU / f64::from(N_RIM);
+    let mut points: Vec<DVec2> = (0..N_RIM)
+        .map(|index| DVec2::from_angle(turn * f64::from(index)))
+        .collect();
+    points.push(DVec2::ZERO);
+    let mut mask = Mask::new(size_px);
+    let mut raster = Rasterizer::default();
+    for light in lights {
+        for flat in flat_shadows(light, &shape, &receivers, &camera_from_world, &points) {
+            let corners = project(flat, &input.camera.intrinsics);
+            let coverage = raster.coverage(&corners, &shape.faces, size_px);
+            for at in coverage.pixels().filter(|at| coverage.at(*at) > 0.0) {
+                mask.mark(at);
+            }
+        }
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "a part of a picture's width")]
+    let reach_px = (grown * f64::from(size_px.x)).ceil() as i32;
+    Ok(mask.grown(reach_px))
+}

@@ -1,0 +1,199 @@
+//! What happens with a camera frame.
+
+use std::sync::Arc;
+
+use super::App;
+use super::aligning::{AlignedJob, Place, Verdict};
+use super::event::{ShellCommand, Thermal};
+use super::notice::Notice;
+use super::step::{Cause, Step};
+use super::table::as_told_now;
+use app_alignment::plate_taker::{PlateShot, PlateStep};
+use app_scene::camera_frame::{Arrival, CameraFrame};
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Pose, Receiver, Scene, Surface, Uncertainty};
+
+impl App {
+    pub(super) fn frame(&mut self, frame: CameraFrame, commands: &mut Vec<ShellCommand>) {
+        if !self.commanded.is_tracking() {
+            // One that was under way when the camera was paused.
+            return;
+        }
+        let arrival = self.arrivals.arrive(frame.stamp);
+        if !arrival.is_taken() {
+            return;
+        }
+        let elapsed_s = match arrival {
+            Arrival::Next { elapsed_s } => elapsed_s,
+            _ => 0.0,
+        };
+        self.time_s += elapsed_s;
+        if self.is_of_another_place(&frame, arrival) {
+            self.go(Cause::WorldLost);
+            self.tell(Notice::WorldLost);
+        }
+        self.platform.tracking = frame.tracking;
+        let camera = frame.camera();
+        if camera.is_some() {
+            self.camera = camera;
+        }
+        let frame = Arc::new(frame);
+        self.latest = Some(Arc::clone(&frame));
+        self.follow_table(&frame);
+        self.place_check(&frame);
+        if let Some(place) = &mut self.place {
+            place.follow_anchor(&frame.anchors, elapsed_s);
+        }
+        match self.step {
+            Step::PlaceToy => self.offer_lens(&frame),
+            Step::TakePlate => self.offer_plate(&frame, elapsed_s),
+            Step::Align | Step::Play => self.align(camera.is_some(), commands),
+            _ => {}
+        }
+        self.playback
+            .advance(if self.step == Step::Play { elapsed_s } else { 0.0 });
+        let is_known = self.step == Step::Play
+            && camera.is_some()
+            && self.platform.thermal < Thermal::Critical
+            && self.place.as_ref().is_some_and(Place::is_known);
+        self.fade.step(elapsed_s, is_known);
+        self.record(&frame);
+    }
+
+    /// Whether poses or pixels of before mean nothing in a frame.
+    fn is_of_another_place(&self, frame: &CameraFrame, arrival: Arrival) -> bool {
+        let is_new_world = arrival == Arrival::NewWorld;
+        let is_other_size = self
+            .plates
+            .iter()
+            .any(|plate| frame.image.size_px() != [plate.image.width_px, plate.image.height_px]);
+        let is_other_place = self
+            .place
+            .as_ref()
+            .is_some_and(|place| frame.image.size_px() != [place.scene.width_px, place.scene.height_px]);
+        self.table.is_some() && (is_new_world || is_other_size || is_other_place)
+    }
+
+    /// The table as the tracker has corrected it, as long as nothing was placed on it.
+    fn follow_table(&mut self, frame: &CameraFrame) {
+        let Some(table) = &mut self.table else { return };
+        let same = as_told_now(table, frame);
+        if let Some(plane) = same.filter(|_| self.place.is_none() && self.plates.is_empty()) {
+            if let Some(ghost) = &mut self.ghost {
+                ghost.follow(&plane);
+            }
+            *table = plane;
+        }
+    }
+
+    fn offer_plate(&mut self, frame: &CameraFrame, elapsed_s: f64) {
+        let step = self.plate_taker.offer(&PlateShot {
+            image: frame.image.clone(),
+            camera: frame.camera(),
+            elapsed_s,
+        });
+        if let PlateStep::Taken { plate, .. } = &step {
+            self.plates.push(plate.clone());
+            self.plate_exposure = frame.exposure.and_then(|exposure| exposure.amount());
+            self.go(Cause::PlateTaken);
+        }
+        self.plate_step = Some(step);
+    }
+
+    /// Makes a scene of the table, the plates and the ghost.
+    pub(super) fn place_toy(&mut self) {
+        let (Some(table), Some(ghost), Some(latest)) = (&self.table, &self.ghost, &self.latest) else {
+            return;
+        };
+        let [width_px, height_px] = latest.image.size_px();
+        let scene = Scene {
+            name: String::new(),
+            width_px,
+            height_px,
+            toy: Arc::clone(&self.toy),
+            world_from_object: ghost.world_from_object(),
+            physical_pose: Pose::Authored,
+            receivers: vec![Receiver {
+                name: "table".to_owned(),
+                world_from_plane: table.world_from_plane,
+                half_extent_m: table.half_extent_m,
+                surface: Surface::Textured,
+            }],
+            lights: Vec::new(),
+            plates: self.plates.clone(),
+            probe: self.lens.probe(),
+            uncertainty: Uncertainty::default(),
+        };
+        self.n_places += 1;
+        self.wants_anchor = true;
+        self.place = Some(Place::new(self.n_places, self.n_places << 32, scene));
+    }
+
+    fn align(&mut self, is_trusted: bool, commands: &mut Vec<ShellCommand>) {
+        if !is_trusted {
+            return;
+        }
+        let input = self.input(1.0);
+        if let (Some(place), Some(input)) = (&mut self.place, input) {
+            let job = place.job(self.time_s, input);
+            if std::mem::take(&mut self.wants_anchor) {
+                let (id, world_from_anchor) = place.anchor();
+                commands.push(ShellCommand::HoldAnchor {
+                    id,
+                    world_from_anchor,
+                });
+            }
+            commands.extend(job.map(|job| ShellCommand::Align(Box::new(job))));
+        }
+    }
+
+    /// The latest frame with the moment that is shown, as the tracker gives it.
+    pub(super) fn input(&self, effect: f64) -> Option<FrameInput> {
+        let (latest, place) = (self.latest.as_ref()?, self.place.as_ref()?);
+        let amount = latest.exposure.and_then(|exposure| exposure.amount());
+        let exposure = match (amount, self.plate_exposure) {
+            (Some(amount), Some(plate)) => amount / plate,
+            _ => 1.0,
+        };
+        Some(FrameInput {
+            image: latest.image.clone(),
+            camera: latest.camera().or(self.camera)?,
+            exposure,
+            world_from_object: place.scene.world_from_object,
+            lights: None,
+            light_estimate: latest.light_estimate,
+            shown_pose: self.playback.pose(),
+            effect,
+        })
+    }
+
+    pub(super) fn aligned(&mut self, done: Option<Box<AlignedJob>>) {
+        let Some(place) = &mut self.place else { return };
+        let Some(done) = done else {
+            return place.begin_anew();
+        };
+        if place.take(*done) {
+            let verdict = place.verdict.clone();
+            if let (Some(recorder), Some(Verdict::Found { .. })) = (&self.recorder, &verdict) {
+                place.tell(recorder);
+            }
+            self.note(&verdict);
+            self.judge(verdict);
+        }
+    }
+
+    fn judge(&mut self, verdict: Option<Verdict>) {
+        if self.step != Step::Align {
+            return;
+        }
+        let outline_px = match verdict {
+            Some(Verdict::Found {
+                outline_px: Some(_), ..
+            }) => return self.go(Cause::ToyFound),
+            Some(Verdict::Missed { outline_px }) => Some(outline_px),
+            Some(Verdict::Found { outline_px: None, .. } | Verdict::Failed(_)) | None => None,
+        };
+        self.go(Cause::ToyMissed);
+        self.tell(Notice::ToyMissed { outline_px });
+    }
+}

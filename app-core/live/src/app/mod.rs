@@ -1,0 +1,326 @@
+//! The logic of an app: what both phones' shells and the desktop have in common, from the first button to the toy that moves.
+//!
+//! A shell tells what happens ([`ShellEvent`]) and does what it is asked for ([`ShellCommand`]); it decides nothing. Here is no
+//! clock, no file, no device and no thread: time comes with the frames, and an alignment, which takes a second, is a job that the
+//! shell runs where it likes. So every order of events can be tested on a desktop.
+
+mod aligning;
+mod event;
+mod frames;
+mod ghost;
+mod ghost_shape;
+mod lens;
+mod log;
+mod notice;
+mod panics;
+mod phone_check;
+mod platform;
+mod playback;
+mod recorder;
+mod recordings;
+mod show;
+mod start;
+mod starts;
+mod step;
+mod table;
+mod toys;
+mod wishes;
+
+use std::sync::Arc;
+
+use app_scene::camera_frame::{Arrivals, CameraFrame, Fade, FoundPlane};
+use app_scene::scene::{Camera, Plate};
+use app_scene::toy::Toy;
+
+use aligning::Place;
+use ghost::Ghost;
+use ghost_shape::GhostShape;
+use lens::Lens;
+use phone_check::PhoneCheck;
+use platform::{Asked, Captures, Commanded, Platform};
+use recorder::Recorder;
+use start::Start;
+
+pub use aligning::{AlignJob, AlignedJob, Verdict};
+pub use app_alignment::plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
+pub use app_alignment::pose_filter::{PoseFilter, PoseNoise, PoseStep};
+pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
+pub use log::Log;
+pub use notice::{LensFailure, Notice};
+pub use panics::Panics;
+pub use phone_check::{CheckInk, PhoneQuestion};
+pub use platform::Obstacle;
+pub use playback::Playback;
+pub use show::Show;
+pub use starts::{N_GOOD_FRAMES, N_UNFINISHED, Simplified, Starts};
+pub use step::{Cause, Step};
+
+use notice::Notices;
+
+/// The app.
+#[derive(Debug)]
+pub struct App {
+    step: Step,
+    platform: Platform,
+    commanded: Commanded,
+    captures: Captures,
+    recorder: Option<Recorder>,
+    n_recordings: u64,
+    /// The person began before the camera was allowed.
+    wants_to_begin: bool,
+    /// The tracker is to begin another world.
+    wants_new_world: bool,
+    /// The platform is to hold the toy's place.
+    wants_anchor: bool,
+    shows_profile: bool,
+    /// While a new phone is looked at.
+    phone_check: Option<PhoneCheck>,
+    arrivals: Arrivals,
+    /// Seconds between frames that were taken, all in all.
+    time_s: f64,
+    fade: Fade,
+    latest: Option<Arc<CameraFrame>>,
+    /// The latest that could be trusted.
+    camera: Option<Camera>,
+    toy: Arc<Toy>,
+    /// While a person chooses another one.
+    toy_files: Option<Vec<String>>,
+    table: Option<FoundPlane>,
+    plate_taker: PlateTaker,
+    plate_step: Option<PlateStep>,
+    plates: Vec<Plate>,
+    /// That of the plates, where the platform tells; frames are told relative to it.
+    plate_exposure: Option<f64>,
+    ghost: Option<Ghost>,
+    ghost_shape: GhostShape,
+    lens: Lens,
+    place: Option<Place>,
+    n_places: u64,
+    playback: Playback,
+    notices: Notices,
+    log: Log,
+    /// None where the shell keeps nothing from start to start.
+    start: Option<Start>,
+}
+
+impl App {
+    /// An app with a toy to begin with.
+    #[must_use]
+    pub fn new(toy: Arc<Toy>) -> Self {
+        Self {
+            step: Step::default(),
+            platform: Platform::default(),
+            commanded: Commanded::default(),
+            captures: Captures::default(),
+            recorder: None,
+            n_recordings: 0,
+            wants_to_begin: false,
+            wants_new_world: false,
+            wants_anchor: false,
+            shows_profile: false,
+            phone_check: None,
+            arrivals: Arrivals::default(),
+            time_s: 0.0,
+            fade: Fade::default(),
+            latest: None,
+            camera: None,
+            playback: Playback::of(&toy),
+            ghost_shape: GhostShape::of(&toy),
+            toy,
+            toy_files: None,
+            table: None,
+            plate_taker: PlateTaker::default(),
+            plate_step: None,
+            plates: Vec::new(),
+            plate_exposure: None,
+            ghost: None,
+            lens: Lens::default(),
+            place: None,
+            n_places: 0,
+            notices: Notices::default(),
+            log: Log::default(),
+            start: None,
+        }
+    }
+
+    /// Takes what happened, and returns what is to be done about it, in this order.
+    #[must_use]
+    pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
+        let step = self.step;
+        let mut commands = Vec::new();
+        match event {
+            ShellEvent::Permission(permission) => self.permission(permission),
+            ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground, &mut commands),
+            ShellEvent::Surface(size_px) => self.platform.surface_px = size_px,
+            ShellEvent::Device(device) => self.device(device, &mut commands),
+            ShellEvent::ArSession(ar_session) => self.ar_session(ar_session),
+            ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
+            ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
+            ShellEvent::MemoryLow => self.memory_low(),
+            ShellEvent::Aligned(done) => self.aligned(done),
+            ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
+            ShellEvent::Toy(read) => self.take_toy(read),
+            ShellEvent::Saved(saved) => self.saved(saved),
+            ShellEvent::Recorded(recorded) => self.recorded(recorded),
+            ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
+            ShellEvent::Started(starts) => self.started(starts),
+            ShellEvent::SelfTested { device, outcome } => self.self_tested(&device, outcome, &mut commands),
+            ShellEvent::Restarted => self.tell(Notice::Restarted),
+            ShellEvent::Drawn => self.drawn(&mut commands),
+            ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
+        }
+        let asked = Asked {
+            lens: self.lens.is_awaited(),
+            held_exposure: self.phone_check.is_some_and(|check| check.holds_exposure()),
+        };
+        let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
+        self.captures = wanted.captures;
+        let take = self.follow_recording(wanted.captures.recording);
+        let is_new_world = std::mem::take(&mut self.wants_new_world);
+        commands.extend(self.commanded.follow(wanted, is_new_world, take));
+        if self.step != step {
+            commands.push(ShellCommand::Announce(self.step));
+        }
+        commands
+    }
+
+    /// What a person is about to do.
+    #[must_use]
+    pub fn step(&self) -> Step {
+        self.step
+    }
+
+    /// What is in the way of that.
+    #[must_use]
+    pub fn obstacle(&self) -> Option<Obstacle> {
+        self.platform.obstacle(self.step)
+    }
+
+    /// What a person should hear of, for some seconds.
+    #[must_use]
+    pub fn notice(&self) -> Option<&Notice> {
+        self.notices.at(self.time_s)
+    }
+
+    /// How far the photograph of the empty place is, in its step.
+    #[must_use]
+    pub fn plate_step(&self) -> Option<&PlateStep> {
+        self.plate_step.as_ref()
+    }
+
+    /// What the latest alignment says.
+    #[must_use]
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.place.as_ref()?.verdict.as_ref()
+    }
+
+    /// Whether the card is in the latest picture.
+    #[must_use]
+    pub fn sees_card(&self) -> bool {
+        self.latest
+            .as_ref()
+            .is_some_and(|frame| frame.world_from_card.is_some())
+    }
+
+    /// Whether a dark picture of the lens is waited for.
+    #[must_use]
+    pub fn is_taking_lens(&self) -> bool {
+        self.lens.is_awaited()
+    }
+
+    /// Whether there is a photograph of the empty place.
+    #[must_use]
+    pub fn has_plate(&self) -> bool {
+        !self.plates.is_empty()
+    }
+
+    /// The moment that is shown.
+    #[must_use]
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    /// The toy.
+    #[must_use]
+    pub fn toy(&self) -> &Arc<Toy> {
+        &self.toy
+    }
+
+    /// Whether a video is being made.
+    #[must_use]
+    pub fn is_making_video(&self) -> bool {
+        self.commanded.captures.video
+    }
+
+    /// Whether the session is being recorded.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        self.commanded.captures.recording
+    }
+
+    /// Whether times are shown over the picture.
+    #[must_use]
+    pub fn shows_profile(&self) -> bool {
+        self.shows_profile
+    }
+
+    /// How hot the device is.
+    #[must_use]
+    pub fn thermal(&self) -> Thermal {
+        self.platform.thermal
+    }
+
+    /// What happened, for an export.
+    #[must_use]
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Goes where a cause leads, and makes ready for it.
+    fn go(&mut self, cause: Cause) {
+        let next = self.step.after(cause);
+        self.note(&(cause, next));
+        if next == self.step && cause != Cause::StartOver && cause != Cause::WorldLost {
+            return;
+        }
+        self.step = next;
+        self.lens.give_up();
+        self.toy_files = None;
+        // What was said of the step before helps no longer.
+        self.notices = Notices::default();
+        match next {
+            Step::Welcome | Step::FindTable => {
+                self.forget_place();
+                if next == Step::Welcome {
+                    self.check_phone(false);
+                }
+            }
+            Step::TakePlate => {
+                self.place = None;
+                self.plate_taker = PlateTaker::default();
+                self.plate_step = None;
+            }
+            Step::PlaceToy => self.place = None,
+            Step::Align => self.place_toy(),
+            Step::Play => {}
+        }
+        if next != Step::Play {
+            self.fade = Fade::default();
+        }
+    }
+
+    /// All that is of one place is dropped.
+    fn forget_place(&mut self) {
+        self.table = None;
+        self.plates.clear();
+        self.plate_exposure = None;
+        self.ghost = None;
+        self.lens = Lens::default();
+        if let Some(check) = &mut self.phone_check {
+            check.forget_place();
+        }
+        self.place = None;
+        self.camera = None;
+        self.plate_step = None;
+    }
+}

@@ -1,0 +1,187 @@
+//! What the platform grants, and what it is asked for.
+
+use super::event::{ArSession, Device, Permission, ShellCommand, Thermal};
+use super::step::Step;
+use app_scene::camera_frame::Tracking;
+use app_session::recording::Take;
+
+/// What the platform grants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Platform {
+    pub(super) permission: Permission,
+    pub(super) is_foreground: bool,
+    pub(super) surface_px: Option<[u32; 2]>,
+    pub device: Device,
+    pub(super) ar_session: ArSession,
+    pub(super) thermal: Thermal,
+    /// Of the latest frame.
+    pub(super) tracking: Tracking,
+    /// Where recordings go, as far as it was told.
+    pub(super) free_bytes: Option<u64>,
+}
+
+/// Why the app cannot go on for now. Each has its words, and its way back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Obstacle {
+    /// No AR on this device: there is no way back.
+    NoAr,
+    /// No graphics that suffice: there is no way back.
+    NoGraphics,
+    /// The camera is not allowed; it can be asked for again.
+    CameraDenied,
+    /// The camera is not allowed; only the system's settings help.
+    CameraBarred,
+    /// The device is too hot: it goes on by itself when it has cooled.
+    TooHot,
+    /// Something else has the camera: it goes on by itself.
+    Interrupted,
+    /// The AR session ended: the person starts over.
+    ArFailed,
+    /// Graphics are set up, for the first time or again: it goes on by itself.
+    Preparing,
+    /// The camera's pose is not known: the person is told what helps.
+    Tracking(Tracking),
+}
+
+impl Platform {
+    /// The first of what is in the way of a step.
+    pub(super) fn obstacle(&self, step: Step) -> Option<Obstacle> {
+        match (self.ar_session, self.device) {
+            (ArSession::Unsupported, _) => return Some(Obstacle::NoAr),
+            (_, Device::Unsupported) => return Some(Obstacle::NoGraphics),
+            _ => {}
+        }
+        match self.permission {
+            Permission::Denied => return Some(Obstacle::CameraDenied),
+            Permission::Barred => return Some(Obstacle::CameraBarred),
+            Permission::Unknown | Permission::Granted => {}
+        }
+        if step == Step::Welcome {
+            return None;
+        }
+        let obstacles = [
+            (self.thermal == Thermal::Critical, Obstacle::TooHot),
+            (self.ar_session == ArSession::Interrupted, Obstacle::Interrupted),
+            (self.ar_session == ArSession::Failed, Obstacle::ArFailed),
+            (self.device != Device::Ready, Obstacle::Preparing),
+            (
+                self.tracking != Tracking::Normal,
+                Obstacle::Tracking(self.tracking),
+            ),
+        ];
+        let mut met = obstacles.into_iter().filter(|(is_met, _)| *is_met);
+        met.next().map(|(_, obstacle)| obstacle)
+    }
+
+    /// Whether the camera may run.
+    fn can_track(&self) -> bool {
+        self.is_foreground
+            && self.permission == Permission::Granted
+            && self.ar_session == ArSession::Able
+            && self.device != Device::Unsupported
+            && self.thermal < Thermal::Critical
+    }
+}
+
+/// What a person wants to be kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Captures {
+    pub(super) video: bool,
+    pub(super) recording: bool,
+}
+
+/// What is wanted of the camera for a while.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Asked {
+    /// A dark picture of the lens.
+    pub(super) lens: bool,
+    pub(super) held_exposure: bool,
+}
+
+/// What the shell was asked for and holds until it is asked for something else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Commanded {
+    tracking: bool,
+    finds_planes: bool,
+    locks_exposure: bool,
+    underexposes: bool,
+    is_awake: bool,
+    frames_per_s: u32,
+    pub(super) captures: Captures,
+}
+
+impl Commanded {
+    /// What is wanted in a step.
+    pub(super) fn wanted(step: Step, platform: &Platform, (captures, asked): (Captures, Asked)) -> Self {
+        let tracking = step != Step::Welcome && platform.can_track();
+        Self {
+            tracking,
+            finds_planes: tracking && step == Step::FindTable,
+            // Plate and frames are compared with one another.
+            locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
+            underexposes: tracking && step == Step::PlaceToy && asked.lens,
+            is_awake: platform.is_foreground && step != Step::Welcome,
+            frames_per_s: if platform.thermal >= Thermal::Serious {
+                30
+            } else {
+                60
+            },
+            captures: Captures {
+                video: captures.video && tracking && step == Step::Play,
+                // Of one place, with one toy that stands there.
+                recording: captures.recording && tracking && step == Step::Play,
+            },
+        }
+    }
+
+    /// Whether the camera was asked to run.
+    pub(super) fn is_tracking(&self) -> bool {
+        self.tracking
+    }
+
+    /// The commands that lead from what was asked for to what is `wanted`; `take` is the recording that begins.
+    pub(super) fn follow(
+        &mut self,
+        wanted: Self,
+        is_new_world: bool,
+        take: Option<Box<Take>>,
+    ) -> Vec<ShellCommand> {
+        let mut commands = Vec::new();
+        // What was kept is saved before the camera goes.
+        if wanted.captures.video != self.captures.video {
+            commands.push(ShellCommand::Video(wanted.captures.video));
+        }
+        if wanted.captures.recording != self.captures.recording {
+            commands.push(ShellCommand::Record(take));
+        }
+        if wanted.frames_per_s != self.frames_per_s {
+            commands.push(ShellCommand::FrameRate(wanted.frames_per_s));
+        }
+        let is_run_anew = (wanted.tracking, wanted.finds_planes) != (self.tracking, self.finds_planes);
+        if wanted.tracking && (is_run_anew || is_new_world) {
+            commands.push(ShellCommand::RunTracking {
+                finds_planes: wanted.finds_planes,
+                is_new_world,
+            });
+        } else if !wanted.tracking && self.tracking {
+            commands.push(ShellCommand::PauseTracking);
+        }
+        // A camera that is started again has its exposure free.
+        let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
+        let was_dark = self.underexposes && self.tracking;
+        if was_dark && !wanted.underexposes && wanted.tracking {
+            commands.push(ShellCommand::Underexpose(false));
+        }
+        if wanted.locks_exposure != is_locked && wanted.tracking {
+            commands.push(ShellCommand::LockExposure(wanted.locks_exposure));
+        }
+        if wanted.underexposes && !was_dark {
+            commands.push(ShellCommand::Underexpose(true));
+        }
+        if wanted.is_awake != self.is_awake {
+            commands.push(ShellCommand::KeepAwake(wanted.is_awake));
+        }
+        *self = wanted;
+        commands
+    }
+}

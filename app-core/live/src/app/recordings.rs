@@ -1,0 +1,118 @@
+//! When a session is recorded, what of it, and what is said about it.
+
+use serde_json::Value;
+
+use super::App;
+use super::event::Recorded;
+use super::notice::Notice;
+use super::recorder::Recorder;
+use super::step::Step;
+use app_scene::camera_frame::CameraFrame;
+use app_scene::frame::FrameInput;
+use app_session::recording::{Ending, Limits, LiveFrame, Take};
+
+impl App {
+    /// A person wishes it, or no longer.
+    pub(super) fn wish_recording(&mut self, is_on: bool) {
+        let is_short = self
+            .platform
+            .free_bytes
+            .is_some_and(|free| free < Limits::APP.min_free_bytes);
+        if is_on && is_short {
+            return self.tell(Notice::NoRoomToRecord);
+        }
+        self.captures.recording = is_on;
+    }
+
+    /// Begins a recording that is wanted, or ends one that is not: its queue is closed with that. The one that began.
+    pub(super) fn follow_recording(&mut self, is_wanted: bool) -> Option<Box<Take>> {
+        if !is_wanted {
+            self.recorder = None;
+            return None;
+        }
+        let (Some(place), Some(latest), None) = (&self.place, &self.latest, &self.recorder) else {
+            return None;
+        };
+        self.n_recordings += 1;
+        let (recorder, take) = Recorder::begin(self.n_recordings, place.scene.clone(), latest);
+        self.recorder = Some(recorder);
+        Some(Box::new(take))
+    }
+
+    /// A frame as the platform gave it, in the world in which the toy was placed: what an alignment takes.
+    pub(super) fn record(&mut self, frame: &CameraFrame) {
+        if self.recorder.is_none() {
+            return;
+        }
+        let is_seen = self.step == Step::Play && frame.camera().is_some();
+        let live = self.place.as_ref().filter(|_| is_seen).and_then(|place| {
+            let input = place.anchored(self.input(1.0)?);
+            // A platform may estimate whatever it likes; what no reader takes is left out.
+            let estimate = input.light_estimate;
+            let estimate = estimate.filter(|estimate| estimate.check("light_estimate").is_ok());
+            let input = FrameInput {
+                light_estimate: estimate,
+                ..input
+            };
+            input.check().ok()?;
+            Some(LiveFrame {
+                image: input.image.kept(),
+                camera: input.camera,
+                world_from_object: input.world_from_object,
+                exposure: input.exposure,
+                light_estimate: input.light_estimate,
+                shown_pose: input.shown_pose,
+            })
+        });
+        let Some(recorder) = &mut self.recorder else {
+            return;
+        };
+        recorder.frame(frame, live);
+        if recorder.begins_to_drop() {
+            self.tell(Notice::RecordingDrops);
+        }
+    }
+
+    /// A line of the log, which a recording has as well.
+    pub(super) fn note(&mut self, what: &dyn std::fmt::Debug) {
+        self.log.line(self.time_s, what);
+        if let Some(recorder) = &self.recorder {
+            recorder.logged(what);
+        }
+    }
+
+    /// Times of a frame for the recording, if there is one.
+    pub(crate) fn record_profile(&self, times: &Value) {
+        if let Some(recorder) = &self.recorder {
+            recorder.profile(times);
+        }
+    }
+
+    pub(super) fn free_space(&mut self, free_bytes: u64) {
+        self.platform.free_bytes = Some(free_bytes);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.tick(free_bytes);
+        }
+    }
+
+    /// A recording has ended; another may have begun since.
+    pub(super) fn recorded(&mut self, recorded: Recorded) {
+        let number = recorded.taken.number;
+        if self
+            .recorder
+            .as_ref()
+            .is_some_and(|recorder| recorder.number() == number)
+        {
+            self.recorder = None;
+            self.captures.recording = false;
+        }
+        self.note(&recorded);
+        self.tell(
+            if recorded.taken.n_frames == 0 && recorded.taken.ending == Ending::Asked {
+                Notice::NothingRecorded
+            } else {
+                Notice::Recorded(recorded)
+            },
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! What a person is about to do, and what leads from one step to another.
+//!
+#![doc = include_str!("../../../doc/app.md")]
+
+/// What a person is about to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Step {
+    /// Read what this is, and allow the camera.
+    #[default]
+    Welcome,
+    /// Show the table to the camera, and tap on it.
+    FindTable,
+    /// Keep still while the empty place is photographed.
+    TakePlate,
+    /// Put the toy there, and its ghost over it.
+    PlaceToy,
+    /// Wait for the ghost to be aligned with the toy.
+    Align,
+    /// Watch it move.
+    Play,
+}
+
+/// What leads from one step to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// A person began, and the camera is allowed.
+    Begun,
+    /// The camera is not allowed any longer.
+    CameraDenied,
+    /// A level plane was tapped.
+    TableChosen,
+    /// The empty place was photographed.
+    PlateTaken,
+    /// It will not be.
+    PlateSkipped,
+    /// The ghost stands where the toy does.
+    ToyPlaced,
+    /// The picture shows the toy where the ghost is, or told where it is.
+    ToyFound,
+    /// It does not.
+    ToyMissed,
+    /// The ghost is wanted again, or there is another toy.
+    Replace,
+    /// The toy was lifted away.
+    RetakePlate,
+    /// All from the table on is wanted again.
+    StartOver,
+    /// The tracker has begun another world.
+    WorldLost,
+}
+
+impl Cause {
+    /// All there are.
+    pub const ALL: [Self; 12] = [
+        Self::Begun,
+        Self::CameraDenied,
+        Self::TableChosen,
+        Self::PlateTaken,
+        Self::PlateSkipped,
+        Self::ToyPlaced,
+        Self::ToyFound,
+        Self::ToyMissed,
+        Self::Replace,
+        Self::RetakePlate,
+        Self::StartOver,
+        Self::WorldLost,
+    ];
+}
+
+impl Step {
+    /// All there are, in their order.
+    pub const ALL: [Self; 6] = [
+        Self::Welcome,
+        Self::FindTable,
+        Self::TakePlate,
+        Self::PlaceToy,
+        Self::Align,
+        Self::Play,
+    ];
+
+    /// The step after a cause; the same where the cause means nothing in it.
+    #[must_use]
+    pub fn after(self, cause: Cause) -> Self {
+        match (self, cause) {
+            (Self::Welcome, Cause::Begun) => Self::FindTable,
+            (Self::Welcome, _) => Self::Welcome,
+            (_, Cause::CameraDenied) => Self::Welcome,
+            (_, Cause::StartOver | Cause::WorldLost) | (Self::FindTable, Cause::Replace) => Self::FindTable,
+            (Self::FindTable, Cause::TableChosen) => Self::TakePlate,
+            (Self::TakePlate, Cause::PlateTaken | Cause::PlateSkipped) => Self::PlaceToy,
+            (Self::PlaceToy, Cause::ToyPlaced) => Self::Align,
+            (Self::Align, Cause::ToyFound) => Self::Play,
+            (Self::Align, Cause::ToyMissed | Cause::Replace) | (Self::Play, Cause::Replace) => Self::PlaceToy,
+            (Self::PlaceToy | Self::Align | Self::Play, Cause::RetakePlate) => Self::TakePlate,
+            (step, _) => step,
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Another toy: by the platform's own picker, or from the files that the shell has found.
+
+use std::sync::Arc;
+
+use super::App;
+use super::event::ShellCommand;
+use super::ghost_shape::GhostShape;
+use super::notice::Notice;
+use super::playback::Playback;
+use super::step::Cause;
+use app_scene::toy::Toy;
+
+impl App {
+    /// Files of toys to choose from, while a person chooses.
+    #[must_use]
+    pub fn toy_files(&self) -> Option<&[String]> {
+        self.toy_files.as_deref()
+    }
+
+    /// A person chose one of the files, or none.
+    pub(super) fn choose_toy(&mut self, chosen: Option<usize>, commands: &mut Vec<ShellCommand>) {
+        let files = self.toy_files.take().unwrap_or_default();
+        let file = chosen.and_then(|chosen| files.into_iter().nth(chosen));
+        commands.extend(file.map(ShellCommand::ReadToy));
+    }
+
+    /// A toy of the person's own; what was photographed of the place stays.
+    pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, String>) {
+        match read {
+            Ok(toy) => {
+                self.playback = Playback::of(&toy);
+                self.ghost_shape = GhostShape::of(&toy);
+                self.toy = toy;
+                self.ghost = None;
+                self.go(Cause::Replace);
+            }
+            Err(reason) => self.tell(Notice::ToyRefused(reason)),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! What happens when a person wishes something, or the platform changes.
+
+use super::App;
+use super::event::{ArSession, Device, Permission, Saved, ShellCommand, Wish};
+use super::ghost::Ghost;
+use super::notice::Notice;
+use super::step::{Cause, Step};
+use super::table::table_at;
+
+impl App {
+    pub(super) fn wish(&mut self, wish: Wish, commands: &mut Vec<ShellCommand>) {
+        let is_on_picture = matches!(wish, Wish::Tap(_) | Wish::Drag { .. } | Wish::Twist(_));
+        if is_on_picture && self.phone_check.is_some() {
+            return;
+        }
+        match wish {
+            Wish::CheckPhone(is_on) => self.check_phone(is_on && self.step != Step::Welcome),
+            Wish::Answer(is_yes) => self.answer(is_yes),
+            Wish::Begin => self.begin(commands),
+            Wish::OpenSettings => commands.push(ShellCommand::OpenSettings),
+            Wish::Tap(pixel) => self.tap(pixel),
+            Wish::Drag { from_px, to_px } => {
+                if let (Step::PlaceToy, Some(ghost), Some(camera)) =
+                    (self.step, &mut self.ghost, &self.camera)
+                {
+                    ghost.drag(camera, [from_px, to_px]);
+                }
+            }
+            Wish::Twist(angle_rad) => {
+                if let (Step::PlaceToy, Some(ghost)) = (self.step, &mut self.ghost) {
+                    ghost.turn(angle_rad);
+                }
+            }
+            Wish::TakeLens => self.take_lens(),
+            Wish::SkipPlate => self.go(Cause::PlateSkipped),
+            Wish::Placed => self.placed(),
+            Wish::Replace => self.go(Cause::Replace),
+            Wish::RetakePlate => self.go(Cause::RetakePlate),
+            Wish::StartOver => {
+                self.platform.ar_session = match self.platform.ar_session {
+                    ArSession::Failed => ArSession::Able,
+                    other => other,
+                };
+                self.go(Cause::StartOver);
+                self.wants_new_world = self.step == Step::FindTable;
+            }
+            Wish::Choose(clip) => self.playback.choose(&self.toy, clip),
+            Wish::Play(is_playing) => self.playback.play(is_playing),
+            Wish::Scrub(time_s) => self.playback.scrub(time_s),
+            Wish::SavePhoto => {
+                if self.step == Step::Play {
+                    commands.push(ShellCommand::SavePhoto);
+                }
+            }
+            Wish::Video(is_on) => self.captures.video = is_on,
+            Wish::Record(is_on) => self.wish_recording(is_on),
+            Wish::ShowProfile(is_on) => self.shows_profile = is_on,
+            Wish::PickToy => commands.push(ShellCommand::PickToy),
+            Wish::ChooseToy(chosen) => self.choose_toy(chosen, commands),
+            Wish::Share => commands.push(ShellCommand::Share),
+            Wish::RestorePreset => self.restore_preset(commands),
+        }
+    }
+
+    fn begin(&mut self, commands: &mut Vec<ShellCommand>) {
+        match self.platform.permission {
+            Permission::Granted => self.go(Cause::Begun),
+            Permission::Unknown | Permission::Denied if self.step == Step::Welcome => {
+                self.wants_to_begin = true;
+                commands.push(ShellCommand::AskPermission);
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn permission(&mut self, permission: Permission) {
+        self.platform.permission = permission;
+        match permission {
+            Permission::Granted => {
+                if std::mem::take(&mut self.wants_to_begin) {
+                    self.go(Cause::Begun);
+                }
+            }
+            Permission::Denied | Permission::Barred => {
+                self.wants_to_begin = false;
+                self.go(Cause::CameraDenied);
+            }
+            Permission::Unknown => {}
+        }
+    }
+
+    fn tap(&mut self, pixel: glam::DVec2) {
+        match (self.step, &self.camera, &self.latest) {
+            (Step::FindTable, Some(camera), Some(latest)) => {
+                let Some(plane) = table_at(latest, camera, pixel) else {
+                    return self.tell(Notice::NoTableThere);
+                };
+                self.ghost = Ghost::at(&self.toy, &plane, (camera, pixel)).ok().flatten();
+                self.table = Some(plane);
+                self.go(Cause::TableChosen);
+            }
+            (Step::PlaceToy, Some(camera), _) => match (&mut self.ghost, &self.table) {
+                (Some(ghost), _) => ghost.move_to(camera, pixel),
+                (ghost, Some(table)) => *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten(),
+                _ => {}
+            },
+            _ => {}
+        }
+    }
+
+    fn placed(&mut self) {
+        if self.ghost.is_some() && self.camera.is_some() && !self.lens.is_awaited() {
+            self.go(Cause::ToyPlaced);
+        }
+    }
+
+    pub(super) fn foreground(&mut self, is_foreground: bool, commands: &mut Vec<ShellCommand>) {
+        self.platform.is_foreground = is_foreground;
+        self.follow_start(is_foreground, commands);
+        // What comes after a pause is far from what was before it: no pose of then is drawn over it.
+        self.fade = app_scene::camera_frame::Fade::default();
+    }
+
+    pub(super) fn device(&mut self, device: Device, commands: &mut Vec<ShellCommand>) {
+        let was = std::mem::replace(&mut self.platform.device, device);
+        match (was, device) {
+            (_, Device::Lost) => commands.push(ShellCommand::ReopenDevice),
+            (Device::Lost, Device::Ready) => self.tell(Notice::DeviceRestarted),
+            _ => {}
+        }
+    }
+
+    pub(super) fn ar_session(&mut self, ar_session: ArSession) {
+        self.platform.ar_session = ar_session;
+        if ar_session != ArSession::Able {
+            self.platform.tracking = app_scene::camera_frame::Tracking::Starting;
+        }
+    }
+
+    pub(super) fn memory_low(&mut self) {
+        if self.captures.recording || self.captures.video {
+            self.captures = super::Captures::default();
+            self.tell(Notice::MemoryLow);
+        }
+    }
+
+    pub(super) fn saved(&mut self, saved: Saved) {
+        if saved != Saved::Done {
+            // A video that cannot be written goes on in vain.
+            self.captures.video = false;
+        }
+        self.tell(Notice::Saved(saved));
+    }
+
+    pub(super) fn tell(&mut self, notice: Notice) {
+        self.note(&notice);
+        self.notices.tell(self.time_s, notice);
+    }
+}

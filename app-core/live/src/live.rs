@@ -1,0 +1,367 @@
+//! An app that is seen: its logic, its interface and the core that draws both.
+//!
+//! A shell owns one [`Live`]. It hands over what the platform tells and where fingers are, asks for a picture whenever the screen
+//! wants one, and does what it is then asked for.
+
+mod profiler;
+
+use std::sync::Arc;
+
+use wgpu::LoadOp;
+
+use crate::app::{App, Device, ShellCommand, ShellEvent, Show};
+use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
+use crate::self_test;
+use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
+use app_pipeline::frame::{Clock, Warning};
+use app_pipeline::governor::{BALANCED_FRONT, Governor, Measured};
+use app_pipeline::preset::Preset;
+use app_pipeline::profile::{About, Profile};
+use app_scene::camera_frame::Display;
+use app_scene::scene::Image;
+use app_scene::toy::Toy;
+
+use profiler::Profiler;
+
+/// An app on a device.
+pub struct Live {
+    app: App,
+    interface: Interface,
+    core: Core,
+    /// As the shell has it.
+    chosen: Preset,
+    /// That which is used.
+    preset: Preset,
+    /// What is still to be compiled: a pass a picture.
+    warm_up: Option<WarmUp>,
+    painter: Option<Painter>,
+    /// The scene that the core has.
+    version: Option<u64>,
+    display: Display,
+    warnings: Vec<Warning>,
+    /// Frames a second that are to be held.
+    hold: Option<u32>,
+    governor: Option<Governor>,
+    profiler: Profiler,
+    /// Of the latest picture.
+    time_s: f64,
+}
+
+impl Live {
+    /// An app that draws with `core`, and a toy to begin with.
+    #[must_use]
+    pub fn new(core: Core, toy: Arc<Toy>, preset: Preset) -> Self {
+        Self {
+            app: App::new(toy),
+            interface: Interface::default(),
+            warm_up: Some(core.warm_up(preset)),
+            core,
+            chosen: preset,
+            preset,
+            painter: None,
+            version: None,
+            display: Display::default(),
+            warnings: Vec::new(),
+            hold: None,
+            governor: None,
+            profiler: Profiler::default(),
+            time_s: 0.0,
+        }
+    }
+
+    /// Holds so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
+    /// stay as they are.
+    pub fn hold(&mut self, frames_per_second: u32) {
+        self.hold = Some(frames_per_second);
+        self.govern_preset();
+    }
+
+    /// Times frames by a clock of the shell's from now on: for [`Live::times`], for what is shown of times, and for recordings.
+    pub fn time_by(&mut self, clock: Clock) {
+        self.profiler.time_by(clock, &mut self.core);
+    }
+
+    /// The times of the latest frames in which the toy moved; none without a clock.
+    #[must_use]
+    pub fn times(&self) -> Option<&Profile> {
+        self.profiler.profile()
+    }
+
+    /// Goes on with another device, where the one before was lost.
+    pub fn reopen(&mut self, mut core: Core) {
+        self.warm_up = Some(core.warm_up(self.preset));
+        self.profiler.reopen(&mut core);
+        self.core = core;
+        self.painter = None;
+        // Another device knows none of its textures.
+        self.interface = Interface::default();
+        self.version = None;
+    }
+
+    /// Takes what happened, and returns what is to be done.
+    #[must_use]
+    pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
+        if let ShellEvent::Frame(frame) = &event {
+            self.profiler.deliver(frame);
+        }
+        self.app.event(event)
+    }
+
+    /// A finger, or a mouse as one.
+    pub fn touch(&mut self, touch: Touch) {
+        self.interface.touch(touch);
+    }
+
+    /// A mouse's wheel, in steps.
+    pub fn wheel(&mut self, steps: f64) {
+        self.interface.wheel(steps);
+    }
+
+    /// Draws on the core's surface at `time_s`, which goes on from call to call, and returns what is to be done.
+    ///
+    /// # Errors
+    /// When the surface or the device is lost: a shell tells [`Device::Lost`] and brings another core.
+    pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
+        let (commands, painting) = self.prepare(screen, time_s)?;
+        let (painter, interface) = (&mut self.painter, &mut self.interface);
+        self.core.present_with(self.display, |canvas| {
+            paint(painter, interface, canvas, &painting, LoadOp::Load);
+        })?;
+        Ok(commands)
+    }
+
+    /// The same on a target of the caller's, whose format takes sRGB codes as they are.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn draw_on(
+        &mut self,
+        target: &wgpu::Texture,
+        screen: &Screen,
+        time_s: f64,
+    ) -> Result<Vec<ShellCommand>, CoreError> {
+        let (commands, painting) = self.prepare(screen, time_s)?;
+        let below = match self.core.draw_on(target, self.display) {
+            Ok(()) => LoadOp::Load,
+            Err(CoreError::NoScene) => LoadOp::Clear(wgpu::Color::BLACK),
+            Err(error) => return Err(error),
+        };
+        // Nothing is painted where costs are only counted.
+        if let Some(canvas) = self.core.canvas(target) {
+            paint(&mut self.painter, &mut self.interface, &canvas, &painting, below);
+        }
+        Ok(commands)
+    }
+
+    /// The same on a screen that nobody sees, and what it then shows.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn screenshot(
+        &mut self,
+        screen: &Screen,
+        time_s: f64,
+    ) -> Result<(Image, Vec<ShellCommand>), CoreError> {
+        let target = self
+            .core
+            .hidden_screen(screen.size_px)
+            .ok_or(CoreError::NoScene)?;
+        let commands = self.draw_on(&target, screen, time_s)?;
+        let image = self.core.read_screen(&target)?;
+        Ok((image, commands))
+    }
+
+    /// The finished picture without the interface.
+    ///
+    /// # Errors
+    /// As [`Core::read_picture`].
+    pub fn read_picture(&self) -> Result<Image, CoreError> {
+        self.core.read_picture()
+    }
+
+    /// What a screen reader finds in the latest picture.
+    #[must_use]
+    pub fn widgets(&self) -> &[Widget] {
+        self.interface.widgets()
+    }
+
+    /// The logic.
+    #[must_use]
+    pub fn app(&self) -> &App {
+        &self.app
+    }
+
+    /// The core, to give it a surface or take it away.
+    pub fn core_mut(&mut self) -> &mut Core {
+        &mut self.core
+    }
+
+    /// What the core warned of with the latest frame.
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// What the interface wants, and the picture below it.
+    fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
+        let mut commands = self.follow_preset();
+        commands.extend(self.compile_next()?);
+        let profile = self.profile();
+        let (wishes, painting) = self.interface.run(&self.app, screen, time_s, &profile);
+        for wish in wishes {
+            commands.extend(self.app.event(ShellEvent::Wish(wish)));
+        }
+        self.govern(time_s)?;
+        if self.make_picture()? {
+            commands.extend(self.app.event(ShellEvent::Drawn));
+        }
+        Ok((commands, painting))
+    }
+
+    fn compile_next(&mut self) -> Result<Vec<ShellCommand>, CoreError> {
+        let Some(left) = &mut self.warm_up else {
+            return Ok(Vec::new());
+        };
+        if let Some(compiled) = left.next() {
+            compiled?;
+            return Ok(Vec::new());
+        }
+        self.warm_up = None;
+        let mut commands = self.test_device();
+        commands.extend(self.app.event(ShellEvent::Device(Device::Ready)));
+        Ok(commands)
+    }
+
+    /// Uses another preset where the app wants one.
+    fn follow_preset(&mut self) -> Vec<ShellCommand> {
+        let preset = self.app.preset(self.chosen);
+        if preset == self.preset {
+            return Vec::new();
+        }
+        self.preset = preset;
+        self.warm_up = Some(self.core.warm_up(preset));
+        self.version = None;
+        self.govern_preset();
+        self.app.event(ShellEvent::Device(Device::Starting))
+    }
+
+    /// The governor of the preset that is used.
+    fn govern_preset(&mut self) {
+        let hold = self.hold.filter(|_| self.preset == Preset::Balanced);
+        self.governor = hold.map(|hold| Governor::new(BALANCED_FRONT, hold));
+    }
+
+    /// Has the device draw its test picture, once for each driver and version of this crate.
+    fn test_device(&mut self) -> Vec<ShellCommand> {
+        let version = env!("CARGO_PKG_VERSION");
+        let device = format!("{version} {} {}", self.preset, self.core.adapter_name());
+        if self.core.device().is_none() || !self.app.wants_self_test(&device) {
+            return Vec::new();
+        }
+        let tested = self_test::run(&mut self.core, self.preset);
+        self.version = None;
+        let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
+        self.app.event(ShellEvent::SelfTested { device, outcome })
+    }
+
+    /// Turns settings down or up by how long pictures take while the toy moves.
+    fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
+        let interval_ms = 1e3 * (time_s - self.time_s);
+        self.time_s = time_s;
+        let is_moving = self.version.is_some() && matches!(self.app.show(), Show::Toy { .. });
+        let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
+            return Ok(());
+        };
+        let turned = governor.take(&Measured {
+            gpu_ms: None,
+            interval_ms,
+            heat: self.app.thermal(),
+        });
+        if turned.is_some() {
+            self.core.turn_down(governor.turned_down())?;
+        }
+        Ok(())
+    }
+
+    /// Whether it is one of the moving toy.
+    fn make_picture(&mut self) -> Result<bool, CoreError> {
+        match self.app.show() {
+            Show::Nothing => self.profiler.interrupt(),
+            Show::Camera(frame) => {
+                self.profiler.interrupt();
+                self.display = frame.display;
+                self.core.show_camera(&frame.image)?;
+            }
+            Show::Toy {
+                scene,
+                version,
+                input,
+                display,
+            } => {
+                self.display = display;
+                if self.version != Some(version) {
+                    self.core.set_scene(scene.clone(), self.preset)?;
+                    self.version = Some(version);
+                    if let Some(governor) = &self.governor {
+                        self.core.turn_down(governor.turned_down())?;
+                    }
+                }
+                let (preset, app) = (self.preset, &self.app);
+                let about = |core: &Core| {
+                    let about = About {
+                        session: "live".to_owned(),
+                        preset: preset.name().to_owned(),
+                        device: core.adapter_name(),
+                        picture_px: input.image.size_px(),
+                        ..About::default()
+                    };
+                    (about, profiler::args(app.thermal(), self.governor.as_ref()))
+                };
+                let frame = (&mut self.core, &*input);
+                let report = self.profiler.frame(frame, app.shows_profile(), about)?;
+                self.warnings = report.warnings;
+                if let Some(times) = self.profiler.latest() {
+                    self.app.record_profile(&times);
+                }
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn profile(&self) -> String {
+        let mut lines = format!("{} {:?}", self.preset, self.app.thermal());
+        if let Some(words) = self.profiler.words() {
+            lines.push('\n');
+            lines.push_str(&words);
+        }
+        for step in self.governor.iter().flat_map(Governor::turned_down) {
+            lines.push('\n');
+            lines.push_str(step.what);
+        }
+        for warning in &self.warnings {
+            lines.push('\n');
+            lines.push_str(&warning.to_string());
+        }
+        lines
+    }
+}
+
+impl std::fmt::Debug for Live {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Live")
+            .field("app", &self.app)
+            .finish_non_exhaustive()
+    }
+}
+
+fn paint(
+    painter: &mut Option<Painter>,
+    interface: &mut Interface,
+    canvas: &Canvas<'_>,
+    painting: &Painting,
+    below: LoadOp<wgpu::Color>,
+) {
+    let painter = painter.get_or_insert_with(|| Painter::new(canvas));
+    painter.paint(canvas, (painting, &interface.take_textures()), below);
+}

@@ -1,0 +1,190 @@
+//! The times of the latest frames, as an app's own profile.
+
+use serde_json::{Value, json};
+
+use app_pipeline::core::{Core, CoreError};
+use app_pipeline::frame::{Clock, FrameReport, PassTime};
+use app_pipeline::governor::{Governor, Heat};
+use app_pipeline::profile::{About, Args, Frame, Profile};
+use app_scene::camera_frame::CameraFrame;
+use app_scene::frame::FrameInput;
+
+/// Frames that are kept, twice as many at most: some seconds.
+const N_FRAMES: usize = 300;
+
+/// Times frames, once the shell has lent a clock.
+#[derive(Debug, Default)]
+pub(super) struct Profiler {
+    clock: Option<Clock>,
+    profile: Option<Profile>,
+    times_passes: bool,
+    n_frames: u64,
+    before_ms: Option<f64>,
+    delivered: Option<Delivered>,
+    /// The camera's number of the picture that was shown last.
+    shown_id: Option<u64>,
+    n_dropped: u64,
+    latest: Option<Latest>,
+}
+
+/// A picture of the camera.
+#[derive(Clone, Copy, Debug)]
+struct Delivered {
+    id: u64,
+    /// On the shell's clock.
+    at_ms: f64,
+    /// How old it was then.
+    age_ms: Option<f64>,
+}
+
+/// The latest frame.
+#[derive(Clone, Copy, Debug)]
+struct Latest {
+    cpu_ms: f64,
+    /// Where the device was asked.
+    gpu_ms: Option<f64>,
+    camera_to_present_ms: Option<f64>,
+}
+
+impl Profiler {
+    pub(super) fn time_by(&mut self, clock: Clock, core: &mut Core) {
+        core.time_stages(Some(clock.clone()));
+        self.clock = Some(clock);
+    }
+
+    /// Another device knows nothing of clocks.
+    pub(super) fn reopen(&mut self, core: &mut Core) {
+        core.time_stages(self.clock.clone());
+        self.times_passes = false;
+    }
+
+    /// A picture of the camera has come.
+    pub(super) fn deliver(&mut self, frame: &CameraFrame) {
+        self.delivered = self.clock.as_ref().map(|clock| Delivered {
+            id: frame.stamp.id,
+            at_ms: clock.now_ms(),
+            age_ms: frame.age_ms,
+        });
+    }
+
+    /// Something else is shown: the next frame has none before it.
+    pub(super) fn interrupt(&mut self) {
+        self.before_ms = None;
+        self.shown_id = None;
+    }
+
+    /// Pictures of the camera since the one that was shown last, which nobody will see; none where there is no last one, or the
+    /// camera has begun to count anew.
+    fn drop_before(&mut self, shown_id: u64) -> u64 {
+        let before = self.shown_id.replace(shown_id);
+        let step = before.and_then(|before| shown_id.checked_sub(before));
+        let n_dropped = step.map_or(0, |step| step.saturating_sub(1));
+        self.n_dropped += n_dropped;
+        n_dropped
+    }
+
+    /// Makes a frame, and keeps what it took. Passes are timed where they are shown: the processor waits for the device then.
+    pub(super) fn frame(
+        &mut self,
+        (core, input): (&mut Core, &FrameInput),
+        shows_times: bool,
+        about: impl FnOnce(&Core) -> (About, Args),
+    ) -> Result<FrameReport, CoreError> {
+        let Some(clock) = &self.clock else {
+            return core.frame(input);
+        };
+        if shows_times != self.times_passes {
+            core.time_passes(shows_times)?;
+            self.times_passes = shows_times;
+        }
+        let begin_ms = clock.now_ms();
+        let report = core.frame(input)?;
+        let end_ms = clock.now_ms();
+        let cpu_ms = end_ms - begin_ms;
+        let age_at = |delivered: Delivered| Some(delivered.age_ms? + end_ms - delivered.at_ms);
+        let camera_to_present_ms = self.delivered.and_then(age_at);
+        let pass_times = core.read_pass_times()?;
+        let (about, args) = about(core);
+        let args = Args {
+            number: Some(self.n_frames),
+            kind: report.change.map(|change| change.name().to_owned()),
+            interval_ms: self.before_ms.map(|before_ms| begin_ms - before_ms),
+            camera_to_present_ms,
+            dropped: self.delivered.map(|delivered| self.drop_before(delivered.id)),
+            ..args
+        };
+        self.n_frames += 1;
+        self.before_ms = Some(begin_ms);
+        let gpu_ms = (!pass_times.is_empty()).then(|| sum_ms(&pass_times));
+        self.latest = Some(Latest {
+            cpu_ms,
+            gpu_ms,
+            camera_to_present_ms,
+        });
+        let frame = Frame {
+            begin_ms,
+            cpu_ms,
+            pass_times: &pass_times,
+            args,
+            ..Frame::default()
+        };
+        let kept = self.profile.take().filter(|kept| kept.is_about(&about));
+        let profile = self.profile.insert(kept.unwrap_or_else(|| Profile::new(about)));
+        profile.add(&report, frame);
+        if profile.n_frames() >= 2 * N_FRAMES {
+            profile.keep_latest(N_FRAMES);
+        }
+        Ok(report)
+    }
+
+    /// The times of the latest frames.
+    pub(super) fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref()
+    }
+
+    /// Of the latest frame, for a recording.
+    pub(super) fn latest(&self) -> Option<Value> {
+        let latest = self.latest?;
+        Some(json!({
+            "cpu_ms": latest.cpu_ms,
+            "gpu_ms": latest.gpu_ms,
+            "camera_to_present_ms": latest.camera_to_present_ms,
+            "dropped": self.n_dropped,
+        }))
+    }
+
+    /// Of the latest frame, in words.
+    pub(super) fn words(&self) -> Option<String> {
+        let latest = self.latest?;
+        let after = |name: &str, ms: Option<f64>| ms.map_or(String::new(), |ms| format!("{name} {ms:.1} ms"));
+        let (device, camera) = (
+            after(", device", latest.gpu_ms),
+            after("camera to present", latest.camera_to_present_ms),
+        );
+        let dropped = match self.n_dropped {
+            0 => String::new(),
+            n_dropped => format!("{n_dropped} pictures dropped"),
+        };
+        let lines = [
+            format!("processor {:.1} ms{device}", latest.cpu_ms),
+            camera,
+            dropped,
+        ];
+        let told = lines.into_iter().filter(|line| !line.is_empty());
+        Some(told.collect::<Vec<_>>().join("\n"))
+    }
+}
+
+/// What a frame's scope has of heat and settings.
+pub(super) fn args(heat: Heat, governor: Option<&Governor>) -> Args {
+    let turned_down = governor.iter().flat_map(|governor| governor.turned_down());
+    Args {
+        heat: Some(format!("{heat:?}")),
+        turned_down: turned_down.map(|step| step.what.to_owned()).collect(),
+        ..Args::default()
+    }
+}
+
+fn sum_ms(times: &[PassTime]) -> f64 {
+    times.iter().map(|time| time.gpu_ms).sum()
+}

@@ -1,0 +1,67 @@
+//! `census`: sets of lights whose shadows occur in mask 3c.
+
+use wgpu::BufferUsages;
+
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::BASELINE;
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::Texture;
+use crate::passes::globals::GLOBALS;
+use app_scene::scene::MAX_RECEIVERS;
+
+pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &part!("baseline/census")]);
+const SLOTS: &[Slot] = &[Slot::WholeNumbers, Slot::ReadWrite];
+/// Invocations of a workgroup along each side.
+const WORKGROUP_PX: u32 = 16;
+/// One word per receiver, with bit s where the set s of lights occurs.
+pub(crate) type SeenSets = [u32; MAX_RECEIVERS];
+
+/// Only where the real shadow is sampled.
+pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
+    !plan.is_constant
+}
+
+pub(crate) struct Pass {
+    compute: Compute,
+}
+
+pub(crate) struct Targets {
+    /// [`SeenSets`].
+    pub(crate) seen_sets: Buffer,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, _plan: &BaselinePlan) -> Self {
+        let usage = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        Self {
+            seen_sets: gpu.storage("seen sets", size_of::<SeenSets>() as u64, usage),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            compute: gpu.compute(&ComputeSpec {
+                shader: &SHADER,
+                entry_point: "cs_count",
+                groups: [&[], SLOTS, &[], &[]],
+                constants: Vec::new(),
+            }),
+        }
+    }
+
+    /// Collects the sets that occur in mask 3c.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, labels: &Texture, targets: &Targets) {
+        recorder.clear(&targets.seen_sets);
+        let resources = [(&labels.view).into(), (&targets.seen_sets).into()];
+        let own = recorder.bind(&self.compute, GROUP_PASS, &resources);
+        let workgroups = labels.size_px().map(|side| side.div_ceil(WORKGROUP_PX)).extend(1);
+        recorder.compute(&self.compute, &[own], workgroups.to_array());
+    }
+}

@@ -1,0 +1,48 @@
+//! The plan of the baseline.
+
+use crate::geometry::rect::PixelRect;
+use crate::plan::{LeftOut, SceneFacts};
+use crate::preset::BaselineSettings;
+use app_scene::scene::MAX_LIGHTS;
+
+/// A plan of the baseline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaselinePlan {
+    /// The work region.
+    pub region: PixelRect,
+    /// Lights whose shadows are moved, at most four.
+    pub n_lights: u32,
+    /// Receivers that they are moved on, each by itself.
+    pub n_receivers: u32,
+    /// Non-empty sets of these lights: where its shadows overlap, each has an appearance of its own.
+    pub n_sets: u32,
+    /// Whether the shadow is of constant strength, rather than sampled.
+    pub is_constant: bool,
+    /// Work that the scene does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl BaselinePlan {
+    /// Plans a scene. Lights beyond the fourth are left out.
+    #[must_use]
+    pub fn new(facts: &SceneFacts, settings: &BaselineSettings) -> Self {
+        let is_constant = settings.constant_ratio.is_some();
+        let mut left_out = Vec::new();
+        if is_constant {
+            left_out.push(LeftOut {
+                what: "samples of the real shadow",
+                why: "the preset's shadow is constant",
+            });
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "at most four")]
+        let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS) as u32;
+        Self {
+            region: facts.region,
+            n_lights,
+            n_receivers: facts.n_receivers,
+            n_sets: (1 << n_lights) - 1,
+            is_constant,
+            left_out,
+        }
+    }
+}

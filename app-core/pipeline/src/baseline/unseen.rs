@@ -1,0 +1,80 @@
+//! What the baseline lacks: real shadows that were not seen.
+
+use crate::baseline::Baseline;
+use crate::baseline::census::SeenSets;
+use crate::frame::warning::{UnseenShadow, Warning};
+use crate::gpu::context::{Gpu, GpuError};
+use crate::readback::{FloatMap, Map};
+use app_scene::scene::MAX_LIGHTS;
+
+/// Sets of lights that there can be, the empty one included.
+const N_SETS: usize = 1 << MAX_LIGHTS;
+
+impl Baseline {
+    /// Waits for the device and returns what real shadow was not seen, for the pose shown last. `listed` has the indices of the
+    /// receivers and of the lights in use, in the lists that they were given in.
+    pub(crate) fn read_warnings(
+        &self,
+        gpu: &Gpu,
+        listed: (&[usize], &[usize]),
+    ) -> Result<Vec<Warning>, GpuError> {
+        if self.plan.is_constant {
+            return Ok(Vec::new());
+        }
+        let seen: SeenSets = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.targets.census.seen_sets)?);
+        if seen.iter().all(|sets| *sets == 0) {
+            return Ok(vec![Warning::NothingToSample]);
+        }
+        let needed = self.read_map(gpu, Map::Terms)?.map(|terms| sets_in(&terms));
+        let unseen = unseen(&needed.unwrap_or_default(), &seen, listed);
+        let is_any = !unseen.is_empty();
+        Ok(is_any
+            .then_some(Warning::ShadowsUnseen { unseen })
+            .into_iter()
+            .collect())
+    }
+}
+
+/// What the labels of terms need, as a census has it.
+fn sets_in(terms: &FloatMap) -> SeenSets {
+    let mut needed = SeenSets::default();
+    for term in &terms.texels {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "labels are small whole numbers"
+        )]
+        let label = term[3] as usize;
+        if let Some(sets) = needed.get_mut(label / N_SETS).filter(|_| label > 0) {
+            *sets |= 1 << (label % N_SETS);
+        }
+    }
+    needed
+}
+
+fn unseen(
+    needed: &SeenSets,
+    seen: &SeenSets,
+    (receiver_indices, light_indices): (&[usize], &[usize]),
+) -> Vec<UnseenShadow> {
+    let lights = |set: usize| {
+        let used = light_indices.iter().enumerate();
+        let in_set = used.filter(|(light, _)| set >> light & 1 == 1);
+        in_set.map(|(_, index)| *index).collect()
+    };
+    let of_receiver = |(receiver, (needed, seen)): (usize, (&u32, &u32))| {
+        let sets = needed & !seen;
+        let sets = (1..N_SETS).filter(move |set| sets >> set & 1 == 1);
+        sets.map(move |set| UnseenShadow {
+            receiver,
+            lights: lights(set),
+        })
+    };
+    let sets = needed.iter().zip(seen);
+    receiver_indices
+        .iter()
+        .copied()
+        .zip(sets)
+        .flat_map(of_receiver)
+        .collect()
+}

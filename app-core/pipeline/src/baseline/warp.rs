@@ -1,0 +1,86 @@
+//! `warp`: for each texel of the new shadow, the position in the frame of its vertex's real shadow.
+
+use wgpu::{StoreOp, TextureFormat, VertexFormat};
+
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::BASELINE;
+use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::{Texture, TextureLayers};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::FLATTEN;
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use app_scene::scene::MAX_RECEIVERS;
+
+pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FLATTEN, &part!("baseline/warp")]);
+/// The shown pose, which is drawn, and the physical one.
+const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
+/// Format of the warp: source position and height need more precision than f16.
+const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+/// Instances of a light, one per receiver.
+#[allow(clippy::cast_possible_truncation, reason = "a handful")]
+const N_SLOTS: u32 = MAX_RECEIVERS as u32;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+/// The shadow of one light that a toy casts in a pose.
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: &'a Buffer,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pose: &'a PoseBuffers,
+    pub(crate) light: u32,
+    pub(crate) n_receivers: u32,
+}
+
+/// Of the region's size.
+pub(crate) struct Targets {
+    /// One layer per light.
+    pub(crate) maps: TextureLayers,
+    depth: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &BaselinePlan) -> Self {
+        let size_px = plan.region.size_px;
+        Self {
+            maps: TextureLayers::targets(gpu, "warp", (size_px, plan.n_lights), FORMAT),
+            depth: Texture::target(gpu, "warp depth", size_px, TextureFormat::Depth32Float),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, &[], &[], &[]];
+        Self {
+            draw: gpu.draw(&DrawSpec {
+                vertex: "vs_warp",
+                streams: STREAMS,
+                depth: Some(nearest_surface()),
+                ..DrawSpec::fullscreen(&SHADER, "fs_source", groups, &[FORMAT])
+            }),
+        }
+    }
+
+    /// Warps the shadow on each receiver into the light's layer.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let Some(layer) = targets.maps.layers.get(inputs.light as usize) else {
+            return;
+        };
+        let group = recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]);
+        let (colors, depth) = ([Some(cleared(layer))], Some(&targets.depth.view));
+        let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
+        render.begin(&self.draw, &[group]);
+        let toy = inputs.toy;
+        render.set_vertices(1, &toy.physical.positions);
+        let first = inputs.light * N_SLOTS;
+        let instances = first..first + inputs.n_receivers;
+        toy.draw_positions(&mut render, &inputs.pose.positions, instances);
+    }
+}

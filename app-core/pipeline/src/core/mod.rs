@@ -1,0 +1,413 @@
+//! [`Core`]: the one type a shell or a harness holds.
+
+mod error;
+mod fit_warnings;
+pub mod inspect;
+mod preview;
+mod warm_up;
+mod window;
+
+use std::sync::Arc;
+
+use crate::frame::report::FrameReport;
+use crate::governor::Step;
+use crate::gpu::DeviceHandle;
+use crate::gpu::context::{AdapterChoice, Gpu, GpuError};
+use crate::gpu::pass_run::PassTime;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::stages::{Clock, Stages};
+use crate::gpu::texture::Texture;
+use crate::gpu::timer::Timer;
+use crate::gpu::work::Work;
+use crate::model::Model;
+use crate::passes::finished::Finished;
+use crate::passes::present::OUTPUT_FORMAT;
+use crate::passes::screen;
+use crate::preset::Preset;
+use crate::stage::Stage;
+use crate::stage::method::Method;
+use app_scene::camera_frame::{CameraImage, Display};
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Image, Scene};
+
+use preview::Preview;
+use window::Window;
+
+pub use error::CoreError;
+pub use warm_up::WarmUp;
+pub use window::Canvas;
+
+/// The pipeline on a device: scene in, frames in, pictures out.
+pub struct Core {
+    gpu: Arc<Gpu>,
+    window: Option<Window>,
+    stage: Option<Stage>,
+    /// Where a camera's picture was shown last, not a frame's.
+    preview: Option<Preview>,
+    /// Only for those who ask.
+    timer: Option<Timer>,
+    clock: Option<Clock>,
+}
+
+impl Core {
+    /// A core that draws into textures alone, for replay and tests.
+    ///
+    /// # Errors
+    /// When there is no adapter of that choice, or it falls short of a phone's limits.
+    pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
+        Ok(Self::new(Gpu::open(instance, adapter, None).await?, None))
+    }
+
+    /// A core on the caller's own device, which draws into textures alone; the caller goes on using device and queue.
+    ///
+    /// # Errors
+    /// When the device was opened with less than a phone's limits.
+    pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, CoreError> {
+        Ok(Self::new(Gpu::adopt(device, queue)?, None))
+    }
+
+    /// A core that presents on `surface`, of `size_px` physical pixels.
+    ///
+    /// # Errors
+    /// When no adapter can draw on the surface, or it falls short of a phone's limits.
+    pub async fn on_surface(
+        instance: &wgpu::Instance,
+        surface: wgpu::Surface<'static>,
+        size_px: [u32; 2],
+    ) -> Result<Self, CoreError> {
+        let gpu = Gpu::open(instance, &AdapterChoice::Fastest, Some(&surface)).await?;
+        let window = Window::new(&gpu, surface, size_px)?;
+        Ok(Self::new(gpu, Some(window)))
+    }
+
+    /// A core without a device: nothing is drawn, but each frame's report has the work of the passes that would run, from
+    /// the same descriptors. What is to be read of the device is an error.
+    #[must_use]
+    pub fn counting() -> Self {
+        Self::new(Gpu::default(), None)
+    }
+
+    fn new(gpu: Gpu, window: Option<Window>) -> Self {
+        Self {
+            gpu: Arc::new(gpu),
+            window,
+            stage: None,
+            preview: None,
+            timer: None,
+            clock: None,
+        }
+    }
+
+    /// The device, for a platform that lends its textures; none of a core that only counts.
+    #[must_use]
+    pub fn device(&self) -> Option<DeviceHandle> {
+        self.gpu.opened.as_ref().map(|opened| opened.device.handle())
+    }
+
+    /// Drops the surface; device, pipelines and what was learned stay.
+    pub fn suspend(&mut self) {
+        self.window = None;
+    }
+
+    /// Continues on a new surface.
+    ///
+    /// # Errors
+    /// When the device cannot draw on it.
+    pub fn resume(&mut self, surface: wgpu::Surface<'static>, size_px: [u32; 2]) -> Result<(), CoreError> {
+        self.window = Some(Window::new(&self.gpu, surface, size_px)?);
+        Ok(())
+    }
+
+    /// Follows a new size of the surface, in physical pixels.
+    pub fn resize(&mut self, size_px: [u32; 2]) {
+        if let Some(window) = &mut self.window {
+            window.resize(&self.gpu, size_px);
+        }
+    }
+
+    /// Takes a camera's picture as it is for the latest, until the next frame: no scene is needed, and nothing is learned.
+    ///
+    /// # Errors
+    /// When its size is out of range, or the device refuses.
+    pub fn show_camera(&mut self, image: &CameraImage) -> Result<(), CoreError> {
+        self.check_sides(image.size_px())?;
+        let size_px = image.size_px();
+        if self
+            .preview
+            .as_ref()
+            .is_some_and(|preview| preview.size_px() != size_px)
+        {
+            drop_preview(&self.gpu, &mut self.preview);
+        }
+        let kept = self.preview.take();
+        let preview = self.gpu.guarded(|| {
+            let mut preview = kept.unwrap_or_else(|| Preview::new(size_px));
+            preview.take(&self.gpu, image);
+            preview
+        })?;
+        self.preview = Some(preview);
+        Ok(())
+    }
+
+    /// Shows the latest picture, or black before the first.
+    ///
+    /// # Errors
+    /// When the surface is lost for good; one that is only out of date is set up anew.
+    pub fn present(&mut self, display: Display) -> Result<(), CoreError> {
+        self.present_with(display, |_| {})
+    }
+
+    /// As [`Core::present`]; `paint` may paint over the picture before it is shown.
+    ///
+    /// # Errors
+    /// As [`Core::present`].
+    pub fn present_with(
+        &mut self,
+        display: Display,
+        paint: impl FnOnce(&Canvas<'_>),
+    ) -> Result<(), CoreError> {
+        let picture = latest(&self.gpu, self.preview.as_ref(), self.stage.as_ref());
+        let Some(window) = &mut self.window else {
+            return Ok(());
+        };
+        let on = (&*self.gpu, self.timer.as_mut());
+        Ok(window.present(on, picture, display, paint)?)
+    }
+
+    /// A target of the caller's with the core's device, to be painted on as by [`Core::present_with`]; none where the core only
+    /// counts.
+    #[must_use]
+    pub fn canvas<'a>(&'a self, target: &'a wgpu::Texture) -> Option<Canvas<'a>> {
+        Canvas::on(&self.gpu, target)
+    }
+
+    /// A screen that nobody sees, for [`Core::draw_on`] and [`Core::canvas`]; none where the core only counts.
+    #[must_use]
+    pub fn hidden_screen(&self, size_px: [u32; 2]) -> Option<wgpu::Texture> {
+        let size_px = size_px.map(|side| side.max(1));
+        let screen = Texture::target(&self.gpu, "screen", size_px.into(), OUTPUT_FORMAT);
+        screen.raw().cloned()
+    }
+
+    /// Waits for the device and returns what such a screen shows.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_screen(&self, screen: &wgpu::Texture) -> Result<Image, CoreError> {
+        Ok(Image {
+            width_px: screen.width(),
+            height_px: screen.height(),
+            rgba8: self.gpu.read_texture(Some(screen))?,
+        })
+    }
+
+    /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the surface. The target's
+    /// format takes sRGB codes as they are, such as [`Bgra8Unorm`](wgpu::TextureFormat::Bgra8Unorm).
+    ///
+    /// # Errors
+    /// When there is no scene, or the device refuses.
+    pub fn draw_on(&mut self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
+        let picture =
+            latest(&self.gpu, self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
+        let (gpu, timer) = (&*self.gpu, self.timer.as_mut());
+        gpu.guarded(|| {
+            let screen = screen::Pass::new(gpu, target.format());
+            window::show((gpu, timer), &screen, (&picture, display), target);
+        })?;
+        Ok(())
+    }
+
+    /// Takes a scene; what was learned of another is forgotten.
+    ///
+    /// # Errors
+    /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
+    pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
+        scene.check()?;
+        self.check_sides([scene.width_px, scene.height_px])?;
+        for plate in &scene.plates {
+            check_size("plate", &scene, &Arc::clone(&plate.image).into())?;
+        }
+        let toy_in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+        self.stage = None;
+        self.gpu.release_groups();
+        for compiled in self.warm_up(preset) {
+            compiled?;
+        }
+        let stage = self
+            .gpu
+            .guarded(|| Stage::new(&self.gpu, scene, preset, &toy_in_object))??;
+        self.stage = Some(stage);
+        Ok(())
+    }
+
+    /// Goes back to where no scene was set.
+    pub fn forget_scene(&mut self) {
+        self.stage = None;
+        self.gpu.release_groups();
+    }
+
+    /// Turns settings of the model down from the next frame on, or up again: those that a
+    /// [`Governor`](crate::governor::Governor) has [turned down](crate::governor::Governor::turned_down). What was learned of the
+    /// place stays; the next frame learns as from a new view. Until another scene is set; the baseline has no such settings.
+    ///
+    /// # Errors
+    /// When there is no scene.
+    pub fn turn_down(&mut self, steps: &[Step]) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.turn_down(steps);
+        Ok(())
+    }
+
+    /// Makes the picture of one frame.
+    ///
+    /// # Errors
+    /// When there is no scene, a value of the input cannot be, the camera's picture is not of the scene's size, or the device
+    /// refuses the work.
+    pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
+        let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
+        drop_preview(&self.gpu, &mut self.preview);
+        input.check()?;
+        check_size("camera frame", stage.scene(), &input.image)?;
+        if let Some(timer) = &mut self.timer {
+            timer.start();
+        }
+        let (gpu, timer, clock) = (&self.gpu, self.timer.as_mut(), self.clock.clone());
+        let made = gpu.guarded(|| {
+            let mut recorder = Recorder::new(gpu, timer);
+            recorder.stages = Stages::new(clock);
+            let mut report = stage.encode(&mut recorder, input)?;
+            let recorded = recorder.submit();
+            report.ran = recorded.ran;
+            report.uploaded_bytes = recorded.uploaded_bytes;
+            report.stages = recorded.stages;
+            Ok::<_, CoreError>(report)
+        });
+        match made {
+            Ok(report) => report,
+            Err(refused) => {
+                stage.forget(&self.gpu);
+                Err(refused.into())
+            }
+        }
+    }
+
+    /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
+    #[must_use]
+    pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
+        let picture = self.stage.as_ref()?.finished(&self.gpu);
+        Some(window::count(&picture, screen_px, display))
+    }
+
+    /// Draws the latest frame's picture into a texture of the scene's size: sRGB codes as
+    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It is the same until the next scene.
+    ///
+    /// # Errors
+    /// When there is no scene, or the device refuses.
+    pub fn picture(&self) -> Result<&wgpu::Texture, CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
+        picture.raw().ok_or_else(|| GpuError::no_device().into())
+    }
+
+    /// Waits for the device and returns the latest picture, alpha 255.
+    ///
+    /// # Errors
+    /// When there is no scene, or the device is lost.
+    pub fn read_picture(&self) -> Result<Image, CoreError> {
+        let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
+        let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
+        let rgba8 = self.gpu.read_texture(picture.raw())?;
+        let [width_px, height_px] = picture.size_px().to_array();
+        Ok(Image {
+            width_px,
+            height_px,
+            rgba8,
+        })
+    }
+
+    /// Takes time stamps of each pass from the next frame on, where the device can; or no longer.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn time_passes(&mut self, is_wanted: bool) -> Result<(), CoreError> {
+        self.timer = if is_wanted {
+            self.gpu.guarded(|| Timer::new(&self.gpu))?
+        } else {
+            None
+        };
+        Ok(())
+    }
+
+    /// Times the stages of frames on the processor from the next one on, by a clock of the caller's; or no longer.
+    pub fn time_stages(&mut self, clock: Option<Clock>) {
+        self.clock = clock;
+    }
+
+    /// Waits for the device and returns the latest frame's time per pass; empty where nobody asked for it, or the device
+    /// cannot tell.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_pass_times(&self) -> Result<Vec<PassTime>, CoreError> {
+        let times = self
+            .timer
+            .as_ref()
+            .map(|timer| timer.read(&self.gpu))
+            .transpose()?;
+        Ok(times.unwrap_or_default())
+    }
+
+    fn check_sides(&self, size_px: [u32; 2]) -> Result<(), CoreError> {
+        let largest_px = self.gpu.limits().max_texture_dimension_2d;
+        if size_px.iter().all(|side| (1..=largest_px).contains(side)) {
+            Ok(())
+        } else {
+            Err(CoreError::SizeOutOfRange { size_px, largest_px })
+        }
+    }
+
+    fn model(&self) -> Option<&Model> {
+        self.stage
+            .as_ref()
+            .and_then(Stage::method)
+            .and_then(Method::model)
+    }
+
+    /// Name of the device's adapter with its driver, as it calls itself; empty where the core only counts.
+    #[must_use]
+    pub fn adapter_name(&self) -> String {
+        self.gpu.adapter_name()
+    }
+
+    /// Whether the device computes on the processor.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.gpu.is_software()
+    }
+}
+
+/// Drops a preview with its textures, of which bind groups are kept, too.
+fn drop_preview(gpu: &Gpu, preview: &mut Option<Preview>) {
+    if preview.take().is_some() {
+        gpu.release_groups();
+    }
+}
+
+/// The picture that was made or taken last.
+fn latest<'a>(gpu: &Gpu, preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
+    let of_stage = || stage.map(|stage| stage.finished(gpu));
+    preview.map(|preview| preview.finished(gpu)).or_else(of_stage)
+}
+
+fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {
+    let expected_px = [scene.width_px, scene.height_px];
+    if image.is_of_size(expected_px) {
+        Ok(())
+    } else {
+        Err(CoreError::SizeDiffers {
+            what,
+            expected_px,
+            actual_px: image.size_px(),
+            n_bytes: image.n_bytes(),
+        })
+    }
+}

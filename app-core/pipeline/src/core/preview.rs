@@ -1,0 +1,40 @@
+//! A camera's picture as it is, before there is a scene or while nothing is known of one.
+
+use glam::UVec2;
+
+use crate::gpu::context::Gpu;
+use crate::passes::finished::Finished;
+use crate::stage::camera_texture::CameraTexture;
+use app_scene::camera_frame::CameraImage;
+
+/// A camera's picture on the device.
+pub(super) struct Preview {
+    texture: CameraTexture,
+    size_px: [u32; 2],
+}
+
+impl Preview {
+    pub(super) fn new(size_px: [u32; 2]) -> Self {
+        Self {
+            texture: CameraTexture::new(UVec2::from(size_px)),
+            size_px,
+        }
+    }
+
+    pub(super) fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// Uploads the picture, unless it is the one that is there.
+    pub(super) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
+        self.texture.take(gpu, image);
+    }
+
+    pub(super) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
+        Finished {
+            frame: self.texture.frame(gpu),
+            region: None,
+            size_px: self.size_px.into(),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The surface that a core presents on, and other targets of a screen's.
+
+use wgpu::CurrentSurfaceTexture;
+
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::recorder::{Recorded, Recorder};
+use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::timer::Timer;
+use crate::gpu::work::Work;
+use crate::passes::finished::Finished;
+use crate::passes::present::OUTPUT_FORMAT;
+use crate::passes::screen;
+use app_scene::camera_frame::Display;
+
+/// A target of the screen's with the picture on it, to be painted over: what it takes are sRGB codes as they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Canvas<'a> {
+    /// The core's device.
+    pub device: &'a wgpu::Device,
+    /// Its queue. What is submitted here comes after the picture and before it is shown.
+    pub queue: &'a wgpu::Queue,
+    /// The target.
+    pub target: &'a wgpu::Texture,
+}
+
+impl<'a> Canvas<'a> {
+    /// None without a device.
+    pub(super) fn on(gpu: &'a Gpu, target: &'a wgpu::Texture) -> Option<Self> {
+        let opened = gpu.opened.as_ref()?;
+        Some(Self {
+            device: &opened.device.raw,
+            queue: &opened.queue,
+            target,
+        })
+    }
+}
+
+/// A configured surface.
+pub(super) struct Window {
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
+    screen: screen::Pass,
+}
+
+impl Window {
+    pub(super) fn new(
+        gpu: &Gpu,
+        surface: wgpu::Surface<'static>,
+        [width, height]: [u32; 2],
+    ) -> Result<Self, GpuError> {
+        let failed = |reason: &str| GpuError::Surface {
+            reason: reason.to_owned(),
+        };
+        let opened = gpu.opened.as_ref();
+        let adapter = opened
+            .and_then(|opened| opened.adapter.as_ref())
+            .ok_or_else(|| failed("the device was opened by the caller, who presents by itself"))?;
+        let mut config = surface
+            .get_default_config(adapter, width.max(1), height.max(1))
+            .ok_or_else(|| failed("the adapter offers no configuration for it"))?;
+        // `screen` writes sRGB codes; a surface that encodes once more would show them too bright.
+        config.format = config.format.remove_srgb_suffix();
+        configure(gpu, &surface, &config);
+        Ok(Self {
+            screen: screen::Pass::new(gpu, config.format),
+            surface,
+            config,
+        })
+    }
+
+    pub(super) fn resize(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) {
+        self.config.width = width.max(1);
+        self.config.height = height.max(1);
+        configure(gpu, &self.surface, &self.config);
+    }
+
+    /// Shows `picture`, or black.
+    pub(super) fn present(
+        &mut self,
+        (gpu, timer): (&Gpu, Option<&mut Timer>),
+        picture: Option<Finished<'_>>,
+        display: Display,
+        paint: impl FnOnce(&Canvas<'_>),
+    ) -> Result<(), GpuError> {
+        let texture = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(texture) | CurrentSurfaceTexture::Suboptimal(texture) => texture,
+            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
+            CurrentSurfaceTexture::Outdated => {
+                configure(gpu, &self.surface, &self.config);
+                return Ok(());
+            }
+            other => {
+                return Err(GpuError::Surface {
+                    reason: format!("{other:?}"),
+                });
+            }
+        };
+        match picture {
+            Some(picture) => {
+                show((gpu, timer), &self.screen, (&picture, display), &texture.texture);
+            }
+            None => blacken(gpu, &texture.texture),
+        }
+        if let Some(canvas) = Canvas::on(gpu, &texture.texture) {
+            paint(&canvas);
+        }
+        if let Some(opened) = &gpu.opened {
+            opened.queue.present(texture);
+        }
+        Ok(())
+    }
+}
+
+/// Draws a picture on a target that takes sRGB codes as they are.
+pub(super) fn show(
+    (gpu, timer): (&Gpu, Option<&mut Timer>),
+    screen: &screen::Pass,
+    (picture, display): (&Finished<'_>, Display),
+    target: &wgpu::Texture,
+) -> Recorded {
+    let target = TextureView::of_other(gpu, target);
+    show_on((gpu, timer), screen, (picture, display), &target)
+}
+
+/// What that costs.
+pub(super) fn count(picture: &Finished<'_>, screen_px: [u32; 2], display: Display) -> Work {
+    let gpu = Gpu::default();
+    let target = Texture::target(&gpu, "", screen_px.into(), OUTPUT_FORMAT);
+    let screen = screen::Pass::new(&gpu, OUTPUT_FORMAT);
+    let recorded = show_on((&gpu, None), &screen, (picture, display), &target.view);
+    recorded.ran.iter().map(|run| run.work).sum()
+}
+
+fn show_on(
+    (gpu, timer): (&Gpu, Option<&mut Timer>),
+    screen: &screen::Pass,
+    (picture, display): (&Finished<'_>, Display),
+    target: &TextureView,
+) -> Recorded {
+    let screen_px = target.size_px().to_array();
+    let image_from_screen = display.image_from_screen(picture.size_px.to_array(), screen_px);
+    let mut recorder = Recorder::new(gpu, timer);
+    screen.encode(&mut recorder, (picture, &image_from_screen), target);
+    recorder.submit()
+}
+
+fn blacken(gpu: &Gpu, target: &wgpu::Texture) {
+    let view = TextureView::of_other(gpu, target);
+    let mut recorder = Recorder::new(gpu, None);
+    recorder.blacken(&view);
+    recorder.submit();
+}
+
+fn configure(gpu: &Gpu, surface: &wgpu::Surface<'static>, config: &wgpu::SurfaceConfiguration) {
+    if let Some(opened) = &gpu.opened {
+        surface.configure(&opened.device.raw, config);
+    }
+}

@@ -1,0 +1,261 @@
+//! Degraded modes, in words.
+
+use std::fmt;
+
+use crate::frame::mismatch::Mismatch;
+use app_scene::words::Listed;
+
+/// A degraded mode: the picture is the best that can be had, for a reason.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// No light is listed, and none was found: the camera frame passes through.
+    NoLight,
+    /// There is no plate, and the preset cannot do without: the camera frame passes through.
+    NoPlate,
+    /// There is no plate: the scene without the toy is estimated from the frame.
+    PlateEstimated,
+    /// The plates show only a part of the work region; the rest is estimated from the frame, or
+    /// stays as it is with a preset that needs a plate.
+    PlatePartial {
+        /// Share that they show, from 0 to 1.
+        fraction: f64,
+    },
+    /// More receivers than this version moves shadows on.
+    ReceiversLeftOut {
+        /// Those whose shadow stays as photographed.
+        names: Vec<String>,
+    },
+    /// More lights than are moved.
+    LightsLeftOut {
+        /// How many shadows stay as photographed.
+        n_lights: usize,
+    },
+    /// Lights do not stand above any receiver, so they cast no shadow there.
+    LightsBelowReceivers {
+        /// Their indices in the list of lights: the frame's own, or the scene's.
+        lights: Vec<usize>,
+    },
+    /// Lights stand inside the real toy, which lets none of their light out.
+    LightsInsideToy {
+        /// Their indices in the list of lights: the frame's own, or the scene's.
+        lights: Vec<usize>,
+    },
+    /// Too little real shadow is seen for the strength of the new one.
+    FaintShadow {
+        /// How much of that strength is assumed, from 0 to 1: 1 less the sum of the lights' conditioning.
+        assumed: f64,
+    },
+    /// The real shadow is seen on hardly a pixel, and by no earlier view.
+    SmallShadow {
+        /// Pixels that show it, each as far as it is hidden from a light.
+        n_pixels: f64,
+    },
+    /// The pictures do not show what they should.
+    Mismatch(Mismatch),
+    /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
+    /// where the camera does not see it.
+    LightsUnderConstrained {
+        /// Their indices in the list of lights: the frame's own, or the scene's.
+        lights: Vec<usize>,
+    },
+    /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
+    NothingToSample,
+    /// New shadows fall or overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
+    ShadowsUnseen {
+        /// What would have to be seen.
+        unseen: Vec<UnseenShadow>,
+    },
+    /// With the preset's own settings the scene would cost too much: some are turned down.
+    TurnedDown {
+        /// Which, in words.
+        what: Vec<&'static str>,
+        /// Triangles that a new view would take without that.
+        triangles: u64,
+        /// Pixels that they would cover, one over the other.
+        covered_px: f64,
+    },
+    /// The scene would cost too much, whatever is turned down: the camera frame passes through.
+    TooCostly {
+        /// Triangles that a new view would take.
+        triangles: u64,
+        /// Pixels that they would cover, one over the other.
+        covered_px: f64,
+    },
+    /// The camera sees what the model cannot explain.
+    Outlier(Outlier),
+    /// The toy and its shadow are out of the picture.
+    OutOfPicture,
+    /// The real toy is out of the picture, but what is drawn is not.
+    ToyOutOfPicture,
+    /// The camera's centre is not above the receiver.
+    CameraBelowReceiver,
+}
+
+impl Warning {
+    /// What it says, where there is no number in it.
+    fn words(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NoLight => "no light is known: the camera frame passes through",
+            Self::NoPlate => "there is no plate, which this preset needs: the camera frame passes through",
+            Self::PlateEstimated => {
+                "there is no plate: the place behind toy and shadow is estimated from the frame"
+            }
+            Self::CameraBelowReceiver => {
+                "the camera is not above the receiver: the camera frame passes through"
+            }
+            Self::NothingToSample => {
+                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples"
+            }
+            Self::OutOfPicture => "the toy and its shadow are out of the picture",
+            Self::ToyOutOfPicture => {
+                "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose"
+            }
+            _ => return None,
+        })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(words) = self.words() {
+            return f.write_str(words);
+        }
+        match self {
+            Self::PlatePartial { fraction } => write!(
+                f,
+                "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
+                // Not 100 % where anything is missing.
+                (100.0 * fraction).floor()
+            ),
+            Self::ReceiversLeftOut { names } => write!(
+                f,
+                "the shadow on {} stays as photographed: the preset handles fewer receivers",
+                listed(names, ", ")
+            ),
+            Self::LightsLeftOut { n_lights } => {
+                write!(
+                    f,
+                    "the shadows of the last {n_lights} lights stay as photographed: the preset handles fewer"
+                )
+            }
+            Self::LightsBelowReceivers { lights } => write!(
+                f,
+                "left out, since they stand above none of the receivers: {}",
+                lights_in_words(lights)
+            ),
+            Self::LightsInsideToy { lights } => write!(
+                f,
+                "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
+                lights_in_words(lights)
+            ),
+            Self::FaintShadow { assumed } => write!(
+                f,
+                "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
+                100.0 * assumed
+            ),
+            Self::SmallShadow { n_pixels } => write!(
+                f,
+                "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
+            ),
+            Self::LightsUnderConstrained { lights } => write!(
+                f,
+                "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
+                lights_in_words(lights)
+            ),
+            Self::ShadowsUnseen { unseen } => write!(
+                f,
+                "no real shadow is seen of {}: the new one there has the shade of others",
+                listed(unseen, ", ")
+            ),
+            Self::Mismatch(mismatch) => mismatch.fmt(f),
+            Self::Outlier(unknown) => unknown.fmt(f),
+            Self::TurnedDown {
+                what,
+                triangles,
+                covered_px,
+            } => too_much(
+                f,
+                (*triangles, *covered_px),
+                format_args!(": {}", listed(what, ", ")),
+            ),
+            Self::TooCostly {
+                triangles,
+                covered_px,
+            } => {
+                let what =
+                    " with every setting turned down: the camera frame passes through; take a simpler toy";
+                too_much(f, (*triangles, *covered_px), format_args!("{what}"))
+            }
+            // Said above.
+            Self::NoLight
+            | Self::NoPlate
+            | Self::PlateEstimated
+            | Self::CameraBelowReceiver
+            | Self::NothingToSample
+            | Self::OutOfPicture
+            | Self::ToyOutOfPicture => Ok(()),
+        }
+    }
+}
+
+fn too_much(
+    f: &mut fmt::Formatter<'_>,
+    (triangles, covered_px): (u64, f64),
+    and: fmt::Arguments<'_>,
+) -> fmt::Result {
+    write!(
+        f,
+        "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much{and}"
+    )
+}
+
+fn listed<'a, T>(items: &'a [T], between: &'static str) -> Listed<'a, T> {
+    Listed { items, between }
+}
+
+fn lights_in_words(lights: &[usize]) -> String {
+    let names: Vec<String> = lights.iter().map(|light| format!("light {light}")).collect();
+    listed(&names, ", ").to_string()
+}
+
+/// A place on a receiver that just some lights do not reach.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnseenShadow {
+    /// Index of the receiver in the scene's list.
+    pub receiver: usize,
+    /// Indices in the list of lights: the frame's own, or the scene's.
+    pub lights: Vec<usize>,
+}
+
+impl fmt::Display for UnseenShadow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lights: Vec<_> = self.lights.iter().map(ToString::to_string).collect();
+        write!(
+            f,
+            "light {} alone on receiver {}",
+            lights.join(" + "),
+            self.receiver
+        )
+    }
+}
+
+/// What stays as it was photographed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outlier {
+    /// A thing of its own colour, such as a hand.
+    Object,
+    /// What looks like the shadow of a light that is not listed.
+    Shadow,
+}
+
+impl fmt::Display for Outlier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Object => {
+                "something that the plate does not show lies on the receiver: it stays as photographed"
+            }
+            Self::Shadow => "a shadow is there that no listed light casts: it stays as photographed",
+        })
+    }
+}

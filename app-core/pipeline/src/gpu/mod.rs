@@ -1,0 +1,31 @@
+//! The thin layer over wgpu: device and caches, textures and buffers, recording of what ran, read-back.
+//!
+//! Everything that is created on the device is created here, and counted.
+
+pub(crate) mod bindings;
+pub(crate) mod buffer;
+pub mod context;
+pub(crate) mod device;
+mod handle;
+mod lent;
+pub(crate) mod meter;
+pub(crate) mod pass_run;
+pub(crate) mod pipeline;
+mod quirks;
+pub(crate) mod readback;
+pub(crate) mod recorder;
+pub(crate) mod resource;
+pub(crate) mod samplers;
+pub mod shader;
+pub(crate) mod shape;
+pub mod shared;
+pub(crate) mod stages;
+pub mod texture;
+pub(crate) mod timer;
+pub(crate) mod uniforms;
+pub(crate) mod work;
+
+pub use context::{AdapterChoice, Gpu, GpuError};
+pub use handle::DeviceHandle;
+pub use lent::{LentError, LentTextures};
+pub use quirks::fault_on_surfaces;

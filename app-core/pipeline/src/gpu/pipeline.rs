@@ -1,0 +1,253 @@
+//! Pipelines: compiled once per device, whatever scene or view uses them.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::Mutex;
+
+use wgpu::{ColorTargetState, DepthStencilState, Face, VertexAttribute, VertexFormat, VertexStepMode};
+
+use super::bindings::{BindingCache, Layout, N_GROUPS, Slot, locked};
+use super::device::Device;
+use super::shader::Shader;
+
+/// Slots of each group; empty where a shader has no such group.
+pub(crate) type Groups = [&'static [Slot]; N_GROUPS];
+
+/// A vertex stream of one attribute: its shader location and format.
+pub(crate) type Stream = (u32, VertexFormat);
+
+/// Description of a render pipeline, its cache key.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DrawSpec {
+    pub(crate) shader: &'static Shader,
+    pub(crate) vertex: &'static str,
+    pub(crate) fragment: &'static str,
+    pub(crate) groups: Groups,
+    /// One per vertex buffer, in the order of its slots.
+    pub(crate) streams: &'static [Stream],
+    pub(crate) targets: Vec<ColorTargetState>,
+    pub(crate) n_samples: u32,
+    pub(crate) depth: Option<DepthStencilState>,
+    /// Side of a triangle that is not drawn.
+    pub(crate) culled: Option<Face>,
+    /// Values of `override` constants.
+    pub(crate) constants: Vec<(&'static str, u32)>,
+}
+
+impl DrawSpec {
+    /// A fragment shader over a whole target.
+    pub(crate) fn fullscreen(
+        shader: &'static Shader,
+        fragment: &'static str,
+        groups: Groups,
+        targets: &[wgpu::TextureFormat],
+    ) -> Self {
+        Self {
+            shader,
+            vertex: "vs_fullscreen",
+            fragment,
+            groups,
+            streams: &[],
+            targets: targets.iter().map(|format| (*format).into()).collect(),
+            n_samples: 1,
+            depth: None,
+            culled: None,
+            constants: Vec::new(),
+        }
+    }
+}
+
+/// Description of a compute pipeline, its cache key.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ComputeSpec {
+    pub(crate) shader: &'static Shader,
+    pub(crate) entry_point: &'static str,
+    pub(crate) groups: Groups,
+    /// Values of `override` constants.
+    pub(crate) constants: Vec<(&'static str, u32)>,
+}
+
+/// A pipeline.
+#[derive(Clone, Debug)]
+pub(crate) struct Pipeline<T> {
+    pub(crate) name: &'static str,
+    pub(crate) slots: Groups,
+    /// None where nothing is drawn, only counted.
+    pub(super) compiled: Option<Compiled<T>>,
+}
+
+/// A pipeline on its device, and the layouts of its groups.
+#[derive(Clone, Debug)]
+pub(super) struct Compiled<T> {
+    pub raw: T,
+    pub(super) layouts: [Option<Layout>; N_GROUPS],
+}
+
+/// A render pipeline.
+pub(crate) type Draw = Pipeline<wgpu::RenderPipeline>;
+/// A compute pipeline.
+pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
+
+/// Cache of everything compiled on a device.
+#[derive(Default)]
+pub(crate) struct PipelineCache {
+    modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
+    draws: Mutex<HashMap<DrawSpec, Draw>>,
+    computes: Mutex<HashMap<ComputeSpec, Compute>>,
+}
+
+impl PipelineCache {
+    /// The render pipeline of `spec`, compiled at the first call.
+    pub(crate) fn draw(&self, on: (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
+        cached(&self.draws, spec, || self.compile_draw(on, spec))
+    }
+
+    /// The compute pipeline of `spec`, compiled at the first call.
+    pub(crate) fn compute(&self, on: (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
+        cached(&self.computes, spec, || self.compile_compute(on, spec))
+    }
+
+    /// Drops everything, to be compiled anew.
+    pub(crate) fn clear(&self) {
+        locked(&self.modules).clear();
+        locked(&self.draws).clear();
+        locked(&self.computes).clear();
+    }
+
+    fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
+        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+        let module = self.module(device, spec.shader);
+        let constants = values(&spec.constants);
+        let attributes: Vec<[VertexAttribute; 1]> = spec.streams.iter().map(attribute).collect();
+        let buffers: Vec<_> = attributes.iter().map(|stream| Some(buffer(stream))).collect();
+        let targets: Vec<_> = spec.targets.iter().cloned().map(Some).collect();
+        let raw = device.render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(spec.shader.name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(spec.vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: spec.culled,
+                ..Default::default()
+            },
+            depth_stencil: spec.depth.clone(),
+            multisample: wgpu::MultisampleState {
+                count: spec.n_samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(spec.fragment),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..Default::default()
+                },
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Pipeline {
+            name: spec.shader.name,
+            slots: spec.groups,
+            compiled: Some(Compiled { raw, layouts }),
+        }
+    }
+
+    fn compile_compute(&self, (device, bindings): (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
+        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+        let raw = device.compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(spec.shader.name),
+            layout: Some(&layout),
+            module: &self.module(device, spec.shader),
+            entry_point: Some(spec.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &values(&spec.constants),
+                ..Default::default()
+            },
+            cache: None,
+        });
+        Pipeline {
+            name: spec.shader.name,
+            slots: spec.groups,
+            compiled: Some(Compiled { raw, layouts }),
+        }
+    }
+
+    fn module(&self, device: &Device, shader: &Shader) -> wgpu::ShaderModule {
+        cached(&self.modules, &shader.name, || {
+            device.module(wgpu::ShaderModuleDescriptor {
+                label: Some(shader.name),
+                source: wgpu::ShaderSource::Wgsl(shader.source().into()),
+            })
+        })
+    }
+}
+
+/// Values of `override` constants as the device takes them.
+fn values(constants: &[(&'static str, u32)]) -> Vec<(&'static str, f64)> {
+    let values = constants.iter();
+    values.map(|(name, value)| (*name, f64::from(*value))).collect()
+}
+
+fn pipeline_layout(
+    (device, bindings): (&Device, &BindingCache),
+    shader: &Shader,
+    groups: Groups,
+) -> ([Option<Layout>; N_GROUPS], wgpu::PipelineLayout) {
+    let layouts = groups.map(|slots| (!slots.is_empty()).then(|| bindings.layout(device, slots)));
+    let raw = layouts
+        .each_ref()
+        .map(|layout| layout.as_ref().map(|layout| &layout.raw));
+    let n_groups = raw.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    let layout = device.pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(shader.name),
+        bind_group_layouts: &raw[..n_groups],
+        immediate_size: 0,
+    });
+    (layouts, layout)
+}
+
+/// The value under `key`, created outside the lock where there is none: compiling takes its time.
+fn cached<K: Clone + Eq + Hash, V: Clone>(
+    cache: &Mutex<HashMap<K, V>>,
+    key: &K,
+    make: impl FnOnce() -> V,
+) -> V {
+    if let Some(value) = locked(cache).get(key) {
+        return value.clone();
+    }
+    let made = make();
+    locked(cache).entry(key.clone()).or_insert(made).clone()
+}
+
+fn attribute(&(shader_location, format): &Stream) -> [VertexAttribute; 1] {
+    [VertexAttribute {
+        format,
+        offset: 0,
+        shader_location,
+    }]
+}
+
+fn buffer(attributes: &[VertexAttribute; 1]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: attributes[0].format.size(),
+        step_mode: VertexStepMode::Vertex,
+        attributes,
+    }
+}
+
+/// Reversed depth that keeps the nearest surface.
+pub(crate) fn nearest_surface() -> DepthStencilState {
+    DepthStencilState {
+        format: wgpu::TextureFormat::Depth32Float,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Greater),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}

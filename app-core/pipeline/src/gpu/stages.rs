@@ -1,0 +1,83 @@
+//! Stages of a frame on the processor, timed by the caller's clock: the core has none.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// A caller's clock: milliseconds since whenever, never going back.
+#[derive(Clone)]
+pub struct Clock(Arc<dyn Fn() -> f64 + Send + Sync>);
+
+impl Clock {
+    /// Of a function that tells milliseconds since whenever.
+    pub fn new(now_ms: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(now_ms))
+    }
+
+    /// Milliseconds since whenever.
+    pub fn now_ms(&self) -> f64 {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Clock")
+    }
+}
+
+/// Time of one stage on the processor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageTime {
+    /// Its name.
+    pub stage: &'static str,
+    /// When it began, by the caller's clock.
+    pub begin_ms: f64,
+    /// How long it took.
+    pub cpu_ms: f64,
+}
+
+/// Stages of a frame, one after the other.
+#[derive(Debug, Default)]
+pub(crate) struct Stages {
+    clock: Option<Clock>,
+    current: Option<(&'static str, f64)>,
+    ended: Vec<StageTime>,
+}
+
+impl Stages {
+    /// Timed by `clock`; none without it.
+    pub(crate) fn new(clock: Option<Clock>) -> Self {
+        Self {
+            clock,
+            ..Self::default()
+        }
+    }
+
+    /// Ends the stage before, and begins the next.
+    pub(crate) fn begin(&mut self, stage: &'static str) {
+        let Some(clock) = &self.clock else {
+            return;
+        };
+        let now_ms = clock.now_ms();
+        self.end_at(now_ms);
+        self.current = Some((stage, now_ms));
+    }
+
+    /// Ends the last stage.
+    pub(crate) fn end(mut self) -> Vec<StageTime> {
+        if let Some(now_ms) = self.clock.as_ref().map(Clock::now_ms) {
+            self.end_at(now_ms);
+        }
+        self.ended
+    }
+
+    fn end_at(&mut self, now_ms: f64) {
+        if let Some((stage, begin_ms)) = self.current.take() {
+            self.ended.push(StageTime {
+                stage,
+                begin_ms,
+                cpu_ms: now_ms - begin_ms,
+            });
+        }
+    }
+}

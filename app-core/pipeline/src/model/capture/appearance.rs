@@ -1,0 +1,116 @@
+//! `appearance`: which of the camera's pixels the toy's own colours are from, also a little past its outline.
+
+use glam::IVec2;
+use wgpu::{Color, TextureFormat};
+
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::{Recorder, cleared, cleared_to};
+use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::texture::{Texture, TextureView};
+use crate::model::capture::gbuffer;
+use crate::model::capture::gbuffer::{BASE_FORMAT, RECEIVED_FORMAT};
+use crate::model::parts::HEMISPHERES;
+use crate::model::plan::Plan;
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::parts::{DEPTH, FULLSCREEN};
+
+/// Numbers of the pixels that colours are from.
+pub(crate) const SOURCE: Part = part!("common/source", constants: [REACH_PX, N_IN_ROW]);
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &HEMISPHERES,
+    &DEPTH,
+    &FULLSCREEN,
+    &SOURCE,
+    &part!("capture/appearance"),
+]);
+const SLOTS: &[Slot] = &[
+    Slot::Texture,
+    Slot::Depth,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+];
+/// Format of the numbers of the pixels that colours are from, in codes.
+const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
+
+/// How far past the toy its colours are extrapolated.
+const REACH_PX: u32 = 3;
+/// Pixels around a pixel are numbered row by row, so many to a row.
+const N_IN_ROW: i32 = 8;
+
+pub(crate) struct Pass {
+    draw: Draw,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) globals: &'a Buffer,
+    pub(crate) validity: &'a TextureView,
+    pub(crate) gbuffer: &'a gbuffer::Targets,
+}
+
+/// Of the physical box's size.
+pub(crate) struct Targets {
+    /// Each light's cosine times its visibility at the pixels that a colour is from.
+    pub(crate) received: Texture,
+    /// Base colour of these pixels, and how far they face upwards.
+    pub(crate) base: Texture,
+    /// Which pixels they are.
+    pub(crate) source: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = |label, format| Texture::target(gpu, label, plan.physical_box.size_px, format);
+        Self {
+            received: target("appearance received", RECEIVED_FORMAT),
+            base: target("appearance base", BASE_FORMAT),
+            source: target("appearance source", SOURCE_FORMAT),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let targets = [RECEIVED_FORMAT, BASE_FORMAT, SOURCE_FORMAT];
+        Self {
+            draw: gpu.draw(&DrawSpec::fullscreen(&SHADER, "fs_clean", groups, &targets)),
+        }
+    }
+
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let gbuffer = inputs.gbuffer;
+        let resources = [
+            inputs.validity.into(),
+            (&gbuffer.depth.view).into(),
+            (&gbuffer.normal.view).into(),
+            (&gbuffer.received.view).into(),
+            (&gbuffer.base.view).into(),
+        ];
+        let groups = [
+            recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
+            recorder.bind(&self.draw, GROUP_PASS, &resources),
+        ];
+        // Beyond what is drawn no colour has a source.
+        let written = [
+            cleared(&targets.received.view),
+            cleared(&targets.base.view),
+            cleared_to(&targets.source.view, Color::WHITE),
+        ];
+        let near = inputs.plan.near_physical_toy(REACH_PX);
+        recorder.fullscreen_within(&self.draw, &groups, &written.map(Some), near);
+    }
+}
+
+/// The pixel that a source tells the colour of a texel to be from; none where there is none.
+pub(crate) fn source_texel(texel: IVec2, source: f32) -> Option<IVec2> {
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
+    let number = (255.0 * source).round() as i32;
+    let offset = IVec2::new(number % N_IN_ROW, number / N_IN_ROW) - REACH_PX as i32;
+    (number < N_IN_ROW * N_IN_ROW).then_some(texel + offset)
+}

@@ -1,0 +1,69 @@
+//! Conditioning of each light's direct fraction: how far the real shadow, rather than the prior, decides it.
+//!
+//! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums of the normal equations. The diagonal
+//! of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that the sums alone decide and 0 for one that
+//! the prior decides: of two lights whose shadows always fall together just the sum is constrained.
+//!
+//! Source: Backus and Gilbert 1968 (resolution of an inverse problem).
+
+use crate::model::state::solution::{N_CHANNELS, N_COLUMNS, N_FIT_SUMS, PRIOR_WEIGHT};
+use app_scene::scene::MAX_RECEIVERS;
+
+type Matrix = [[f64; N_COLUMNS]; N_COLUMNS];
+
+/// Resolution of each light, from 0 to 1: the largest of the receivers' means over channels. `sums` are the
+/// accumulated sums of the fits.
+#[must_use]
+pub fn light_conditioning(sums: &[f32], n_lights: usize) -> Vec<f64> {
+    let mut most = vec![0.0_f64; n_lights];
+    for receiver in sums.chunks_exact(N_CHANNELS * N_FIT_SUMS).take(MAX_RECEIVERS) {
+        let channels = receiver.chunks_exact(N_FIT_SUMS);
+        let resolved: Vec<_> = channels
+            .map(|sums| channel_resolution(sums, 2 + n_lights))
+            .collect();
+        for (light, most) in most.iter_mut().enumerate() {
+            let sum: f64 = resolved.iter().map(|columns| columns[2 + light]).sum();
+            *most = most.max(sum / N_CHANNELS as f64);
+        }
+    }
+    most
+}
+
+/// Resolution of each column; 0 without any pixel.
+fn channel_resolution(sums: &[f32], n_columns: usize) -> [f64; N_COLUMNS] {
+    let energy = f64::from(sums[0]);
+    if energy <= 0.0 {
+        return [0.0; N_COLUMNS];
+    }
+    let weight = f64::from(PRIOR_WEIGHT) * energy;
+    let mut matrix: Matrix = [[0.0; N_COLUMNS]; N_COLUMNS];
+    let upper = (0..N_COLUMNS).flat_map(|i| (i..N_COLUMNS).map(move |j| (i, j)));
+    for ((i, j), sum) in upper.zip(sums) {
+        matrix[i][j] = f64::from(*sum);
+        matrix[j][i] = f64::from(*sum);
+    }
+    (0..N_COLUMNS).for_each(|i| matrix[i][i] += weight);
+    inverse_diagonal(matrix, n_columns).map(|inverse| (1.0 - weight * inverse).max(0.0))
+}
+
+/// Diagonal of the inverse of the first `n` rows and columns; the matrix is symmetric and positive definite.
+///
+/// Column k of the inverse solves M x = e_k, so x_k is 1 over the pivot that k has when it is eliminated last.
+fn inverse_diagonal(matrix: Matrix, n: usize) -> [f64; N_COLUMNS] {
+    let mut diagonal = [0.0; N_COLUMNS];
+    for (last, inverse) in diagonal.iter_mut().enumerate().take(n) {
+        let mut left = matrix;
+        for pivot in (0..n).filter(|pivot| *pivot != last) {
+            for row in (0..n).filter(|row| *row > pivot || *row == last) {
+                let factor = left[row][pivot] / left[pivot][pivot];
+                let above = left[pivot];
+                left[row]
+                    .iter_mut()
+                    .zip(above)
+                    .for_each(|(value, above)| *value -= factor * above);
+            }
+        }
+        *inverse = 1.0 / left[last][last];
+    }
+    diagonal
+}

@@ -1,0 +1,187 @@
+//! The frame path: visibility of the shown pose, then the picture of the region.
+
+pub(crate) mod region_parts;
+
+use crate::geometry::rect::PixelRect;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::model::capture::CaptureTargets;
+use crate::model::frame::region_parts::{Marks, RegionParts};
+use crate::model::lighting;
+use crate::model::lighting::{LightMaps, Lighting, Posed};
+use crate::model::plan::Plan;
+use crate::model::region::Region;
+use crate::model::state::SceneState;
+use crate::model::state::solution::{Scene, SeenScene};
+use crate::passes::frame::Frame;
+use crate::passes::list::passes;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::News;
+
+passes!(Plan: moved_mask, toy, coverage, composite);
+
+/// One step of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// Visibility of the lights in the shown pose.
+    Lighting(lighting::Step),
+    MovedMask,
+    Toy,
+    Coverage,
+    Composite,
+}
+
+impl Step {
+    /// The passes that it runs, in order.
+    pub(crate) fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::Lighting(step) => step.passes(),
+            Self::MovedMask => &["moved_mask"],
+            Self::Toy => &["toy"],
+            Self::Coverage => &["coverage"],
+            Self::Composite => &["composite"],
+        }
+    }
+
+    /// Whether it runs: of a paused toy a new picture changes the colours alone.
+    pub(crate) fn is_due(self, news: News) -> bool {
+        match self {
+            Self::Toy | Self::Composite => !news.keeps_picture(),
+            Self::Lighting(_) | Self::MovedMask | Self::Coverage => !news.keeps_pose(),
+        }
+    }
+}
+
+/// The steps that run for every new pose.
+pub(crate) fn order(plan: &Plan) -> Vec<Step> {
+    lighting::Step::visibilities(plan)
+        .chain([lighting::Step::SelfShadow])
+        .map(Step::Lighting)
+        .chain([Step::MovedMask, Step::Toy, Step::Coverage, Step::Composite])
+        .collect()
+}
+
+/// Targets of the frame path for one region.
+pub(crate) struct FrameTargets {
+    /// Visibility of the lights in the shown pose.
+    pub(crate) light: LightMaps,
+    /// What the toy in the physical pose changes of the region, once it was looked for.
+    pub(crate) physical_marks: Option<Marks>,
+    /// As both poses part the region.
+    pub(crate) parts: RegionParts,
+    /// The part of the toy box in which the shown toy may be seen.
+    pub(crate) shown_toy: Option<PixelRect>,
+    pub(crate) by_pass: Targets,
+}
+
+impl FrameTargets {
+    /// Allocates the resources of `plan`.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            light: LightMaps::new(gpu, plan),
+            physical_marks: None,
+            parts: RegionParts::all_near(plan.region.size_px),
+            shown_toy: None,
+            by_pass: Targets::new(gpu, plan),
+        }
+    }
+}
+
+/// Inputs and targets of the frame path.
+pub(crate) struct FramePath<'a> {
+    pub(crate) region: &'a Region,
+    pub(crate) captured: &'a CaptureTargets,
+    pub(crate) drawn: &'a FrameTargets,
+    pub(crate) passes: &'a Passes,
+    pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
+    pub(crate) state: &'a SceneState,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) frame: Frame<'a>,
+}
+
+impl FramePath<'_> {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
+        let (passes, of) = (self.passes, &self.drawn.by_pass);
+        match step {
+            Step::Lighting(step) => self.light(recorder, step),
+            Step::MovedMask => {
+                let drawn = (self.region, self.toy);
+                passes.moved_mask.encode(recorder, drawn, &of.moved_mask);
+            }
+            Step::Toy => passes.toy.encode(recorder, &self.toy_inputs(), &of.toy),
+            Step::Coverage => passes
+                .coverage
+                .encode(recorder, &self.coverage_inputs(), &of.coverage),
+            Step::Composite => {
+                passes
+                    .composite
+                    .encode(recorder, &self.composite_inputs(), &of.composite);
+            }
+        }
+    }
+
+    fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
+        let (passes, lighting) = self.lighting;
+        let posed = Posed {
+            globals: self.region.globals_on_device(),
+            toy: self.toy,
+            pose: &self.toy.shown,
+        };
+        lighting.encode(recorder, passes, step, (posed, &self.drawn.light));
+    }
+
+    fn toy_inputs(&self) -> toy::Inputs<'_> {
+        toy::Inputs {
+            plan: &self.region.plan,
+            camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
+            shown_toy: self.drawn.shown_toy,
+            seen: self.seen(),
+            toy: self.toy,
+            appearance: &self.captured.by_pass.appearance,
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
+            self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
+            tints: &self.state.tints,
+        }
+    }
+
+    fn coverage_inputs(&self) -> coverage::Inputs<'_> {
+        coverage::Inputs {
+            region: self.region,
+            toy: self.toy,
+            camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
+        }
+    }
+
+    fn composite_inputs(&self) -> composite::Inputs<'_> {
+        let (captured, drawn) = (self.captured, self.drawn);
+        composite::Inputs {
+            parts: &drawn.parts,
+            seen: self.seen(),
+            grids: &self.state.grids,
+            cells: &self.state.residual.cells,
+            plate: &captured.plate.view,
+            validity: &captured.by_pass.validity.marks.view,
+            physical: &captured.light,
+            shown: &drawn.light,
+            coverage: &drawn.by_pass.coverage.covered.view,
+            toy: &drawn.by_pass.toy,
+            moved_mask: &drawn.by_pass.moved_mask.moved.view,
+            detail: captured
+                .by_pass
+                .detail
+                .residual
+                .as_ref()
+                .map(|residual| &residual.view),
+        }
+    }
+
+    fn seen(&self) -> SeenScene<'_> {
+        SeenScene {
+            scene: Scene {
+                globals: &self.region.globals,
+                solution: &self.state.solution,
+            },
+            frame: self.frame,
+        }
+    }
+}

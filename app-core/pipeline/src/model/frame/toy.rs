@@ -1,0 +1,254 @@
+//! `toy`: the toy in the pose to be shown, with its camera pixels, once for each offset within a pixel.
+
+use glam::{Vec2, Vec3};
+use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
+
+use crate::geometry::rect::PixelRect;
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::texture::{Texture, TextureView};
+use crate::model::capture::appearance;
+use crate::model::capture::appearance::SOURCE;
+use crate::model::frame::moved_mask::MOVED_FORMAT;
+use crate::model::lighting::self_shadow;
+use crate::model::lighting::self_shadow::{
+    GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
+};
+use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
+use crate::model::plan::Plan;
+use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
+use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
+use crate::passes::frame::{ByForm, FRAME, PLANES};
+use crate::passes::globals::GLOBALS;
+use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
+use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED, SRGB};
+use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FIT,
+    &SRGB,
+    &PLANES,
+    &FRAME,
+    &TOY_LIGHT,
+    &HEMISPHERES,
+    &TOY_RADIANCE,
+    &SELF_SHADOW_MAPS,
+    &MATERIAL,
+    &DEPTH,
+    &MOVED,
+    &CHANNELS,
+    &TINT_GRID,
+    &TINT_CELL,
+    &BETWEEN_TINTS,
+    &BEHIND,
+    &SOURCE,
+    &part!("frame/toy"),
+]);
+/// The offset of a draw in pixels, then what it reads.
+const SLOTS: &[Slot] = &[
+    Slot::per_use::<Vec2>(),
+    Slot::Depth,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::uniform::<TintGrid>(),
+    Slot::Read,
+    Slot::Texture,
+];
+/// As a draw with materials, then the physical pose.
+const STREAMS: &[Stream] = &[
+    LOOK_STREAMS[0],
+    LOOK_STREAMS[1],
+    LOOK_STREAMS[2],
+    LOOK_STREAMS[3],
+    (4, VertexFormat::Float32x3),
+    (5, VertexFormat::Float32x3),
+];
+/// Format of premultiplied radiance where it is drawn once: the resolve averages linear light, and the picture has no more codes.
+const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// And where draws are still to be averaged.
+const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+const N_SAMPLES: u32 = 4;
+/// Offsets of the draws: the multisample positions at half their size around the pixel's centre. The 16 samples of four
+/// draws then lie in rows and columns of their own and leave no hole. RMS error of the area that a straight edge of any
+/// direction cuts off a pixel: 0.088 with the 4 samples of one draw, 0.041 with 16; at a quarter of their size 0.054.
+const OFFSETS_PX: [Vec2; 4] = [
+    Vec2::new(-0.0625, -0.1875),
+    Vec2::new(0.1875, -0.0625),
+    Vec2::new(-0.1875, 0.0625),
+    Vec2::new(0.0625, 0.1875),
+];
+
+/// Both sides of each triangle, and the one that faces the camera.
+type Sides = ByForm<[Draw; 2]>;
+
+pub(crate) struct Pass {
+    coded: Sides,
+    fine: Sides,
+    /// Of one sample.
+    single: Sides,
+}
+
+pub(crate) struct Inputs<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) camera_in_anchor: Vec3,
+    /// The part of the toy box in which the toy may be seen.
+    pub(crate) shown_toy: Option<PixelRect>,
+    pub(crate) seen: SeenScene<'a>,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) appearance: &'a appearance::Targets,
+    pub(crate) gbuffer_depth: &'a TextureView,
+    /// Of the shown pose, and of the physical one.
+    pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
+    pub(crate) tints: &'a Tints,
+}
+
+/// Of the toy box's size: one for each draw, and those that stay on the chip.
+pub(crate) struct Targets {
+    /// None where a pixel has one.
+    samples: Option<Samples>,
+    depth: Texture,
+    drawn: Vec<Texture>,
+    /// Where it shows what the camera did not see in that place.
+    pub(crate) moved: Texture,
+}
+
+/// What is resolved into the targets.
+struct Samples {
+    drawn: Texture,
+    moved: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let size_px = plan.toy_box.size_px;
+        let n_draws = plan.n_toy_draws.max(1);
+        let n_samples = plan.n_toy_samples;
+        let on_chip = |label, format| Texture::samples(gpu, label, size_px, (format, n_samples));
+        let format = if n_draws > 1 { FINE_FORMAT } else { CODED_FORMAT };
+        Self {
+            samples: (n_samples > 1).then(|| Samples {
+                drawn: on_chip("toy samples", format),
+                moved: on_chip("toy moved samples", MOVED_FORMAT),
+            }),
+            depth: on_chip("toy depth", TextureFormat::Depth32Float),
+            drawn: (0..n_draws)
+                .map(|_| Texture::target(gpu, "toy", size_px, format))
+                .collect(),
+            moved: Texture::target(gpu, "toy moved", size_px, MOVED_FORMAT),
+        }
+    }
+
+    /// Draws of the toy, 1 or 4.
+    #[allow(clippy::cast_possible_truncation, reason = "a handful")]
+    pub(crate) fn n_draws(&self) -> u32 {
+        self.drawn.len() as u32
+    }
+
+    /// Those of one draw: radiance, and where it has moved. The samples of the last draw show that well enough.
+    fn attachments<'a>(&'a self, drawn: &'a Texture, is_last: bool) -> [Attachment<'a>; 2] {
+        let samples = self.samples.as_ref();
+        let moved_samples = samples.map(|samples| &samples.moved.view);
+        let moved = match moved_samples {
+            Some(forgotten) if !is_last => discarded(forgotten),
+            _ => sampled(moved_samples, &self.moved.view),
+        };
+        [
+            sampled(samples.map(|samples| &samples.drawn.view), &drawn.view),
+            moved,
+        ]
+    }
+
+    /// What was drawn; the first stands in for draws that there are not.
+    pub(crate) fn views(&self) -> [&TextureView; OFFSETS_PX.len()] {
+        [0, 1, 2, 3].map(|draw| &self.drawn.get(draw).unwrap_or(&self.drawn[0]).view)
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            coded: sides(gpu, (CODED_FORMAT, N_SAMPLES)),
+            fine: sides(gpu, (FINE_FORMAT, N_SAMPLES)),
+            single: sides(gpu, (CODED_FORMAT, 1)),
+        }
+    }
+
+    /// Draws the toy once in the middle of the pixel, or once for each offset.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let sides = match targets.drawn.len() {
+            1 if targets.samples.is_none() => &self.single,
+            1 => &self.coded,
+            _ => &self.fine,
+        };
+        let [draw, culled] = sides.of(recorder.gpu, &inputs.seen.frame);
+        let [shown, physical] = inputs.self_shadow;
+        let maps = shown.resources(recorder.gpu, physical);
+        let materials = inputs.toy.bind_materials(recorder, draw);
+        let offsets: &[Vec2] = if targets.drawn.len() == 1 {
+            &[Vec2::ZERO]
+        } else {
+            &OFFSETS_PX
+        };
+        for (index, (drawn, offset_px)) in targets.drawn.iter().zip(offsets).enumerate() {
+            let groups = [
+                inputs.seen.bind(recorder, draw),
+                recorder.bind_with(draw, GROUP_PASS, offset_px, &inputs.resources()),
+                recorder.bind(draw, GROUP_SELF_SHADOW, &maps),
+            ];
+            let colors = targets
+                .attachments(drawn, index + 1 == targets.drawn.len())
+                .map(Some);
+            let depth = Some(&targets.depth.view);
+            let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
+            render.part_of(inputs.plan.part_drawn(&inputs.plan.toy_box));
+            // Of a toy that is not seen nothing is drawn: the targets are only cleared.
+            let Some(part) = inputs.shown_toy else { continue };
+            render.within((part.origin_px, part.size_px));
+            let sided = Sided {
+                both: draw,
+                culled,
+                groups: &groups,
+                camera_in_anchor: inputs.camera_in_anchor,
+            };
+            let toy = inputs.toy;
+            toy.draw_parts(&mut render, &sided, &[&toy.shown, &toy.physical], &materials);
+        }
+    }
+}
+
+/// Draws onto targets of a format and so many samples.
+fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32)) -> Sides {
+    let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
+    let is_coarse = ("IS_COARSE", u32::from(n_samples == 1));
+    ByForm::new(gpu, move |gpu, form| {
+        [None, Some(Face::Back)].map(|culled| {
+            gpu.draw(&DrawSpec {
+                vertex: "vs_toy",
+                streams: STREAMS,
+                n_samples,
+                constants: vec![form, is_coarse],
+                depth: Some(nearest_surface()),
+                culled,
+                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
+            })
+        })
+    })
+}
+
+impl<'a> Inputs<'a> {
+    fn resources(&self) -> [Resource<'a>; 7] {
+        [
+            Resource::PerUse,
+            self.gbuffer_depth.into(),
+            (&self.appearance.base.view).into(),
+            (&self.appearance.received.view).into(),
+            (&self.tints.grid).into(),
+            (&self.tints.cells).into(),
+            (&self.appearance.source.view).into(),
+        ]
+    }
+}

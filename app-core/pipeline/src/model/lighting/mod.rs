@@ -1,0 +1,245 @@
+//! Visibility of the lights in a pose: points over the lights, the passes that draw from them, and the resulting
+//! maps.
+
+use glam::{UVec2, Vec4};
+
+use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::geometry::tiles::Tiles;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
+use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
+use crate::model::plan::{Casters, Plan};
+use crate::passes::counting::InstanceOrder;
+use crate::passes::globals::GlobalsOnDevice;
+use crate::passes::list::passes;
+use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
+use crate::readback::FloatMap;
+use crate::readback::inject::upload;
+use app_scene::geometry::light_points::ambient_directions;
+
+passes!(occlusion, self_shadow);
+
+/// One step of the visibility of lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// The toy's shadow on itself.
+    SelfShadow,
+    /// Visibility of the lights.
+    Lights,
+    /// Visibility of the ambient light.
+    Ambient,
+}
+
+impl Step {
+    /// The steps that compute the visibilities of a plan's lights.
+    pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
+        let lights = (plan.n_lights > 0).then_some(Self::Lights);
+        lights.into_iter().chain([Self::Ambient])
+    }
+
+    /// The passes that it runs, in order.
+    pub(crate) fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::SelfShadow => &["self_shadow"],
+            Self::Lights | Self::Ambient => &["occlusion"],
+        }
+    }
+}
+
+/// Pixels along each side of the tiles in which shadows, and the toy, are looked for.
+pub(crate) const TILE_PX: u32 = 16;
+/// Pixels beyond a shadow's triangles that it may reach by rounding.
+const AROUND_SHADOW_PX: f32 = 1.0;
+
+/// Visibility and self-shadow maps of one pose.
+pub(crate) struct LightMaps {
+    pub(crate) visibility: occlusion::Targets,
+    pub(crate) self_shadow: self_shadow::Targets,
+    /// Replaces the visibility of the lights that the passes compute.
+    pub(crate) injected: Option<InjectedLights>,
+}
+
+/// Visibility of the lights from outside.
+pub(crate) struct InjectedLights {
+    visibility: Texture,
+    /// Tiles in which any light is hidden.
+    shadowed: Tiles,
+}
+
+impl InjectedLights {
+    /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
+    pub(crate) fn new(gpu: &Gpu, (map, n_lights): (&FloatMap, usize), like: &Texture) -> Self {
+        let size_px = UVec2::new(map.width, map.height);
+        let mut shadowed = Tiles::over(size_px, TILE_PX);
+        let rows = (0..map.height).flat_map(|y| (0..map.width).map(move |x| UVec2::new(x, y)));
+        for (at, visibilities) in rows.zip(&map.texels) {
+            if visibilities
+                .iter()
+                .take(n_lights)
+                .any(|visibility| *visibility < 1.0)
+            {
+                shadowed.mark_box([at.as_vec2(), (at + 1).as_vec2()]);
+            }
+        }
+        Self {
+            visibility: upload(gpu, map, like),
+            shadowed,
+        }
+    }
+}
+
+impl LightMaps {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            visibility: occlusion::Targets::new(gpu, plan),
+            self_shadow: self_shadow::Targets::new(gpu, plan),
+            injected: None,
+        }
+    }
+}
+
+/// Points over the lights, directions of the ambient light, and the order in which they are drawn.
+pub(crate) struct Lighting {
+    lights: Vec<LightPointsBuffer>,
+    ambient: LightPointsBuffer,
+    n_receivers: u32,
+    casters: Casters,
+    atlas: ShadowAtlas,
+    orders: occlusion::Orders,
+}
+
+/// A toy in a pose, in a view.
+#[derive(Clone, Copy)]
+pub(crate) struct Posed<'a> {
+    pub(crate) globals: GlobalsOnDevice<'a>,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pose: &'a PoseBuffers,
+}
+
+impl Lighting {
+    /// `points` are those of each light, receiver by receiver.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan, points: Vec<Vec<Vec4>>) -> Self {
+        let n_receivers = plan.n_receivers;
+        let on_device = |points, part| LightPointsBuffer::new(gpu, points, n_receivers, part);
+        // Each receiver has its own hemisphere.
+        let directions = ambient_directions(plan.n_ambient_directions).repeat(n_receivers as usize);
+        Self {
+            lights: points
+                .into_iter()
+                .enumerate()
+                .map(|(light, points)| on_device(points, PartOfMap::of_light(plan, light)))
+                .collect(),
+            ambient: on_device(directions, PartOfMap::of_ambient(plan)),
+            orders: occlusion::Orders::new(gpu, plan),
+            casters: plan.casters,
+            atlas: plan.self_shadow.clone(),
+            n_receivers,
+        }
+    }
+
+    /// Takes the shapes that cast shadows in another view.
+    pub(crate) fn cast_by(&mut self, casters: Casters) {
+        self.casters = casters;
+    }
+
+    /// Moves the lights, as many as before, or takes other points of them.
+    pub(crate) fn relocate(&mut self, gpu: &Gpu, points: Vec<Vec<Vec4>>) {
+        for (light, points) in self.lights.iter_mut().zip(points) {
+            light.write(gpu, points, self.n_receivers);
+        }
+    }
+
+    /// Marks the tiles of the region, of `TILE_PX`, in which a toy in a pose may hide any part of any light.
+    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, (posed, maps): (Posed<'_>, &LightMaps)) {
+        if let Some(injected) = &maps.injected {
+            tiles.join(&injected.shadowed);
+        }
+        for light in &self.lights {
+            for (receiver, points) in light.by_receiver().enumerate() {
+                // A light behind a receiver casts no shadow on it.
+                if points.iter().all(|point| point.y <= 0.0) {
+                    continue;
+                }
+                let Some(onto) = posed.globals.uniform.onto_receiver(receiver, points) else {
+                    return tiles.mark_all();
+                };
+                posed
+                    .toy
+                    .mark_seen(tiles, (posed.pose, self.casters.light), (&onto, AROUND_SHADOW_PX));
+            }
+        }
+    }
+
+    /// Encodes one step for a toy in a pose.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        step: Step,
+        (posed, maps): (Posed<'_>, &LightMaps),
+    ) {
+        match step {
+            Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
+            Step::Lights => {
+                let lights: Vec<_> = self
+                    .lights
+                    .iter()
+                    .enumerate()
+                    .map(|(index, points)| Light {
+                        points,
+                        side: Some(Side::Light(index)),
+                    })
+                    .collect();
+                let onto = (&maps.visibility.lights, &self.orders.lights);
+                self.encode_visibility(recorder, passes, (posed, self.casters.light), (&lights, onto));
+                if let Some(injected) = &maps.injected {
+                    recorder.copy(&injected.visibility, &maps.visibility.lights);
+                }
+            }
+            Step::Ambient => {
+                let onto = (&maps.visibility.ambient, &self.orders.ambient);
+                let lights = [Light {
+                    points: &self.ambient,
+                    side: None,
+                }];
+                self.encode_visibility(recorder, passes, (posed, self.casters.ambient), (&lights, onto));
+            }
+        }
+    }
+
+    fn encode_visibility(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        (posed, caster): (Posed<'_>, Detail),
+        (lights, onto): (&[Light<'_>], (&Texture, &InstanceOrder)),
+    ) {
+        let inputs = occlusion::Inputs {
+            globals: posed.globals,
+            n_receivers: self.n_receivers,
+            toy: posed.toy,
+            pose: posed.pose,
+            caster,
+        };
+        passes.occlusion.encode(recorder, &inputs, lights, onto);
+    }
+
+    fn encode_self_shadow(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        posed: Posed<'_>,
+        maps: &LightMaps,
+    ) {
+        let light_points: Vec<&[Vec4]> = self.lights.iter().map(LightPointsBuffer::in_anchor).collect();
+        let inputs = self_shadow::Inputs {
+            toy: posed.toy,
+            pose: posed.pose,
+            light_points: &light_points,
+            atlas: &self.atlas,
+            caster: self.casters.self_shadow,
+        };
+        passes.self_shadow.encode(recorder, &inputs, &maps.self_shadow);
+    }
+}

@@ -1,0 +1,337 @@
+//! `occlusion`: visibility of lights behind the posed toy, from its shadows on the receivers from many points of each, in one
+//! pass.
+
+use glam::{UVec2, Vec4};
+use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
+
+use crate::geometry::rect::PixelRect;
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
+use crate::gpu::recorder::{Recorder, cleared_to};
+use crate::gpu::shader::{Shader, part};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::{Texture, fractions, half_float};
+use crate::model::plan::Plan;
+use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, not_counting, ordered};
+use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
+use crate::passes::parts::FLATTEN;
+use crate::passes::toy_mesh::{Corners, Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
+use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
+
+pub(crate) const SHADER: Shader = Shader::new(&[
+    &GLOBALS,
+    &FLATTEN,
+    &TILES,
+    &part!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]),
+]);
+const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
+const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
+/// Maximum number of points of one light.
+pub(crate) const MAX_LIGHT_POINTS: usize = 64;
+/// Maximum number of points of all lights, which a map is drawn from in one pass.
+#[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
+const MOST_POINTS: u32 = (MAX_LIGHTS * MAX_LIGHT_POINTS) as u32;
+
+shared_struct! {
+    /// Points of a light, receiver by receiver.
+    pub(crate) struct LightPoints {
+        pub points: [[f32; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+        pub share: [f32; 4],
+        pub texel_px: [f32; 2],
+        pub n_points: u32,
+        pub n_before: u32,
+    }
+}
+
+impl LightPoints {
+    /// `points` are 16, 32 or 64, in the space of the first receiver, then those of the next.
+    fn new(points: &[Vec4], n_points: u32, part: &PartOfMap) -> Self {
+        let (size_px, region_px) = part.sizes;
+        let mut light_points = Self {
+            points: [[0.0; 4]; MAX_LIGHT_POINTS * MAX_RECEIVERS],
+            share: part.share(n_points),
+            texel_px: (region_px.as_vec2() / size_px.as_vec2()).to_array(),
+            n_points,
+            n_before: part.n_before(),
+        };
+        for (slot, point) in light_points.points.iter_mut().zip(points) {
+            *slot = point.to_array();
+        }
+        light_points
+    }
+}
+
+/// Where a light's visibility is written.
+#[derive(Clone, Copy)]
+pub(crate) struct PartOfMap {
+    /// Of the map in texels, and of the region in pixels.
+    sizes: (UVec2, UVec2),
+    format: TextureFormat,
+    channel: usize,
+}
+
+impl PartOfMap {
+    /// A light's own channel, in fractions of 8 bits: it has no more than 64 points.
+    pub(crate) fn of_light(plan: &Plan, channel: usize) -> Self {
+        Self {
+            sizes: (plan.region.size_px, plan.region.size_px),
+            format: fractions(plan.n_lights),
+            channel,
+        }
+    }
+
+    /// The ambient light's map.
+    pub(crate) fn of_ambient(plan: &Plan) -> Self {
+        Self {
+            sizes: (plan.ambient_px, plan.region.size_px),
+            format: AMBIENT_FORMAT,
+            channel: 0,
+        }
+    }
+
+    /// Number of points that the lights before it in the map may have.
+    #[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
+    const fn n_before(&self) -> u32 {
+        (MAX_LIGHT_POINTS * self.channel) as u32
+    }
+
+    /// The map that it is a part of.
+    fn map(&self, gpu: &Gpu, label: &str) -> Texture {
+        Texture::target(gpu, label, self.sizes.0, self.format)
+    }
+
+    /// What each of so many points takes from the visibility, in the light's channel.
+    ///
+    /// In 8 bits whole codes, of which all points take all 255: of 16, 32 and 64 points it is off by less than 1/255. Floats of 16
+    /// bits are exact.
+    #[allow(clippy::cast_precision_loss, reason = "at most 255")]
+    fn share(&self, n_points: u32) -> [f32; 4] {
+        let n_points = n_points.max(1);
+        let of_each = if self.format == AMBIENT_FORMAT {
+            1.0 / n_points as f32
+        } else {
+            255_u32.div_ceil(n_points) as f32 / 255.0
+        };
+        let mut share = [0.0; 4];
+        if let Some(channel) = share.get_mut(self.channel) {
+            *channel = of_each;
+        }
+        share
+    }
+}
+
+/// The points of one light, on the device.
+pub(crate) struct LightPointsBuffer {
+    /// Those in the space of the first receiver, then those of the next.
+    pub(crate) points: Vec<Vec4>,
+    /// Points of the light; each is in `points` once per receiver.
+    pub(crate) n_points: u32,
+    part: PartOfMap,
+    uniform: Buffer,
+}
+
+impl LightPointsBuffer {
+    pub(crate) fn new(gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32, part: PartOfMap) -> Self {
+        let n_points = n_each(&points, n_receivers);
+        Self {
+            uniform: gpu.uniform("light points", &LightPoints::new(&points, n_points, &part)),
+            points,
+            n_points,
+            part,
+        }
+    }
+
+    /// Replaces the points, for as many receivers.
+    pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32) {
+        self.n_points = n_each(&points, n_receivers);
+        let light_points = LightPoints::new(&points, self.n_points, &self.part);
+        gpu.write(&self.uniform, &[light_points]);
+        self.points = points;
+    }
+
+    /// The points in the space of each receiver in turn.
+    pub(crate) fn by_receiver(&self) -> impl Iterator<Item = &[Vec4]> {
+        self.points.chunks(self.n_points.max(1) as usize)
+    }
+
+    /// The points in anchor space, which is that of the first receiver.
+    pub(crate) fn in_anchor(&self) -> &[Vec4] {
+        &self.points[..self.n_points as usize]
+    }
+}
+
+/// Points of a light, of which there is one for each receiver.
+fn n_each(points: &[Vec4], n_receivers: u32) -> u32 {
+    u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1)
+}
+
+/// Format of the ambient light's visibility, at a fraction of the resolution: drivers may filter 8 bits in no more than those.
+const AMBIENT_FORMAT: TextureFormat = half_float(1);
+
+/// Visibility maps of one pose.
+pub(crate) struct Targets {
+    /// One channel per light.
+    pub(crate) lights: Texture,
+    pub(crate) ambient: Texture,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        Self {
+            lights: PartOfMap::of_light(plan, 0).map(gpu, "visibility"),
+            ambient: PartOfMap::of_ambient(plan).map(gpu, "ambient"),
+        }
+    }
+}
+
+/// Which point was drawn last, over the region and over the ambient map.
+pub(crate) struct Orders {
+    pub(crate) lights: InstanceOrder,
+    pub(crate) ambient: InstanceOrder,
+}
+
+impl Orders {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let order = |size_px| InstanceOrder::new(gpu, "occlusion order", size_px);
+        Self {
+            lights: order(plan.region.size_px),
+            ambient: order(plan.ambient_px),
+        }
+    }
+}
+
+/// The formats of maps: of the ambient light, of one light, of two, of more.
+const FORMATS: [TextureFormat; 4] = [AMBIENT_FORMAT, fractions(1), fractions(2), fractions(MAX_LIGHTS)];
+
+pub(crate) struct Pass {
+    of_formats: [(TextureFormat, Draws); FORMATS.len()],
+}
+
+struct Draws {
+    cover: CountingDraws,
+    /// Masks pixels that show another receiver, where there are several.
+    route: Draw,
+}
+
+impl Draws {
+    fn new(gpu: &Gpu, format: TextureFormat) -> Self {
+        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
+        let visibility = counting(format, BlendOperation::ReverseSubtract);
+        let route = DrawSpec {
+            vertex: "vs_route",
+            targets: vec![not_counting(&visibility)],
+            depth: Some(ordered(CompareFunction::Always)),
+            ..DrawSpec::fullscreen(&SHADER, "fs_route", groups, &[])
+        };
+        let cover = DrawSpec {
+            vertex: "vs_flatten",
+            streams: STREAMS,
+            targets: vec![visibility],
+            depth: Some(ordered(CompareFunction::Greater)),
+            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
+        };
+        Self {
+            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            cover: CountingDraws::new(gpu, &cover),
+            route: gpu.draw(&route),
+        }
+    }
+}
+
+/// A posed toy that casts shadows.
+pub(crate) struct Inputs<'a> {
+    pub(crate) globals: GlobalsOnDevice<'a>,
+    pub(crate) n_receivers: u32,
+    pub(crate) toy: &'a ToyMesh,
+    pub(crate) pose: &'a PoseBuffers,
+    /// What casts the shadow.
+    pub(crate) caster: Detail,
+}
+
+/// A light that is drawn from.
+#[derive(Clone, Copy)]
+pub(crate) struct Light<'a> {
+    pub(crate) points: &'a LightPointsBuffer,
+    /// Which one it is; none of what comes from all sides.
+    pub(crate) side: Option<Side>,
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self {
+            of_formats: FORMATS.map(|format| (format, Draws::new(gpu, format))),
+        }
+    }
+
+    /// Draws the caster from the lights' points on each receiver, and takes the hidden points from each light's channel of the
+    /// map.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        lights: &[Light<'_>],
+        (map, order): (&Texture, &InstanceOrder),
+    ) {
+        let Some((_, draws)) = self.of_formats.iter().find(|(format, _)| *format == map.format()) else {
+            return;
+        };
+        let cover = draws.cover.any();
+        let bound = |points: &LightPointsBuffer| {
+            [
+                recorder.bind(cover, GROUP_SCENE, &[inputs.globals.buffer.into()]),
+                recorder.bind(cover, GROUP_PASS, &[(&points.uniform).into()]),
+            ]
+        };
+        let corners = |light| inputs.corners(recorder.gpu, light, map.size_px());
+        let drawn: Vec<_> = lights
+            .iter()
+            .map(|light| (light.points, bound(light.points), corners(*light)))
+            .collect();
+        let mut render = order.render(recorder, SHADER.name, cleared_to(&map.view, Color::WHITE));
+        for (points, groups, corners) in drawn {
+            for receiver in 0..inputs.n_receivers {
+                if inputs.n_receivers > 1 {
+                    render.begin(&draws.route, &groups);
+                    render.draw(0..3, receiver..receiver + 1);
+                }
+                let instances = receiver * points.n_points..(receiver + 1) * points.n_points;
+                let n_plain = inputs.n_whole_shadows(points, receiver);
+                let drawn = (&corners, inputs.pose);
+                draws
+                    .cover
+                    .count(&mut render, &groups, drawn, (instances, n_plain));
+            }
+        }
+    }
+}
+
+impl<'a> Inputs<'a> {
+    /// Corners to draw for a light onto a map of so many texels.
+    fn corners(&self, gpu: &Gpu, light: Light<'_>, map_px: UVec2) -> Corners<'a> {
+        let points = light.points.in_anchor();
+        let projection = self.globals.uniform.onto_receiver(0, points);
+        // Each receiver would have silhouettes of its own.
+        let projection = projection.filter(|_| self.n_receivers == 1);
+        let target = projection.as_ref().map(|projection| SilhouetteTarget {
+            projection,
+            part: PixelRect {
+                origin_px: UVec2::ZERO,
+                size_px: map_px,
+            },
+            saves: Saves::Triangles,
+        });
+        self.toy
+            .corners(gpu, (self.pose, light.side), (points, self.caster), target)
+    }
+
+    /// Points of a light, from the first on, whose shadows of the toy on a receiver need not be cut off.
+    fn n_whole_shadows(&self, light: &LightPointsBuffer, receiver: u32) -> u32 {
+        let points = light.by_receiver().nth(receiver as usize);
+        let globals = self.globals.uniform;
+        let n_whole =
+            globals.n_whole_shadows(receiver as usize, points.unwrap_or_default(), &self.pose.around);
+        u32::try_from(n_whole).unwrap_or(0)
+    }
+}

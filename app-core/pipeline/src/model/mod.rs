@@ -1,0 +1,249 @@
+//! The additive model of the receivers: scene state, targets and passes of both paths, sequenced by what changed.
+
+pub(crate) mod capture;
+pub mod diagnostics;
+pub(crate) mod frame;
+pub(crate) mod lighting;
+pub(crate) mod parts;
+pub mod plan;
+pub(crate) mod readback;
+pub(crate) mod region;
+pub mod state;
+
+use glam::Vec4;
+
+use crate::gpu::context::Gpu;
+use crate::gpu::pass_run::Path;
+use crate::gpu::recorder::Recorder;
+use crate::model::capture::{CapturePath, CaptureTargets};
+use crate::model::frame::region_parts::{Marks, RegionParts};
+use crate::model::frame::{FramePath, FrameTargets};
+use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
+use crate::model::plan::Plan;
+use crate::model::region::Region;
+use crate::model::state::SceneState;
+use crate::passes::frame::Picture;
+use crate::passes::globals::Globals;
+use crate::passes::pictures::Pictures;
+use crate::passes::plate;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::{Change, News};
+use crate::readback::FloatMap;
+use crate::readback::inject::InjectedVisibility;
+use app_scene::geometry::bounds::Sphere;
+
+/// The additive model of one scene.
+pub(crate) struct Model {
+    pub(crate) state: SceneState,
+    pub(crate) region: Region,
+    order: Order,
+    lighting: Lighting,
+    captured: CaptureTargets,
+    drawn: FrameTargets,
+    passes: Passes,
+}
+
+/// Every pass of the model.
+struct Passes {
+    light: lighting::Passes,
+    plate: plate::Pass,
+    capture: capture::Passes,
+    frame: frame::Passes,
+}
+
+/// The steps of both paths, by change.
+struct Order {
+    capture: [Vec<capture::order::Step>; Change::ALL.len()],
+    frame: Vec<frame::Step>,
+}
+
+impl Order {
+    fn new(plan: &Plan) -> Self {
+        Self {
+            capture: Change::ALL.map(|change| capture::order::order(plan, change)),
+            frame: frame::order(plan),
+        }
+    }
+
+    /// The capture steps that `change` needs after so many pictures.
+    fn captured(&self, change: Change, n_before: u32) -> impl Iterator<Item = capture::order::Step> {
+        let steps = self.capture[change as usize].iter().copied();
+        steps.filter(move |step| change != Change::Picture || step.is_due(n_before))
+    }
+}
+
+/// The passes that run for `change` and a new pose after so many pictures, each as often as it runs but for the steps of a fit.
+pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'static str)> {
+    let order = Order::new(plan);
+    let captured = order
+        .captured(change, n_before)
+        .flat_map(capture::order::Step::passes);
+    let drawn = order.frame.iter().flat_map(|step| step.passes());
+    captured
+        .map(|pass| (capture_path(change), *pass))
+        .chain(drawn.map(|pass| (Path::Frame, *pass)))
+        .collect()
+}
+
+/// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
+fn capture_path(change: Change) -> Path {
+    if change >= Change::View {
+        Path::Capture
+    } else {
+        Path::Frame
+    }
+}
+
+impl Model {
+    /// Allocates the resources of `plan`. `light_points` has the points of each of its lights, receiver by receiver.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        plan: Plan,
+        globals: &Globals,
+        light_points: Vec<Vec<Vec4>>,
+        state: SceneState,
+    ) -> Self {
+        Self {
+            state,
+            order: Order::new(&plan),
+            lighting: Lighting::new(gpu, &plan, light_points),
+            captured: CaptureTargets::new(gpu, &plan),
+            drawn: FrameTargets::new(gpu, &plan),
+            passes: Passes {
+                light: lighting::Passes::new(gpu),
+                plate: plate::Pass::new(gpu),
+                capture: capture::Passes::new(gpu),
+                frame: frame::Passes::new(gpu),
+            },
+            region: Region::new(gpu, plan, globals),
+        }
+    }
+
+    /// Follows the camera to another view, or settings that are turned down or up; targets are kept if they suffice, else
+    /// dropped before others are made.
+    pub(crate) fn follow(
+        mut self,
+        gpu: &Gpu,
+        plan: Plan,
+        globals: &Globals,
+        light_points: Vec<Vec<Vec4>>,
+    ) -> Self {
+        self.order = Order::new(&plan);
+        let is_alike = plan.has_sizes_of(&self.region.plan);
+        if is_alike && self.captured.serves(&plan) {
+            self.captured.light.injected = None;
+            self.drawn.light.injected = None;
+            self.lighting.cast_by(plan.casters);
+            if plan.n_light_points != self.region.plan.n_light_points {
+                self.lighting.relocate(gpu, light_points);
+            }
+            self.region.follow(gpu, plan, globals);
+            return self;
+        }
+        let Self {
+            state,
+            mut region,
+            order,
+            lighting,
+            captured,
+            drawn,
+            passes,
+        } = self;
+        gpu.release_groups();
+        drop((lighting, captured, drawn));
+        let (lighting, captured, drawn) = (
+            Lighting::new(gpu, &plan, light_points),
+            CaptureTargets::new(gpu, &plan),
+            FrameTargets::new(gpu, &plan),
+        );
+        region.follow(gpu, plan, globals);
+        Self {
+            state,
+            region,
+            order,
+            lighting,
+            captured,
+            drawn,
+            passes,
+        }
+    }
+
+    /// Moves lights and toy, whose number and materials stay the same.
+    pub(crate) fn relocate(&mut self, gpu: &Gpu, light_points: Vec<Vec<Vec4>>, toy: &Sphere) {
+        self.lighting.relocate(gpu, light_points);
+        self.state.tints.surround(gpu, toy);
+    }
+
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        self.drawn.by_pass.composite.picture()
+    }
+
+    /// Looks for the toy and its shadows in the region, in the poses that are new.
+    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
+        if news.keeps_pose() {
+            return;
+        }
+        let seen = (&self.region, &self.lighting);
+        let known = self.drawn.physical_marks.take();
+        let physical = known
+            .filter(|_| news.change < Change::View)
+            .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
+        let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
+        let (plan, uniform) = (&self.region.plan, &self.region.uniform);
+        self.drawn.shown_toy = toy.shown.seen_rect(&uniform.by_camera(), plan.toy_box.size_px);
+        self.drawn.parts = RegionParts::new([&physical, &shown]);
+        self.drawn.physical_marks = Some(physical);
+    }
+
+    /// Encodes what of the frame path is due, and before it the capture steps that the change needs.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        news: News,
+    ) {
+        let change = news.change;
+        let lighting = (&self.passes.light, &self.lighting);
+        let capture = CapturePath {
+            region: &self.region,
+            captured: &self.captured,
+            passes: &self.passes.capture,
+            plate: &self.passes.plate,
+            lighting,
+            state: &self.state,
+            toy,
+            pictures,
+        };
+        recorder.path = capture_path(change);
+        for step in self.order.captured(change, pictures.n_before) {
+            capture.encode(recorder, step);
+        }
+        let frame = FramePath {
+            region: &self.region,
+            captured: &self.captured,
+            drawn: &self.drawn,
+            passes: &self.passes.frame,
+            lighting,
+            state: &self.state,
+            toy,
+            frame: pictures.frame,
+        };
+        recorder.path = Path::Frame;
+        for step in self.order.frame.iter().filter(|step| step.is_due(news)) {
+            frame.encode(recorder, *step);
+        }
+    }
+
+    /// Replaces visibilities from the next frame on.
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        let n_lights = self.region.plan.n_lights;
+        let upload = |map: &Option<FloatMap>, light: &LightMaps| {
+            let map = map.as_ref();
+            map.map(|map| InjectedLights::new(gpu, (map, n_lights), &light.visibility.lights))
+        };
+        self.captured.light.injected = upload(&maps.physical, &self.captured.light);
+        self.drawn.light.injected = upload(&maps.shown, &self.drawn.light);
+    }
+}

@@ -1,0 +1,287 @@
+//! The plan of a scene: numbers of points, sizes of maps, and what is left out. Pure data, made without a device.
+//!
+//! Both paths take their order from it (`capture::order`, `frame::order`).
+
+use glam::UVec2;
+use wgpu::TextureFormat;
+
+use crate::geometry::rect::PixelRect;
+use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
+use crate::passes::toy_mesh::Detail;
+use crate::plan::{LeftOut, SceneFacts};
+use crate::preset::ModelSettings;
+use app_scene::scene::MAX_LIGHTS;
+
+/// Steps of the reweighted least squares; each more moved no direct fraction by 1e-3 on the sessions they were chosen
+/// on.
+const N_FIT_STEPS: u32 = 5;
+/// Steps from a known solution, for a new view of a known scene: a second one changed shadow, toy and edge by at most .001
+/// codes on a session of eight views.
+const N_REFINE_STEPS: u32 = 1;
+/// Steps of the fit of gain and intensities: the first is without weights, since a jump of the exposure makes every pixel an
+/// outlier.
+const N_INTENSITY_STEPS: u32 = 2;
+/// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
+/// where the real shadow is some thirty pixels large.
+const MAX_FIT_PIXELS: u32 = 1 << 16;
+/// Those that suffice for gain and intensities: on six sessions, whose shadows are some hundred pixels large, shadow, toy and edge
+/// change by at most .0004 codes.
+const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
+/// The farthest that what casts the toy's shadow on itself is from its shape, in pixels: what stands out would shade the surface.
+const SELF_CASTER_PX: f64 = 1.0;
+/// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
+const N_AMBIENT_TRIANGLES: u32 = 1000;
+/// Invocations of one workgroup of the fit.
+const FIT_WORKGROUP: u32 = 256;
+/// Pixels that each of them adds up before its workgroup does: what that takes is the same for one pixel as for many. With 1, 16 and
+/// 64 the fits of a view take 33, 12 and 12 ms on a processor of two cores; no phone has been measured.
+const FIT_PIXELS_EACH: u32 = 16;
+/// Workgroups of one sum at most.
+pub(crate) const MAX_FIT_ROWS: u32 = MAX_FIT_PIXELS / (FIT_WORKGROUP * FIT_PIXELS_EACH);
+
+/// The shapes that cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Casters {
+    /// Of the lights, on receivers.
+    pub light: Detail,
+    /// The same on the toy itself.
+    pub self_shadow: Detail,
+    /// Of the ambient light.
+    pub ambient: Detail,
+}
+
+impl Casters {
+    fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
+        match settings.caster_px {
+            Some(caster_px) => Self {
+                light: Detail::Within(f64::from(caster_px) * facts.pixel_in_object),
+                self_shadow: Detail::Within(SELF_CASTER_PX * facts.pixel_in_object),
+                ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
+            },
+            None => Self {
+                light: Detail::Own,
+                self_shadow: Detail::Own,
+                ambient: Detail::Own,
+            },
+        }
+    }
+}
+
+/// Sizes and numbers of all that is allocated and run for a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The work region.
+    pub region: PixelRect,
+    /// Pixels of the region that can show the physical toy, counted from its corner.
+    pub physical_toy: Option<PixelRect>,
+    /// The toy box: pixels of the region that hold the toy in every pose and what is looked up around it, counted from the
+    /// region's corner.
+    pub toy_box: PixelRect,
+    /// The physical box: the same for the physical pose alone.
+    pub physical_box: PixelRect,
+    /// Lights whose shadows are moved, at most four.
+    pub n_lights: usize,
+    /// Width in pixels of the widest penumbra of each of them.
+    pub penumbrae_px: Vec<f64>,
+    /// Points over each of them: of a hard light as well, whose edge they antialias.
+    pub n_light_points: Vec<usize>,
+    /// Directions of ambient light.
+    pub n_ambient_directions: usize,
+    /// Size of the ambient maps.
+    pub ambient_px: UVec2,
+    /// Receivers that shadows are moved on.
+    pub n_receivers: u32,
+    /// Whether the plate is estimated where none was photographed.
+    pub is_plate_estimated: bool,
+    /// Whether the plate is kept finer than codes.
+    pub is_plate_fine: bool,
+    /// Draws of the shown toy, each offset by a fraction of a pixel.
+    pub n_toy_draws: u32,
+    /// Samples of a pixel in each of them, 4 or 1.
+    pub n_toy_samples: u32,
+    /// Positions within a pixel that the shown toy's coverage is counted over.
+    pub n_coverage_positions: u32,
+    /// Whether the real shadow is denoised.
+    pub is_noise_removed: bool,
+    /// Whether the real shadow is withheld from all but the first fits.
+    pub is_shadow_withheld: bool,
+    /// The toy's shadow on itself.
+    pub self_shadow: ShadowAtlas,
+    /// What casts shadows.
+    pub casters: Casters,
+    /// Steps of a first fit.
+    pub n_fit_steps: u32,
+    /// Steps of a fit that starts from a known solution.
+    pub n_refine_steps: u32,
+    /// Steps of a fit of gain and intensities.
+    pub n_intensity_steps: u32,
+    /// Sampling stride of the fit, in region pixels, along each side.
+    pub fit_stride_px: u32,
+    /// That of the fit of gain and intensities.
+    pub intensity_fit_stride_px: u32,
+    /// Work that the scene does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Plan {
+    /// Plans a scene. Lights beyond the fourth are left out.
+    #[must_use]
+    pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
+        let size_px = facts.region.size_px;
+        let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS);
+        let penumbrae_px = facts.penumbrae_px[..n_lights].to_vec();
+        Self {
+            region: facts.region,
+            physical_toy: in_region(facts.physical_toy, &facts.region),
+            toy_box: box_in_region(facts.toy_box, (facts, settings)),
+            physical_box: box_in_region(facts.physical_box, (facts, settings)),
+            left_out: left_out(facts, n_lights),
+            n_ambient_directions: settings.n_ambient_directions,
+            ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
+            n_receivers: facts.n_receivers,
+            is_plate_estimated: !facts.is_plate_complete,
+            is_plate_fine: settings.is_plate_fine || !facts.is_plate_complete || facts.are_plates_scaled,
+            n_toy_draws: settings.n_toy_draws,
+            n_toy_samples: settings.n_toy_samples,
+            n_coverage_positions: settings.n_coverage_positions,
+            is_noise_removed: settings.is_noise_removed,
+            is_shadow_withheld: settings.is_shadow_withheld,
+            self_shadow: self_shadow(n_lights, settings),
+            casters: Casters::new(facts, settings),
+            n_fit_steps: N_FIT_STEPS,
+            n_refine_steps: N_REFINE_STEPS,
+            n_intensity_steps: N_INTENSITY_STEPS,
+            fit_stride_px: stride_px(size_px, MAX_FIT_PIXELS),
+            intensity_fit_stride_px: stride_px(size_px, MAX_INTENSITY_PIXELS),
+            n_lights,
+            n_light_points: penumbrae_px
+                .iter()
+                .map(|width_px| n_light_points(*width_px, settings))
+                .collect(),
+            penumbrae_px,
+        }
+    }
+}
+
+impl Plan {
+    /// Whether its maps are of the sizes and formats of another's.
+    #[must_use]
+    pub fn has_sizes_of(&self, other: &Self) -> bool {
+        let sizes = |plan: &Self| {
+            let counts = [plan.n_lights, plan.n_ambient_directions];
+            let boxes_px = [plan.toy_box.size_px, plan.physical_box.size_px];
+            (plan.region.size_px, boxes_px, plan.ambient_px, counts)
+        };
+        sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
+    }
+
+    /// Format of the plate.
+    pub(crate) fn plate_format(&self) -> TextureFormat {
+        if self.is_plate_fine {
+            FINE_FORMAT
+        } else {
+            CODED_FORMAT
+        }
+    }
+
+    /// Workgroups of one sum of a fit that takes pixels with a stride.
+    #[must_use]
+    pub fn n_fit_rows(&self, stride_px: u32) -> u32 {
+        let n_taken = (self.region.size_px / stride_px.max(1)).element_product();
+        n_taken
+            .div_ceil(FIT_WORKGROUP * FIT_PIXELS_EACH)
+            .clamp(1, MAX_FIT_ROWS)
+    }
+
+    /// What drawing onto one of the boxes takes: its corner, and the size of the region that it is a part of.
+    #[must_use]
+    pub fn part_drawn(&self, of: &PixelRect) -> (UVec2, UVec2) {
+        (of.origin_px, self.region.size_px)
+    }
+
+    /// Pixels of the physical box at most `reach_px` from those that show the physical toy: their corner, counted from the
+    /// box's, and their size.
+    #[must_use]
+    pub fn near_physical_toy(&self, reach_px: u32) -> Option<(UVec2, UVec2)> {
+        // What rounding adds in 32 bits is less than a pixel.
+        let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
+        let near = near.common(&self.physical_box)?;
+        Some((near.origin_px - self.physical_box.origin_px, near.size_px))
+    }
+}
+
+/// The part of a rectangle of the image that lies in the region, counted from that one's corner.
+fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
+    let common = rect?.common(region)?;
+    Some(PixelRect {
+        origin_px: common.origin_px - region.origin_px,
+        ..common
+    })
+}
+
+/// A box of the image as one of the region. A shadow that is withheld marks pixels all over that.
+fn box_in_region(of_image: Option<PixelRect>, (facts, settings): (&SceneFacts, &ModelSettings)) -> PixelRect {
+    let whole = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: facts.region.size_px,
+    };
+    if settings.is_shadow_withheld {
+        return whole;
+    }
+    in_region(of_image, &facts.region).unwrap_or(PixelRect {
+        size_px: UVec2::ONE,
+        ..whole
+    })
+}
+
+/// Width of a penumbra up to which its points smooth an edge rather than a slope, so that fewer show as steps of colour.
+const HARD_PX: f64 = 4.0;
+
+/// Points over a light: fewer of a soft one where that still is one for each pixel of its penumbra.
+fn n_light_points(penumbra_px: f64, settings: &ModelSettings) -> usize {
+    #[allow(clippy::cast_precision_loss, reason = "at most 64")]
+    let is_narrow = penumbra_px > HARD_PX && penumbra_px <= settings.n_narrow_light_points as f64;
+    if is_narrow {
+        settings.n_narrow_light_points
+    } else {
+        settings.n_light_points
+    }
+}
+
+/// An atlas for the toy's shadow on itself.
+fn self_shadow(n_lights: usize, settings: &ModelSettings) -> ShadowAtlas {
+    let n_points = settings.n_light_points.min(settings.n_self_shadow_points);
+    ShadowAtlas::new(vec![n_points; n_lights], settings.self_shadow_tile_px)
+}
+
+/// The smallest stride that leaves no more than so many pixels, and at least one along each side.
+fn stride_px(size_px: UVec2, most: u32) -> u32 {
+    let largest = size_px.min_element().max(1);
+    (1..=largest)
+        .find(|stride| (size_px / *stride).element_product() <= most)
+        .unwrap_or(largest)
+}
+
+fn left_out(facts: &SceneFacts, n_lights: usize) -> Vec<LeftOut> {
+    let mut left_out = Vec::new();
+    if facts.is_plate_complete {
+        left_out.push(LeftOut {
+            what: "estimate of the plate",
+            why: "plates show all of the region",
+        });
+    }
+    if facts.n_receivers < 2 {
+        left_out.push(LeftOut {
+            what: "further receivers",
+            why: "one is listed",
+        });
+    }
+    if n_lights < 2 {
+        left_out.push(LeftOut {
+            what: "overlap of shadows",
+            why: "one light is listed",
+        });
+    }
+    left_out
+}

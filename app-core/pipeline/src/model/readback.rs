@@ -1,0 +1,185 @@
+//! The model's maps, read back for reports and tests.
+
+use glam::{UVec2, Vec2, Vec3, Vec4};
+
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::texture::Texture;
+use crate::model::Model;
+use crate::model::capture::appearance::source_texel;
+use crate::model::capture::validity::FAR_MARKS;
+use crate::model::diagnostics::evidence::linear_colors;
+use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
+use crate::model::state::solution::Fit;
+use crate::passes::globals::Globals;
+use crate::readback::{FloatMap, Map, read_texture};
+use app_scene::scene::Image;
+
+impl Model {
+    /// Waits for the device and returns a map.
+    pub(crate) fn read_map(
+        &self,
+        gpu: &Gpu,
+        frame: Option<&Image>,
+        map: Map,
+    ) -> Result<Option<FloatMap>, GpuError> {
+        let (captured, drawn) = (&self.captured, &self.drawn);
+        let physical = self.region.plan.physical_box.origin_px;
+        let map = match map {
+            Map::Validity => self.read_box(gpu, (&captured.by_pass.validity.marks, physical), FAR_MARKS),
+            Map::GbufferBase => self.read_box(gpu, (&captured.by_pass.gbuffer.base, physical), [0.0; 4]),
+            Map::GbufferReceived => {
+                self.read_box(gpu, (&captured.by_pass.gbuffer.received, physical), [0.0; 4])
+            }
+            Map::Appearance => self.read_appearance(gpu, frame),
+            Map::PhysicalVisibility => read_texture(gpu, captured.light.visibility.lights.raw()),
+            Map::PhysicalAmbient => read_texture(gpu, captured.light.visibility.ambient.raw()),
+            Map::Visibility => read_texture(gpu, drawn.light.visibility.lights.raw()),
+            Map::Ambient => read_texture(gpu, drawn.light.visibility.ambient.raw()),
+            Map::Coverage => self.read_coverage(gpu),
+            Map::Plate => read_texture(gpu, captured.plate.raw()),
+            Map::Residual => self.read_residual(gpu, 0),
+            Map::DirectFraction => self.read_direct_fraction(gpu),
+            Map::Masks | Map::Eligible | Map::Warp | Map::Terms | Map::FilteredTerms | Map::SearchTaps => {
+                return Ok(None);
+            }
+        };
+        map.map(Some)
+    }
+
+    /// A target of the toy box or of the physical box, laid into the region; beyond the box is `beyond`.
+    fn read_box(
+        &self,
+        gpu: &Gpu,
+        (target, origin): (&Texture, UVec2),
+        beyond: [f32; 4],
+    ) -> Result<FloatMap, GpuError> {
+        let size = self.region.plan.region.size_px;
+        let map = read_texture(gpu, target.raw())?;
+        let mut texels = vec![beyond; (size.x * size.y) as usize];
+        for (y, row) in (origin.y..).zip(map.texels.chunks_exact(map.width as usize)) {
+            let first = (y * size.x + origin.x) as usize;
+            texels[first..first + row.len()].copy_from_slice(row);
+        }
+        Ok(FloatMap {
+            width: size.x,
+            height: size.y,
+            texels,
+        })
+    }
+
+    /// The toy's own colours: those of the frame in the region that the source tells of.
+    fn read_appearance(&self, gpu: &Gpu, frame: Option<&Image>) -> Result<FloatMap, GpuError> {
+        let physical_box = self.region.plan.physical_box;
+        let source = &self.captured.by_pass.appearance.source;
+        let source = self.read_box(gpu, (source, physical_box.origin_px), [1.0; 4])?;
+        let frame = frame.map_or_else(Vec::new, |frame| linear_colors(frame, &self.region.rect()));
+        let [first, end] = [
+            physical_box.origin_px,
+            physical_box.origin_px + physical_box.size_px,
+        ]
+        .map(|corner| corner.as_ivec2());
+        let width = source.width.max(1);
+        let color = |(index, number): (u32, &[f32; 4])| {
+            let from = source_texel(UVec2::new(index % width, index / width).as_ivec2(), number[0])?;
+            let from = from.clamp(first, end - 1).as_uvec2();
+            let [r, g, b] = *frame.get((from.y * width + from.x) as usize)?;
+            Some([r, g, b, 1.0])
+        };
+        let texels = (0..).zip(&source.texels);
+        Ok(FloatMap {
+            texels: texels.map(|texel| color(texel).unwrap_or_default()).collect(),
+            ..source
+        })
+    }
+
+    /// Covered fractions of pixels, from the counts of `coverage`.
+    fn read_coverage(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let covered = &self.drawn.by_pass.coverage.covered;
+        let origin_px = self.region.plan.toy_box.origin_px;
+        let mut map = self.read_box(gpu, (covered, origin_px), [0.0, 0.0, 0.0, 1.0])?;
+        #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
+        let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
+        map.texels.iter_mut().for_each(|texel| texel[0] /= all);
+        Ok(map)
+    }
+
+    /// The lights' direct fraction, computed here from the fit: no pass has it as a texture.
+    fn read_direct_fraction(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
+        let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.state.solution)?);
+        let plan = &self.region.plan;
+        let size = plan.ambient_px;
+        let scale = plan.region.size_px.as_vec2() / size.as_vec2();
+        let texel = |y: u32, x: u32| {
+            let region_px = (UVec2::new(x, y).as_vec2() + 0.5) * scale;
+            let direct_fraction = direct_fraction_at(&self.region.uniform, &fit, region_px);
+            direct_fraction.extend(1.0).to_array()
+        };
+        let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (y, x)));
+        let texels = texels.map(|(y, x)| texel(y, x)).collect();
+        Ok(FloatMap {
+            width: size.x,
+            height: size.y,
+            texels,
+        })
+    }
+
+    /// Waits for the device and returns the filled residuals on a receiver; empty where it has none.
+    pub(crate) fn read_residual(&self, gpu: &Gpu, receiver: usize) -> Result<FloatMap, GpuError> {
+        let grid = self.state.layout.grids[receiver];
+        let cells = gpu.read_buffer(&self.state.residual.cells)?;
+        let cells: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&cells);
+        let [width, height] = grid.size;
+        // The coarser levels of the pyramid follow the finest.
+        let finest = cells.into_iter().skip(grid.first_cell as usize);
+        Ok(FloatMap {
+            width,
+            height,
+            texels: finest.take((width * height) as usize).collect(),
+        })
+    }
+}
+
+/// Sum over lights of fraction falloff / (1 - sum fraction + sum fraction falloff), with the falloff cos / d^2
+/// against the reference point, as in the shaders' model; 0 beside the receivers.
+fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
+    let Some((index, in_plane)) = receiver_point(globals, region_px) else {
+        return Vec3::ZERO;
+    };
+    let (receiver, fit) = (&globals.receivers[index], &fit.receivers[index]);
+    let (mut direct, mut total) = (Vec3::ZERO, Vec3::ONE);
+    let lights = receiver.lights.iter().zip(&fit.direct_fraction);
+    for (light, direct_fraction) in lights.take(globals.n_lights as usize) {
+        let light = Vec4::from_array(*light);
+        let distance = |p: Vec2| light.truncate().distance(Vec3::new(p.x, 0.0, p.y));
+        let reference = Vec2::from_array(receiver.reference_in_plane);
+        let falloff = if light.y <= 0.0 {
+            0.0
+        } else if light.w == 0.0 {
+            1.0
+        } else {
+            (distance(reference) / distance(in_plane)).powi(3)
+        };
+        let direct_fraction = Vec4::from_array(*direct_fraction).truncate();
+        direct += direct_fraction * falloff;
+        total += direct_fraction * (falloff - 1.0);
+    }
+    direct / total
+}
+
+/// The nearest receiver seen at a pixel, and its point there; none where that is its back.
+fn receiver_point(globals: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
+    let receivers = globals.receivers.iter().take(globals.n_receivers as usize);
+    let hits = receivers.enumerate().filter_map(|(index, receiver)| {
+        let [x, y, z] = receiver.plane_from_region_px.map(Vec4::from_array);
+        let at = (x * region_px.x + y * region_px.y + z).truncate();
+        let in_plane = Vec2::new(at.x, at.y) / at.z;
+        let [x_min, z_min, x_max, z_max] = receiver.rect;
+        let is_on = at.z > 0.0
+            && in_plane.cmpge(Vec2::new(x_min, z_min)).all()
+            && in_plane.cmple(Vec2::new(x_max, z_max)).all();
+        is_on.then_some((at.z, index, in_plane))
+    });
+    hits.max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, index, in_plane)| (index, in_plane))
+        .filter(|(index, _)| globals.seen_from_behind >> index & 1 == 0)
+}

@@ -1,0 +1,225 @@
+//! Uniforms shared by all passes: region, receivers, lights.
+
+use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
+
+use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::facing::Viewers;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::silhouette::{ByCamera, OntoReceiver};
+use crate::geometry::view::View;
+use crate::geometry::whole_shadow::Caster;
+use crate::gpu::bindings::Slot;
+use crate::gpu::buffer::Buffer;
+use crate::gpu::shader::{Part, part};
+use crate::gpu::shared::{Mat3Columns, shared_struct};
+use app_scene::geometry::bounds::Sphere;
+use app_scene::geometry::light_points::light_in_plane;
+use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
+
+/// WGSL part of the globals.
+pub(crate) const GLOBALS: Part = part!(
+    "common/globals",
+    structs: [ReceiverPlane, Globals],
+    constants: [MAX_LIGHTS, MAX_RECEIVERS],
+);
+/// Slots of passes that read nothing else of the scene.
+pub(crate) const GLOBALS_GROUP: &[Slot] = &[Slot::uniform::<Globals>()];
+
+shared_struct! {
+    /// A receiver in a view.
+    pub struct ReceiverPlane {
+        pub plane_from_anchor: [[f32; 4]; 4],
+        pub plane_from_region_px: Mat3Columns,
+        pub clip_from_plane: Mat3Columns,
+        pub lights: [[f32; 4]; MAX_LIGHTS],
+        pub reference_in_plane: [f32; 2],
+        pub _pad: [f32; 2],
+        pub rect: [f32; 4],
+    }
+}
+
+shared_struct! {
+    /// Uniforms shared by all passes.
+    pub struct Globals {
+        pub clip_from_anchor: [[f32; 4]; 4],
+        pub receivers: [ReceiverPlane; MAX_RECEIVERS],
+        pub lights: [[f32; 4]; MAX_LIGHTS],
+        pub border_px: [f32; 4],
+        pub camera_in_anchor: [f32; 3],
+        pub n_lights: u32,
+        pub region_size_px: [f32; 2],
+        pub region_origin_px: [f32; 2],
+        pub toy_box_origin_px: [f32; 2],
+        pub toy_box_size_px: [f32; 2],
+        pub physical_box_origin_px: [f32; 2],
+        pub physical_box_size_px: [f32; 2],
+        pub n_receivers: u32,
+        pub seen_from_behind: u32,
+        pub near_m: f32,
+        pub _pad_1: u32,
+    }
+}
+
+/// The globals, on the processor and on the device.
+#[derive(Clone, Copy)]
+pub(crate) struct GlobalsOnDevice<'a> {
+    pub(crate) uniform: &'a Globals,
+    pub(crate) buffer: &'a Buffer,
+}
+
+impl Globals {
+    /// How the camera sees what is drawn in a target of the toy box.
+    pub(crate) fn by_camera(&self) -> ByCamera {
+        let receivers = self.receivers.iter().take(self.n_receivers as usize);
+        ByCamera {
+            clip_from_anchor: Mat4::from_cols_array_2d(&self.clip_from_anchor),
+            region_size_px: self.region_size_px.into(),
+            origin_px: self.toy_box_origin_px.into(),
+            inverse_depths: receivers
+                .map(|receiver| Vec3::from(receiver.plane_from_region_px.map(|[_, _, w, _]| w)))
+                .collect(),
+        }
+    }
+
+    /// How many of a light's points, from the first on, see all of a toy's shadow on a receiver land before the camera; the points
+    /// are in its space.
+    pub(crate) fn n_whole_shadows(&self, receiver: usize, points: &[Vec4], toy: &Sphere) -> usize {
+        let Some(receiver) = self.receivers.get(receiver) else {
+            return 0;
+        };
+        let plane_from_anchor = Mat4::from_cols_array_2d(&receiver.plane_from_anchor);
+        #[allow(clippy::cast_possible_truncation, reason = "metres")]
+        let caster = Caster {
+            centre: plane_from_anchor.transform_point3(toy.centre.as_vec3()),
+            radius_m: toy.radius_m as f32,
+        };
+        let depth = Vec3::from(receiver.clip_from_plane.map(|[_, _, w, _]| w));
+        let is_whole = |point: &&Vec4| caster.has_whole_shadow(**point, depth, self.near_m);
+        points.iter().take_while(is_whole).count()
+    }
+
+    /// How shadows from the points of a light, in a receiver's space, fall on it; none of a light that has none, or not all alike.
+    pub(crate) fn onto_receiver(&self, receiver: usize, points_in_plane: &[Vec4]) -> Option<OntoReceiver> {
+        let receiver = self.receivers.get(receiver)?;
+        let columns = receiver.clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
+        Some(OntoReceiver {
+            plane_from_anchor: Mat4::from_cols_array_2d(&receiver.plane_from_anchor),
+            light: Viewers::around(points_in_plane)?,
+            clip_from_plane: Mat3::from_cols_array_2d(&columns),
+            region_size_px: self.region_size_px.into(),
+            near_m: self.near_m,
+        })
+    }
+}
+
+/// Depth nearer than which a shadow is cut off, over the camera's distance from the toy.
+const NEAR_OVER_DISTANCE: f64 = 0.02;
+/// Width of the fade into untouched pixels at an inner border of the region.
+pub(crate) const BORDER_PX: u32 = 24;
+
+/// The globals of the region `rect` of a camera's picture, with the whole of it as both boxes.
+#[must_use]
+pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globals {
+    let world_from_anchor = layout.world_from_anchor();
+    let camera_in_anchor = view.camera_in(&world_from_anchor);
+    let mut receivers = [bytemuck::Zeroable::zeroed(); MAX_RECEIVERS];
+    for (slot, receiver) in receivers.iter_mut().zip(layout.receivers) {
+        *slot = receiver_plane(view, rect, layout, receiver);
+    }
+    let end_px = rect.origin_px + rect.size_px;
+    #[allow(clippy::cast_precision_loss, reason = "a few pixels")]
+    let fade = |is_inner: bool| if is_inner { BORDER_PX as f32 } else { 0.0 };
+    #[allow(clippy::cast_possible_truncation, reason = "at most four")]
+    let count = |n: usize, most: usize| n.min(most) as u32;
+    Globals {
+        clip_from_anchor: view
+            .clip_from(rect, &world_from_anchor)
+            .as_mat4()
+            .to_cols_array_2d(),
+        receivers,
+        lights: lights_in(layout.lights, &world_from_anchor.inverse()),
+        border_px: [
+            fade(rect.origin_px.x > 0),
+            fade(rect.origin_px.y > 0),
+            fade(end_px.x < view.image_px.x),
+            fade(end_px.y < view.image_px.y),
+        ],
+        camera_in_anchor: camera_in_anchor.as_vec3().to_array(),
+        n_lights: count(layout.lights.len(), MAX_LIGHTS),
+        region_size_px: rect.size_px.as_vec2().to_array(),
+        region_origin_px: rect.origin_px.as_vec2().to_array(),
+        toy_box_origin_px: [0.0; 2],
+        toy_box_size_px: rect.size_px.as_vec2().to_array(),
+        physical_box_origin_px: [0.0; 2],
+        physical_box_size_px: rect.size_px.as_vec2().to_array(),
+        n_receivers: count(layout.receivers.len(), MAX_RECEIVERS),
+        seen_from_behind: seen_from_behind(view, layout.receivers),
+        near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
+        _pad_1: 0,
+    }
+}
+
+impl Globals {
+    /// The same with parts of the region as the toy box and the physical box, counted from its corner.
+    #[must_use]
+    pub fn with_boxes(self, toy_box: &PixelRect, physical_box: &PixelRect) -> Self {
+        Self {
+            toy_box_origin_px: toy_box.origin_px.as_vec2().to_array(),
+            toy_box_size_px: toy_box.size_px.as_vec2().to_array(),
+            physical_box_origin_px: physical_box.origin_px.as_vec2().to_array(),
+            physical_box_size_px: physical_box.size_px.as_vec2().to_array(),
+            ..self
+        }
+    }
+}
+
+fn receiver_plane(
+    view: &View,
+    rect: &PixelRect,
+    layout: &SceneLayout<'_>,
+    receiver: &AnchoredReceiver,
+) -> ReceiverPlane {
+    let plane_from_world = receiver.world_from_plane.inverse();
+    let plane_from_anchor = plane_from_world * layout.world_from_anchor();
+    let nearest = plane_from_anchor.transform_point3(layout.toy_in_anchor);
+    let reference = receiver.rect.nearest(DVec2::new(nearest.x, nearest.z));
+    let PlaneRect { min, max } = receiver.rect;
+    ReceiverPlane {
+        plane_from_anchor: plane_from_anchor.as_mat4().to_cols_array_2d(),
+        plane_from_region_px: columns(view.plane_from_region_px(rect, &receiver.world_from_plane)),
+        clip_from_plane: columns(view.clip_from_plane(rect, &receiver.world_from_plane)),
+        lights: lights_in(layout.lights, &plane_from_world),
+        reference_in_plane: reference.as_vec2().to_array(),
+        _pad: [0.0; 2],
+        rect: [min.x, min.y, max.x, max.y].map(narrowed),
+    }
+}
+
+/// Bit k is 1 where receiver k is seen from behind.
+fn seen_from_behind(view: &View, receivers: &[AnchoredReceiver]) -> u32 {
+    let receivers = receivers.iter().take(MAX_RECEIVERS).enumerate();
+    let behind = receivers.filter(|(_, receiver)| !view.sees_front_of(&receiver.world_from_plane));
+    behind.fold(0, |seen, (index, _)| seen | 1 << index)
+}
+
+fn lights_in(lights: &[Light], space_from_world: &DMat4) -> [[f32; 4]; MAX_LIGHTS] {
+    let mut slots = [[0.0; 4]; MAX_LIGHTS];
+    for (slot, light) in slots.iter_mut().zip(lights) {
+        *slot = light_in_plane(light, space_from_world).as_vec4().to_array();
+    }
+    slots
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "metres in f32 as shaders have them"
+)]
+fn narrowed(metres: f64) -> f32 {
+    metres as f32
+}
+
+/// A 3 x 3 matrix in uniform layout.
+pub(crate) fn columns(m: DMat3) -> Mat3Columns {
+    m.as_mat3().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0])
+}

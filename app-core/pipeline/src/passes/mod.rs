@@ -1,0 +1,37 @@
+//! Passes that several paths run, and code shared by passes. A pass has one name: shader, module, label and time
+//! stamp.
+//!
+//! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
+
+pub(crate) mod camera_planes;
+pub(crate) mod counting;
+pub(crate) mod finished;
+pub(crate) mod frame;
+pub mod globals;
+pub(crate) mod in_parts;
+pub(crate) mod list;
+pub(crate) mod materials;
+mod mips;
+pub(crate) mod parts;
+pub(crate) mod pictures;
+pub mod plate;
+pub(crate) mod present;
+pub(crate) mod screen;
+pub(crate) mod toy_mesh;
+
+use crate::gpu::shader::Shader;
+use crate::passes::list::WarmUp;
+
+/// The shaders of the passes that several paths run.
+pub(crate) const SHADERS: &[&Shader] = &[
+    &camera_planes::SHADER,
+    &plate::SHADER,
+    &present::SHADER,
+    &screen::SHADER,
+];
+/// Compiles those that both methods run.
+pub(crate) const WARM_UPS: &[WarmUp] = &[
+    ("camera_planes", |gpu| drop(camera_planes::Pass::new(gpu))),
+    ("plate", |gpu| drop(plate::Pass::new(gpu))),
+    ("present", |gpu| drop(present::Pass::new(gpu))),
+];

@@ -1,0 +1,365 @@
+//! The toy on the device: what never changes, the physical pose, and the pose of the frame.
+
+mod corners;
+mod runs;
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use glam::{UVec2, Vec4};
+use wgpu::{BufferUsages, VertexFormat};
+
+use crate::geometry::facing::Viewers;
+use crate::geometry::rect::PixelRect;
+use crate::geometry::seen::{mark_seen, seen_rect};
+use crate::geometry::silhouette::{Edges, Projection, Shape, find_silhouette};
+use crate::geometry::tiles::Tiles;
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Pipeline, Stream};
+use crate::gpu::recorder::{Group, Recorder, Render};
+use crate::passes::materials::Materials;
+pub(crate) use crate::passes::toy_mesh::corners::{Corners, Saves, Side, SilhouetteTarget};
+use crate::passes::toy_mesh::corners::{Lists, MAX_SILHOUETTE_CORNERS, n};
+pub(crate) use crate::passes::toy_mesh::runs::Sided;
+use crate::passes::toy_mesh::runs::{Run, runs};
+use app_scene::geometry::bounds::Sphere;
+use app_scene::scene::MAX_LIGHTS;
+use app_scene::toy::{Caster, PosedMesh, Toy};
+
+/// Streams of a draw with materials: uvs, vertex colours, then positions and normals of the pose at locations 0 and 1.
+pub(crate) const LOOK_STREAMS: [Stream; 4] = [
+    (2, VertexFormat::Float32x2),
+    (3, VertexFormat::Float32x4),
+    (0, VertexFormat::Float32x3),
+    (1, VertexFormat::Float32x3),
+];
+
+/// Positions and normals of a pose, in anchor space.
+pub(crate) struct PoseBuffers {
+    pub(crate) positions: Buffer,
+    pub(crate) normals: Buffer,
+    /// Holds all positions.
+    pub(crate) around: Sphere,
+    /// The same on the processor.
+    mesh: PosedMesh,
+    /// Of the camera, and of each light.
+    lists: Vec<Lists>,
+}
+
+impl PoseBuffers {
+    /// The pixels of a target of `size_px` in which the toy may be seen.
+    pub(crate) fn seen_rect(&self, projection: &dyn Projection, size_px: UVec2) -> Option<PixelRect> {
+        seen_rect(&self.mesh.positions, projection, size_px)
+    }
+
+    /// With room for lists of so many corners each.
+    fn new(gpu: &Gpu, mesh: &PosedMesh, lists: impl Iterator<Item = usize>) -> Self {
+        Self {
+            positions: gpu.buffer(
+                "positions",
+                bytemuck::cast_slice(&mesh.positions),
+                BufferUsages::VERTEX,
+            ),
+            normals: gpu.buffer(
+                "normals",
+                bytemuck::cast_slice(&mesh.normals),
+                BufferUsages::VERTEX,
+            ),
+            around: Sphere::around(&mesh.positions),
+            mesh: mesh.clone(),
+            lists: lists.map(|n_corners| Lists::new(gpu, n_corners)).collect(),
+        }
+    }
+
+    /// Whether it is this pose.
+    pub(crate) fn is(&self, mesh: &PosedMesh) -> bool {
+        self.mesh == *mesh
+    }
+
+    /// Replaces the pose by another of the same toy.
+    pub(crate) fn write(&mut self, gpu: &Gpu, mesh: &PosedMesh) {
+        self.around = Sphere::around(&mesh.positions);
+        self.mesh.clone_from(mesh);
+        gpu.write(&self.positions, &mesh.positions);
+        gpu.write(&self.normals, &mesh.normals);
+    }
+}
+
+/// Which of the shapes near the toy's casts a shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// The toy's own.
+    Own,
+    /// The coarsest that is as near, in units of the toy's file.
+    Within(f64),
+    /// The finest of as many triangles, or the coarsest.
+    AtMost(u32),
+}
+
+/// Corners of a shape near the toy's.
+struct CasterRange {
+    /// How far it is from the toy's, in units of its file.
+    error: f64,
+    indices: Range<u32>,
+    /// Of the corners, those of closed pieces, which come first.
+    n_closed: usize,
+    /// Found when first asked for.
+    edges: OnceLock<Edges>,
+}
+
+impl CasterRange {
+    fn n_triangles(&self) -> u32 {
+        (self.indices.end - self.indices.start) / 3
+    }
+}
+
+/// The toy's buffers.
+pub(crate) struct ToyMesh {
+    indices: Buffer,
+    shadow_indices: Buffer,
+    /// The same on the processor.
+    shadow_corners: Vec<u32>,
+    /// Within them, ever coarser; at least the first, which is the toy's own shape.
+    casters: Vec<CasterRange>,
+    /// Whether it is made of closed pieces alone.
+    is_closed: bool,
+    uvs: Buffer,
+    colors: Buffer,
+    runs: Vec<Run>,
+    materials: Materials,
+    /// The pose the real toy was made in.
+    pub(crate) physical: PoseBuffers,
+    /// The pose to be shown.
+    pub(crate) shown: PoseBuffers,
+}
+
+impl ToyMesh {
+    /// `simplified` are shapes that may cast shadows in place of the toy's; with `lists` what faces away is left out.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        toy: &Toy,
+        physical: &PosedMesh,
+        (simplified, lists): (&[Caster], bool),
+    ) -> Self {
+        let materials = Materials::new(gpu, toy);
+        let (casters, shadow_indices) = casters(toy, simplified);
+        let shape = toy.shadow_indices();
+        let (runs, indices) = runs(toy, &materials);
+        // Only of closed pieces is anything left out, and shadows of others have no silhouette that pays; the toy's own shape
+        // has the most triangles.
+        let n_lists = match lists {
+            true if shape.n_closed > 0 => 1 + MAX_LIGHTS,
+            true if shape.indices.len() <= MAX_SILHOUETTE_CORNERS => 1,
+            _ => 0,
+        };
+        let lists = std::iter::repeat_n(shape.indices.len(), n_lists);
+        Self {
+            indices: gpu.buffer("indices", bytemuck::cast_slice(&indices), BufferUsages::INDEX),
+            shadow_indices: gpu.buffer(
+                "shadow indices",
+                bytemuck::cast_slice(&shadow_indices),
+                BufferUsages::INDEX,
+            ),
+            shadow_corners: shadow_indices,
+            casters,
+            is_closed: shape.is_closed(),
+            uvs: gpu.buffer("uvs", bytemuck::cast_slice(toy.uvs()), BufferUsages::VERTEX),
+            colors: gpu.buffer(
+                "colors",
+                bytemuck::cast_slice(toy.colors_linear().unwrap_or(&vec![[1.0; 4]; toy.n_vertices()])),
+                BufferUsages::VERTEX,
+            ),
+            runs,
+            materials,
+            physical: PoseBuffers::new(gpu, physical, lists.clone()),
+            shown: PoseBuffers::new(gpu, physical, lists),
+        }
+    }
+
+    pub(crate) fn n_materials(&self) -> usize {
+        self.materials.n()
+    }
+
+    /// Group `GROUP_DRAW` of a pipeline, one a look.
+    pub(crate) fn bind_materials<T>(&self, recorder: &Recorder<'_>, pipeline: &Pipeline<T>) -> Vec<Group> {
+        self.materials.bind(recorder, pipeline)
+    }
+
+    /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of closed pieces, and from outside, what faces
+    /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs. Then the
+    /// silhouette is looked for as well, where it is asked for.
+    pub(crate) fn corners<'a>(
+        &'a self,
+        gpu: &Gpu,
+        (pose, side): (&'a PoseBuffers, Option<Side>),
+        (points, detail): (&[Vec4], Detail),
+        target: Option<SilhouetteTarget<'_>>,
+    ) -> Corners<'a> {
+        let is_inside = points.iter().any(|point| pose.around.holds(point.as_dvec4()));
+        let is_culled = self.is_closed && !is_inside;
+        let viewers = Viewers::around(points).filter(|_| !is_inside);
+        let listed = viewers.zip(side.and_then(|side| pose.lists.get(side.index())));
+        let Some((viewers, lists)) = listed else {
+            return Corners {
+                is_culled,
+                ..self.shape(detail)
+            };
+        };
+        let (closed, open) = self.split_caster(detail);
+        let mut facing = viewers.facing(&pose.mesh.positions, closed);
+        facing.extend(open);
+        gpu.write(&lists.facing, &facing);
+        let worth_it = target.filter(|target| target.saves.pays(facing.len(), self.is_closed));
+        let silhouette = worth_it.and_then(|target| {
+            let shape = self.small_shape(pose, detail)?;
+            let seen = (&viewers, target.projection);
+            let silhouette = find_silhouette(shape, seen, &facing, target.part.size_px)?;
+            lists.silhouette(gpu, &silhouette, target.part.origin_px.as_vec2())
+        });
+        Corners {
+            buffer: &lists.facing,
+            indices: 0..n(&facing),
+            is_culled,
+            silhouette,
+        }
+    }
+
+    /// Marks the tiles of a target within `reach_px` of where a shape in a pose may be seen.
+    pub(crate) fn mark_seen(
+        &self,
+        tiles: &mut Tiles,
+        (pose, detail): (&PoseBuffers, Detail),
+        (projection, reach_px): (&dyn Projection, f32),
+    ) {
+        let (closed, open) = self.split_caster(detail);
+        for corners in [closed, open] {
+            mark_seen(tiles, (&pose.mesh.positions, corners), projection, reach_px);
+        }
+    }
+
+    /// A shape in a pose, if it is small enough to look for its silhouette.
+    fn small_shape<'a>(&'a self, pose: &'a PoseBuffers, detail: Detail) -> Option<Shape<'a>> {
+        let caster = self.caster(detail)?;
+        let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
+        let corners = self.shadow_corners.get(start..end)?;
+        (corners.len() <= MAX_SILHOUETTE_CORNERS).then(|| Shape {
+            positions: &pose.mesh.positions,
+            corners,
+            edges: caster.edges.get_or_init(|| Edges::of(corners)),
+        })
+    }
+
+    /// Corners of a whole shape.
+    pub(crate) fn shape(&self, detail: Detail) -> Corners<'_> {
+        Corners {
+            buffer: &self.shadow_indices,
+            indices: self.corners_of(detail),
+            is_culled: false,
+            silhouette: None,
+        }
+    }
+
+    /// Draws the whole mesh as these instances, without materials; positions are in slot 0.
+    pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
+        render.set_vertices(0, positions);
+        render.set_indices(&self.shadow_indices);
+        render.draw_indexed(self.corners_of(Detail::Own), instances);
+    }
+
+    /// Corners of a shape: those of closed pieces, and those of open ones.
+    fn split_caster(&self, detail: Detail) -> (&[u32], &[u32]) {
+        let corners = self.caster(detail).and_then(|caster| {
+            let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
+            self.shadow_corners
+                .get(start..end)?
+                .split_at_checked(caster.n_closed)
+        });
+        corners.unwrap_or_default()
+    }
+
+    /// Corners of the shape of a detail, within all.
+    fn corners_of(&self, detail: Detail) -> Range<u32> {
+        self.caster(detail).map_or(0..0, |caster| caster.indices.clone())
+    }
+
+    fn caster(&self, detail: Detail) -> Option<&CasterRange> {
+        let mut casters = self.casters.iter();
+        match detail {
+            Detail::Own => casters.next(),
+            Detail::Within(error) => casters.take_while(|caster| caster.error <= error).last(),
+            Detail::AtMost(n) => casters
+                .find(|caster| caster.n_triangles() <= n)
+                .or(self.casters.last()),
+        }
+    }
+
+    /// Draws every part with its material; `streams` are the poses, from slot 2 on, of which the first is seen.
+    ///
+    /// Of closed pieces, and from outside, only the side that faces the camera shows.
+    pub(crate) fn draw_parts(
+        &self,
+        render: &mut Render<'_>,
+        sided: &Sided<'_>,
+        streams: &[&PoseBuffers],
+        looks: &[Group],
+    ) {
+        let camera = sided.camera_in_anchor.extend(1.0).as_dvec4();
+        let is_inside = streams.first().is_some_and(|pose| pose.around.holds(camera));
+        let closed = if is_inside { sided.both } else { sided.culled };
+        // Slots outlive a change of pipelines of the same layout.
+        render.begin(closed, sided.groups);
+        self.set_streams(render, streams);
+        self.draw_runs(render, looks, |run| &run.closed);
+        if self.runs.iter().any(|run| !run.open.is_empty()) {
+            render.begin(sided.both, &[]);
+            self.draw_runs(render, looks, |run| &run.open);
+        }
+    }
+
+    fn set_streams(&self, render: &mut Render<'_>, streams: &[&PoseBuffers]) {
+        render.set_vertices(0, &self.uvs);
+        render.set_vertices(1, &self.colors);
+        for (slot, pose) in (2..).step_by(2).zip(streams) {
+            render.set_vertices(slot, &pose.positions);
+            render.set_vertices(slot + 1, &pose.normals);
+        }
+        render.set_indices(&self.indices);
+    }
+
+    /// Draws a part of each run.
+    fn draw_runs(&self, render: &mut Render<'_>, looks: &[Group], part: impl Fn(&Run) -> &Range<u32>) {
+        let mut current = None;
+        for run in self.runs.iter().filter(|run| !part(run).is_empty()) {
+            if current != Some(run.look)
+                && let Some(look) = looks.get(run.look)
+            {
+                render.set(look);
+                current = Some(run.look);
+            }
+            render.draw_indexed(part(run).clone(), run.material..run.material + 1);
+        }
+    }
+}
+
+/// The toy's own shape and those near it, one after the other, and their corners.
+fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
+    let mut all = toy.shadow_indices().indices.clone();
+    let mut ranges = vec![CasterRange {
+        error: 0.0,
+        indices: 0..n(&all),
+        n_closed: toy.shadow_indices().n_closed,
+        edges: OnceLock::new(),
+    }];
+    for caster in simplified {
+        let first = n(&all);
+        all.extend(&caster.indices);
+        ranges.push(CasterRange {
+            error: caster.error,
+            indices: first..n(&all),
+            n_closed: caster.n_closed,
+            edges: OnceLock::new(),
+        });
+    }
+    (ranges, all)
+}

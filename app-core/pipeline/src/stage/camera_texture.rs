@@ -1,0 +1,152 @@
+//! The camera's picture on the device, in whichever form it came.
+//!
+//! Planes are read as they are, by the screen and by the model; only who filters light of the whole picture has all of it decoded.
+
+use std::sync::OnceLock;
+
+use glam::UVec2;
+use wgpu::TextureFormat;
+
+use crate::gpu::LentTextures;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::{Texture, TextureView};
+use crate::passes::camera_planes;
+use crate::passes::camera_planes::Planes;
+use crate::passes::frame::{Frame, FramePlanes, Picture};
+use app_scene::camera_frame::{CameraImage, PlanarImage};
+
+pub(crate) struct CameraTexture {
+    size_px: UVec2,
+    /// The picture that is there.
+    image: Option<CameraImage>,
+    /// All of it: of a picture that came as one, and of one that somebody wanted as one.
+    whole: OnceLock<SrgbTexture>,
+    is_whole_there: bool,
+    decoder: OnceLock<camera_planes::Pass>,
+    /// Once planes have come as bytes.
+    own_planes: Option<Planes>,
+    /// The platform's planes, while they are those of the picture.
+    lent: Option<[TextureView; 2]>,
+}
+
+/// A picture that is written as codes and read as light.
+struct SrgbTexture {
+    texture: Texture,
+    /// View of its codes, not decoded.
+    codes: TextureView,
+}
+
+impl SrgbTexture {
+    fn new(gpu: &Gpu, size_px: UVec2) -> Self {
+        let texture = Texture::target(gpu, "frame", size_px, TextureFormat::Rgba8UnormSrgb);
+        Self {
+            codes: texture.codes(gpu),
+            texture,
+        }
+    }
+
+    fn picture(&self) -> Picture<'_> {
+        Picture {
+            light: &self.texture.view,
+            codes: &self.codes,
+        }
+    }
+}
+
+impl CameraTexture {
+    pub(crate) fn new(size_px: UVec2) -> Self {
+        Self {
+            size_px,
+            image: None,
+            whole: OnceLock::new(),
+            is_whole_there: false,
+            decoder: OnceLock::new(),
+            own_planes: None,
+            lent: None,
+        }
+    }
+
+    /// Takes a picture as it comes, unless it is the one that is there already.
+    pub(crate) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
+        if self.image.as_ref().is_some_and(|known| known.is(image)) {
+            return;
+        }
+        self.forget();
+        match image {
+            CameraImage::Rgba(image) => {
+                self.whole(gpu).texture.write(gpu, &image.rgba8);
+                self.is_whole_there = true;
+            }
+            CameraImage::Planes(image) => self.take_planes(gpu, image),
+        }
+        self.image = Some(image.clone());
+    }
+
+    fn take_planes(&mut self, gpu: &Gpu, image: &PlanarImage) {
+        let opened = gpu.opened.as_ref();
+        let lent = opened.and_then(|opened| LentTextures::on(image, &opened.device.handle()));
+        self.lent = lent.map(|textures| textures.map(|texture| TextureView::of_other(gpu, texture)));
+        if self.lent.is_none() {
+            self.own_planes
+                .get_or_insert_with(|| Planes::new(gpu, image.size_px()))
+                .write(gpu, image);
+        }
+    }
+
+    /// Takes what is there for unknown.
+    pub(crate) fn forget(&mut self) {
+        self.image = None;
+        self.is_whole_there = false;
+        self.lent = None;
+    }
+
+    /// The picture in the form that it came in.
+    pub(crate) fn frame(&self, gpu: &Gpu) -> Frame<'_> {
+        match self.planes() {
+            Some(planes) => Frame::Planes(planes),
+            None => Frame::Picture(self.whole(gpu).picture()),
+        }
+    }
+
+    /// All of it, decoded.
+    pub(crate) fn decoded(&self, recorder: &mut Recorder<'_>) -> Picture<'_> {
+        let whole = self.whole(recorder.gpu);
+        if !self.is_whole_there {
+            self.decode(recorder, &whole.codes);
+        }
+        whole.picture()
+    }
+
+    /// The same for who reads it over several frames: decoded once.
+    pub(crate) fn keep_decoded(&mut self, recorder: &mut Recorder<'_>) -> Picture<'_> {
+        self.decoded(recorder);
+        self.is_whole_there = true;
+        self.whole(recorder.gpu).picture()
+    }
+
+    fn whole(&self, gpu: &Gpu) -> &SrgbTexture {
+        self.whole.get_or_init(|| SrgbTexture::new(gpu, self.size_px))
+    }
+
+    fn planes(&self) -> Option<FramePlanes<'_>> {
+        let Some(CameraImage::Planes(image)) = &self.image else {
+            return None;
+        };
+        let own = || self.own_planes.as_ref().map(Planes::views);
+        let lent = self.lent.as_ref().map(|[luma, chroma]| [luma, chroma]);
+        Some(FramePlanes {
+            views: lent.or_else(own)?,
+            encoding: image.encoding(),
+        })
+    }
+
+    fn decode(&self, recorder: &mut Recorder<'_>, codes: &TextureView) {
+        if let Some(planes) = self.planes() {
+            let pass = self
+                .decoder
+                .get_or_init(|| camera_planes::Pass::new(recorder.gpu));
+            pass.encode(recorder, &planes, codes);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The footprint of a frame: its view, work region and plates; or why the frame passes through.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::Stage;
+use crate::frame::report::FrameReport;
+use crate::frame::warning::Warning;
+use crate::geometry::clip_reach::ClipReach;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::view::View;
+use crate::passes::globals::BORDER_PX;
+use crate::passes::plate::PlateViews;
+use crate::plan::LeftOut;
+use crate::plates::choice::{PlateChoice, choose, covered_fraction, plate_views};
+use crate::preset::Settings;
+use app_scene::frame::FrameInput;
+use app_scene::geometry::bounds::Bounds;
+use app_scene::scene::Camera;
+use app_scene::toy::ToyError;
+
+/// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
+pub(super) const SPARE_PX: u32 = 8;
+
+/// Farthest that a pixel is looked up around the toy, with one for rounding and one for multisamples.
+pub(super) const AROUND_TOY_PX: u32 = 10;
+
+/// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
+pub(super) struct Footprint {
+    camera: Camera,
+    pub(super) view: View,
+    /// Corners of what toy and shadows reach.
+    pub(super) corners_in_world: Vec<DVec3>,
+    /// What is reached, and the fade at its border.
+    pub(super) least_region: PixelRect,
+    /// The region of a method that starts with this frame.
+    pub(super) region: PixelRect,
+    /// Pixels of the image that show the toy in all poses so far, and what is looked up around them; none where it is out of
+    /// the picture.
+    pub(super) least_toy_box: Option<PixelRect>,
+    pub(super) bounds: Bounds,
+    /// Width in pixels of each light's widest penumbra.
+    pub(super) penumbrae_px: Vec<f64>,
+    pub(super) plane_rects: Vec<PlaneRect>,
+    pub(super) choice: PlateChoice,
+    pub(super) plate_views: PlateViews,
+    /// Share of the region that plates show.
+    pub(super) plate_fraction: f64,
+}
+
+/// Why a camera frame is shown as it is.
+pub(super) enum PassThrough {
+    PhysicalPose,
+    NoEffect,
+    Warned(Warning),
+}
+
+impl PassThrough {
+    pub(super) fn tell(self, report: &mut FrameReport) {
+        let why = match self {
+            Self::PhysicalPose => "the shown pose is the physical pose",
+            Self::NoEffect => "nothing of the effect is shown",
+            Self::Warned(warning) => {
+                report.warnings.push(warning);
+                "see the warnings"
+            }
+        };
+        report.skipped.push(LeftOut {
+            what: "every pass but present",
+            why,
+        });
+    }
+}
+
+impl Stage {
+    pub(super) fn footprint(
+        &mut self,
+        input: &FrameInput,
+    ) -> Result<Result<Arc<Footprint>, PassThrough>, ToyError> {
+        let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
+        let is_physical = input.shown_pose == self.scene.physical_pose;
+        if is_physical && !self.is_shadow_withheld {
+            return Ok(Err(PassThrough::PhysicalPose));
+        }
+        if input.effect == 0.0 {
+            return Ok(Err(PassThrough::NoEffect));
+        }
+        if self.lights.used.is_empty() {
+            return warned(Warning::NoLight);
+        }
+        let needs_plate = matches!(self.preset.settings(), Settings::Baseline(_));
+        if needs_plate && self.scene.plates.is_empty() {
+            return warned(Warning::NoPlate);
+        }
+        self.reach_shown_pose(input)?;
+        let camera = &input.camera;
+        if let Some(known) = self.cached_footprint.as_ref()
+            && known.camera == *camera
+        {
+            return Ok(Ok(Arc::clone(known)));
+        }
+        let view = self.view(camera);
+        if view.camera_in(&self.layout().world_from_anchor()).y <= 0.0 {
+            return warned(Warning::CameraBelowReceiver);
+        }
+        let footprint = self.footprint_in(view, camera).map(Arc::new);
+        self.cached_footprint.clone_from(&footprint);
+        Ok(footprint.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
+    }
+
+    /// The footprint of what is reached, in a view; none when it is out of the picture.
+    fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
+        let (layout, reach) = (self.layout(), self.reach.as_ref()?);
+        let on_view = reach.on_view(&view, &layout);
+        let least_region = on_view.region()?.grown(BORDER_PX, view.image_px);
+        let region = least_region.grown(SPARE_PX, view.image_px);
+        let plane_rects = on_view.plane_rects();
+        let toy = on_view.toy();
+        let corners_in_world = corners_in_world(&layout, &reach.bounds, &plane_rects);
+        let toy_in_world = layout.world_from_anchor().transform_point3(reach.bounds.centre());
+        let choice = choose(&self.scene, &view, &corners_in_world, toy_in_world);
+        Some(Footprint {
+            camera: *camera,
+            bounds: reach.bounds,
+            penumbrae_px: on_view.penumbrae_px().to_vec(),
+            plate_views: plate_views(&self.scene, &layout, &view, &choice, &self.plates.gains),
+            plate_fraction: covered_fraction(&self.scene, &layout, &view, &region, &choice),
+            corners_in_world,
+            least_region,
+            region,
+            least_toy_box: toy.map(|toy| toy.grown(AROUND_TOY_PX, view.image_px)),
+            plane_rects,
+            choice,
+            view,
+        })
+    }
+
+    /// Poses the toy as it is to be shown, and makes `reach` hold it.
+    ///
+    /// A clip is looked through at once, so that the region rarely grows while it plays; poses by nodes are only known when
+    /// they come.
+    fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
+        let clip = input.shown_pose.clip();
+        let (physical, anchor_from_object) = (&self.scene.physical_pose, self.anchor_from_object());
+        let known = self.reach.take().filter(|known| known.clip == clip);
+        let mut reach = match known {
+            Some(known) => known,
+            None => {
+                self.cached_footprint = None;
+                let poses = (physical, clip);
+                ClipReach::new(&self.scene.toy, &anchor_from_object, poses, &mut self.posed)?
+            }
+        };
+        let shown = &input.shown_pose;
+        self.scene.toy.pose(shown, &anchor_from_object, &mut self.posed)?;
+        if reach.grow(&self.posed) {
+            self.cached_footprint = None;
+        }
+        self.reach = Some(reach);
+        Ok(())
+    }
+}
+
+fn corners_in_world(layout: &SceneLayout<'_>, toy: &Bounds, plane_rects: &[PlaneRect]) -> Vec<DVec3> {
+    let world_from_anchor = layout.world_from_anchor();
+    let of_toy = toy.corners().map(|p| world_from_anchor.transform_point3(p));
+    let reached = layout.receivers.iter().zip(plane_rects);
+    let on_receivers = reached
+        .filter(|(_, rect)| rect.min.is_finite() && rect.max.is_finite())
+        .flat_map(|(receiver, rect)| {
+            let corners = rect.corners().into_iter();
+            corners.map(|p| {
+                receiver
+                    .world_from_plane
+                    .transform_point3(DVec3::new(p.x, 0.0, p.y))
+            })
+        });
+    of_toy.chain(on_receivers).collect()
+}

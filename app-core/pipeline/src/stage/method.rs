@@ -1,0 +1,141 @@
+//! Dispatches to the additive model or to the baseline.
+
+use crate::baseline;
+use crate::baseline::Baseline;
+use crate::frame::warning::Warning;
+use crate::geometry::rect::PixelRect;
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::recorder::Recorder;
+use crate::model;
+use crate::model::Model;
+use crate::passes;
+use crate::passes::frame::Picture;
+use crate::passes::list::WarmUp;
+use crate::passes::pictures::Pictures;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::{LeftOut, News};
+use crate::preset::{Preset, Settings};
+use crate::readback::inject::InjectedVisibility;
+use crate::readback::{FloatMap, Map};
+use app_scene::scene::Image;
+
+/// Everything that the frames of a preset run, to be compiled.
+pub(crate) fn warm_ups(preset: Preset) -> Vec<WarmUp> {
+    let of_method = match preset.settings() {
+        Settings::Model(_) => [
+            model::lighting::WARM_UPS,
+            model::capture::WARM_UPS,
+            model::frame::WARM_UPS,
+        ]
+        .concat(),
+        Settings::Baseline(_) => baseline::WARM_UPS.to_vec(),
+    };
+    [of_method.as_slice(), passes::WARM_UPS].concat()
+}
+
+/// A method at work on a scene.
+pub(crate) enum Method {
+    /// The additive model of the receivers.
+    Model(Box<Model>),
+    /// The published method.
+    Baseline(Box<Baseline>),
+}
+
+impl Method {
+    pub(crate) fn region(&self) -> PixelRect {
+        match self {
+            Self::Model(model) => model.region.rect(),
+            Self::Baseline(baseline) => baseline.plan.region,
+        }
+    }
+
+    /// Whether the targets of the toy hold these pixels of the image, as far as the region goes.
+    pub(crate) fn holds_toy(&self, needed: Option<PixelRect>) -> bool {
+        let Self::Model(model) = self else { return true };
+        let (region, toy_box) = (self.region(), model.region.plan.toy_box);
+        let known = PixelRect {
+            origin_px: toy_box.origin_px + region.origin_px,
+            ..toy_box
+        };
+        let needed = needed.and_then(|needed| needed.common(&region));
+        needed.is_none_or(|needed| known.contains(&needed))
+    }
+
+    pub(crate) fn left_out(&self) -> &[LeftOut] {
+        match self {
+            Self::Model(model) => &model.region.plan.left_out,
+            Self::Baseline(baseline) => &baseline.plan.left_out,
+        }
+    }
+
+    /// The region's picture.
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        match self {
+            Self::Model(model) => model.picture(),
+            Self::Baseline(baseline) => baseline.picture(),
+        }
+    }
+
+    /// The model, where it is at work.
+    pub(crate) fn model(&self) -> Option<&Model> {
+        match self {
+            Self::Model(model) => Some(model),
+            Self::Baseline(_) => None,
+        }
+    }
+
+    /// Looks for the toy in the picture, where the method goes by that.
+    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
+        match self {
+            Self::Model(model) => model.look_for_toy(toy, news),
+            Self::Baseline(_) => {}
+        }
+    }
+
+    /// Encodes the frame path, and before it what the change asks for.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        toy: &ToyMesh,
+        pictures: &Pictures<'_>,
+        news: News,
+    ) {
+        match self {
+            Self::Model(model) => model.encode(recorder, toy, pictures, news),
+            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, news),
+        }
+    }
+
+    /// Replaces visibilities from the next frame on; see [`Inspect::inject_visibility`](crate::core::inspect::Inspect).
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        match self {
+            Self::Model(model) => model.inject(gpu, maps),
+            Self::Baseline(baseline) => baseline.inject(gpu, maps),
+        }
+    }
+
+    /// Waits for the device and returns a map, where this method makes it; `frame` is the picture that was learned from last.
+    pub(crate) fn read_map(
+        &self,
+        gpu: &Gpu,
+        frame: Option<&Image>,
+        map: Map,
+    ) -> Result<Option<FloatMap>, GpuError> {
+        match self {
+            Self::Model(model) => model.read_map(gpu, frame, map),
+            Self::Baseline(baseline) => baseline.read_map(gpu, map),
+        }
+    }
+
+    /// Waits for the device and returns what the baseline lacks; the model's warnings come from its fit.
+    pub(crate) fn read_warnings(
+        &self,
+        gpu: &Gpu,
+        listed: (&[usize], &[usize]),
+    ) -> Result<Vec<Warning>, GpuError> {
+        match self {
+            Self::Model(_) => Ok(Vec::new()),
+            Self::Baseline(baseline) => baseline.read_warnings(gpu, listed),
+        }
+    }
+}

@@ -1,0 +1,448 @@
+//! A scene on the device: the toy, the plates and the frame, and what was learned from them.
+
+mod afford;
+pub(crate) mod camera_texture;
+mod footprint;
+pub(crate) mod method;
+mod placement;
+mod reuse;
+mod supported;
+
+use std::sync::{Arc, OnceLock};
+
+use glam::{DMat4, DVec3, UVec2};
+
+use crate::frame::report::FrameReport;
+use crate::frame::warning::Warning;
+use crate::geometry::anchored::AnchoredReceiver;
+use crate::geometry::clip_reach::ClipReach;
+use crate::geometry::outline::Outline;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::scene_layout::SceneLayout;
+use crate::geometry::view::View;
+use crate::governor::Step;
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::texture::Texture;
+use crate::passes::finished::{Finished, Laid};
+use crate::passes::frame::Frame;
+use crate::passes::pictures::Pictures;
+use crate::passes::present;
+use crate::passes::present::OUTPUT_FORMAT;
+use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::{Change, LeftOut, News};
+use crate::plates::store::PlateStore;
+use crate::preset::{Preset, Settings};
+use crate::readback::inject::InjectedVisibility;
+use crate::readback::{FloatMap, Map};
+use app_scene::camera_frame::CameraImage;
+use app_scene::frame::FrameInput;
+use app_scene::geometry::bounds::Bounds;
+use app_scene::scene::{Camera, Image, Scene};
+use app_scene::toy;
+use app_scene::toy::{Caster, PosedMesh, Toy, ToyError};
+
+use camera_texture::CameraTexture;
+use footprint::Footprint;
+use method::Method;
+use supported::{Lights, Receivers};
+
+/// A scene on the device.
+pub(crate) struct Stage {
+    scene: Scene,
+    preset: Preset,
+    receivers: Vec<AnchoredReceiver>,
+    /// Indices of `receivers` in the scene's list.
+    receiver_indices: Vec<usize>,
+    receivers_warning: Option<Warning>,
+    lights: Lights,
+    /// Those of them that stand inside the physical toy, as indices in the list that they were given in, once it is known.
+    lights_inside: Option<Vec<usize>>,
+    /// Where the object stands that was learned from.
+    world_from_object: DMat4,
+    /// Whether the physical pose on the device is that one.
+    is_object_placed: bool,
+    /// Of the physical pose, in object space.
+    bounds_in_object: Bounds,
+    /// Of the physical pose, in anchor space.
+    physical_bounds: Bounds,
+    physical_outline: Outline,
+    is_shadow_withheld: bool,
+    /// A pose that is shown again counts as a new one.
+    is_every_pose_new: bool,
+    /// Settings that the caller turns down.
+    asked_down: Vec<Step>,
+    /// Those that are turned down since the scene would cost too much.
+    turned_down: Vec<Step>,
+    /// What there is to say of that.
+    cost_warning: Option<Warning>,
+    /// What the clip shown last reaches, with the poses shown so far.
+    reach: Option<ClipReach>,
+    /// Footprint of the latest frame.
+    cached_footprint: Option<Arc<Footprint>>,
+    toy: ToyMesh,
+    posed: PosedMesh,
+    camera: CameraTexture,
+    plates: PlateStore,
+    present: present::Pass,
+    state: Option<MethodState>,
+    /// What the clips shown so far reach of each receiver.
+    reached_rects: Vec<PlaneRect>,
+    /// How much of the region's picture the latest frame shows; none where the camera image passes through.
+    effect: Option<f64>,
+    /// The picture as a texture, once one was asked for.
+    output: OnceLock<Texture>,
+}
+
+/// The method with its state, and the latest frame that this was learned from.
+struct MethodState {
+    method: Method,
+    view: View,
+    /// Relative, of `image`.
+    exposure: f64,
+    /// How many pictures were learned from.
+    n_pictures: u32,
+    image: Option<CameraImage>,
+    /// Of the lights that were learned under, in the list that they were given in.
+    light_indices: Vec<usize>,
+    /// It was learned from one view alone.
+    is_first_view: bool,
+    /// Visibilities were injected after it was learned.
+    is_visibility_outdated: bool,
+    /// Settings were turned down or up after it was learned.
+    are_settings_outdated: bool,
+    /// The object or the lights moved after it was learned.
+    is_placement_outdated: bool,
+}
+
+/// Shapes that cast shadows in place of the toy's; none with a preset that takes none.
+fn simplified(toy: &Toy, preset: Preset) -> &[Caster] {
+    match preset.settings() {
+        Settings::Model(settings) if settings.caster_px.is_some() => toy.casters(),
+        _ => &[],
+    }
+}
+
+impl Stage {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        scene: Scene,
+        preset: Preset,
+        toy_in_object: &toy::Bounds,
+    ) -> Result<Self, ToyError> {
+        let bounds_in_object = Bounds {
+            min: toy_in_object.min.as_dvec3(),
+            max: toy_in_object.max.as_dvec3(),
+        };
+        let toy_in_world = scene
+            .world_from_object
+            .transform_point3(bounds_in_object.centre());
+        let corners_in_world: Vec<DVec3> = bounds_in_object
+            .corners()
+            .map(|corner| scene.world_from_object.transform_point3(corner))
+            .collect();
+        let receivers = Receivers::new(&scene.receivers, toy_in_world, &corners_in_world);
+        let anchor_from_object = receivers.anchored[0].world_from_plane.inverse() * scene.world_from_object;
+        let mut posed = PosedMesh::default();
+        scene
+            .toy
+            .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
+        let size_px = UVec2::new(scene.width_px, scene.height_px);
+        // The baseline draws whole shapes, as published.
+        let is_model = matches!(preset.settings(), Settings::Model(_));
+        Ok(Self {
+            bounds_in_object,
+            physical_bounds: Bounds::around(posed.points()),
+            physical_outline: Outline::around(&posed),
+            toy: ToyMesh::new(
+                gpu,
+                &scene.toy,
+                &posed,
+                (simplified(&scene.toy, preset), is_model),
+            ),
+            posed,
+            camera: CameraTexture::new(size_px),
+            plates: PlateStore::new(gpu, &scene, &receivers.anchored),
+            present: present::Pass::new(gpu),
+            state: None,
+            reached_rects: Vec::new(),
+            lights_inside: None,
+            lights: Lights::new(&scene.lights, &receivers.anchored),
+            receivers: receivers.anchored,
+            receiver_indices: receivers.indices,
+            receivers_warning: receivers.warning,
+            effect: None,
+            output: OnceLock::new(),
+            preset,
+            world_from_object: scene.world_from_object,
+            is_object_placed: true,
+            scene,
+            is_shadow_withheld: false,
+            is_every_pose_new: false,
+            turned_down: Vec::new(),
+            asked_down: Vec::new(),
+            cost_warning: None,
+            reach: None,
+            cached_footprint: None,
+        })
+    }
+
+    /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
+    pub(crate) fn withhold_shadow(&mut self) {
+        if matches!(self.preset.settings(), Settings::Model(_)) {
+            self.is_shadow_withheld = true;
+            self.state = None;
+        }
+    }
+
+    /// Draws a pose that is shown again as if it were new.
+    pub(crate) fn draw_every_pose(&mut self) {
+        self.is_every_pose_new = true;
+    }
+
+    /// The latest picture, of which the region's part still has to be laid over the camera image.
+    pub(crate) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
+        Finished {
+            frame: self.camera.frame(gpu),
+            region: self.laid(),
+            size_px: self.size_px(),
+        }
+    }
+
+    fn laid(&self) -> Option<Laid<'_>> {
+        self.method().zip(self.effect).map(|(method, effect)| Laid {
+            picture: method.picture(),
+            rect: method.region(),
+            #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+            effect: effect as f32,
+        })
+    }
+
+    /// Draws that picture into a texture of its size: codes.
+    pub(crate) fn draw_picture(&self, gpu: &Gpu) -> &Texture {
+        let output = self
+            .output
+            .get_or_init(|| Texture::target(gpu, "output", self.size_px(), OUTPUT_FORMAT));
+        let mut recorder = Recorder::new(gpu, None);
+        let frame = self.camera.decoded(&mut recorder);
+        self.present
+            .encode(&mut recorder, (frame, self.laid()), &output.view);
+        recorder.submit();
+        output
+    }
+
+    /// The scene that is staged.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Waits for the device and returns a map, where the method makes it.
+    pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
+        let Some(method) = self.method() else {
+            return Ok(None);
+        };
+        method.read_map(gpu, self.learned_image(), map)
+    }
+
+    /// What was learned so far.
+    pub(crate) fn method(&self) -> Option<&Method> {
+        self.state.as_ref().map(|state| &state.method)
+    }
+
+    /// Indices, in the list that they were given in, of the lights that were learned under.
+    pub(crate) fn light_indices(&self) -> &[usize] {
+        self.state.as_ref().map_or(&[], |state| &state.light_indices)
+    }
+
+    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    pub(crate) fn lights_inside(&self) -> &[usize] {
+        self.lights_inside.as_deref().unwrap_or_default()
+    }
+
+    /// Whether no more than one view was learned from.
+    pub(crate) fn is_first_view(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| state.is_first_view)
+    }
+
+    /// Whether the view that was learned from last shows the real toy.
+    pub(crate) fn is_toy_in_picture(&self) -> bool {
+        let view = self.state.as_ref().map(|state| &state.view);
+        view.is_some_and(|view| self.shows_toy(view))
+    }
+
+    /// Whether the physical toy is in the picture.
+    fn shows_toy(&self, view: &View) -> bool {
+        self.physical_toy_in(view).is_some()
+    }
+
+    /// The pixels of the image that can show the physical toy.
+    fn physical_toy_in(&self, view: &View) -> Option<PixelRect> {
+        view.image_rect(&self.layout().world_from_anchor(), self.physical_outline.points())
+    }
+
+    /// The picture that was learned from last.
+    pub(crate) fn learned_image(&self) -> Option<&Image> {
+        Some(self.state.as_ref()?.image.as_ref()?.rgba())
+    }
+
+    /// Indices, in the scene's list, of the receivers in use.
+    pub(crate) fn receiver_indices(&self) -> &[usize] {
+        &self.receiver_indices
+    }
+
+    /// Drops what was learned and what was uploaded of frames, which a refused frame may have left half done.
+    pub(crate) fn forget(&mut self, gpu: &Gpu) {
+        self.drop_method(gpu);
+        self.camera.forget();
+        self.plates.forget();
+        self.is_object_placed = false;
+    }
+
+    /// Drops the method with its targets, of which bind groups are kept, too.
+    fn drop_method(&mut self, gpu: &Gpu) {
+        self.state = None;
+        gpu.release_groups();
+    }
+
+    /// Replaces visibilities in what follows, where anything was learned.
+    pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
+        if let Some(state) = &mut self.state {
+            state.method.inject(gpu, maps);
+            state.is_visibility_outdated = true;
+        }
+    }
+
+    /// Encodes one frame.
+    pub(crate) fn encode(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        input: &FrameInput,
+    ) -> Result<FrameReport, ToyError> {
+        recorder.stages.begin("camera picture");
+        self.camera.take(recorder.gpu, &input.image);
+        recorder.stages.begin("placement");
+        self.follow_placement(recorder.gpu, input)?;
+        let about_scene = self
+            .receivers_warning
+            .iter()
+            .chain(&self.lights.warnings)
+            .cloned();
+        let inside = self.lights_inside().to_vec();
+        let about_lights = (!inside.is_empty()).then_some(Warning::LightsInsideToy { lights: inside });
+        let mut report = FrameReport {
+            ran: Vec::new(),
+            uploaded_bytes: 0,
+            stages: Vec::new(),
+            change: None,
+            skipped: Vec::new(),
+            region: None,
+            warnings: about_scene.chain(about_lights).collect(),
+        };
+        recorder.stages.begin("pose and footprint");
+        self.effect = match self.footprint(input)? {
+            Err(reason) => {
+                reason.tell(&mut report);
+                None
+            }
+            Ok(footprint) => {
+                self.encode_region(recorder, input, &footprint, &mut report);
+                Some(input.effect)
+            }
+        };
+        Ok(report)
+    }
+
+    fn encode_region(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        input: &FrameInput,
+        footprint: &Footprint,
+        report: &mut FrameReport,
+    ) {
+        let gpu = recorder.gpu;
+        // A refused frame, after which nothing is known, may not have brought its pose to the device.
+        let is_pose_known = self.state.is_some() && self.toy.shown.is(&self.posed);
+        let is_pose_new = self.is_every_pose_new || !is_pose_known;
+        if is_pose_new {
+            self.toy.shown.write(gpu, &self.posed);
+        }
+        recorder.stages.begin("reuse");
+        let change = self.update_method(gpu, input, footprint);
+        report.warnings.extend(self.cost_warning.clone());
+        recorder.stages.begin("encode");
+        let Some(state) = &mut self.state else {
+            return;
+        };
+        #[allow(clippy::cast_possible_truncation, reason = "both within 1e9 of 1")]
+        let exposure_ratio = (input.exposure / state.exposure) as f32;
+        let n_before = state.n_pictures;
+        if change >= Change::Picture {
+            state.n_pictures = n_before.wrapping_add(1);
+            state.exposure = input.exposure;
+            state.image = Some(input.image.clone());
+        }
+        let news = News { change, is_pose_new };
+        state.method.look_for_toy(&self.toy, news);
+        let Some(MethodState { method, .. }) = &self.state else {
+            return;
+        };
+        if change >= Change::Picture {
+            let views = match method {
+                Method::Model(_) => footprint.plate_views,
+                Method::Baseline(_) => self.plate_views_at_exposure_of(input, footprint),
+            };
+            gpu.write(&self.plates.views, &[views]);
+        }
+        recorder.n_pixels = n_pixels(method.region().size_px);
+        let frame = match method {
+            Method::Model(_) => self.camera.frame(gpu),
+            // Its `retarget` filters light of the whole picture.
+            Method::Baseline(_) => Frame::Picture(self.camera.keep_decoded(recorder)),
+        };
+        let pictures = Pictures {
+            frame,
+            n_before,
+            exposure_ratio,
+            plates: &self.plates.pictures.view,
+            plate_views: &self.plates.views,
+            is_same_view: footprint.choice.is_same_view,
+        };
+        method.encode(recorder, &self.toy, &pictures, news);
+        if news.keeps_pose() {
+            report.skipped.push(LeftOut {
+                what: "shadows of the shown pose",
+                why: "it is the one that is there",
+            });
+        }
+        if change < Change::View {
+            report.skipped.push(LeftOut {
+                what: "capture path",
+                why: "scene, pose and camera are known",
+            });
+        }
+        report.skipped.extend_from_slice(method.left_out());
+        report.region = Some(method.region());
+        report.change = Some(change);
+        report.warnings.extend(self.plate_warning(footprint));
+        if !self.shows_toy(&footprint.view) {
+            report.warnings.push(Warning::ToyOutOfPicture);
+        }
+    }
+
+    fn layout(&self) -> SceneLayout<'_> {
+        SceneLayout {
+            receivers: &self.receivers,
+            lights: &self.lights.used,
+            toy_in_anchor: self.toy_in_anchor(),
+        }
+    }
+
+    fn view(&self, camera: &Camera) -> View {
+        View::new(self.size_px(), camera)
+    }
+
+    /// Of each picture.
+    fn size_px(&self) -> UVec2 {
+        UVec2::new(self.scene.width_px, self.scene.height_px)
+    }
+}

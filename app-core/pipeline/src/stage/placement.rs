@@ -1,0 +1,104 @@
+//! Where the toy stands and which lights shine on it: at first as the scene says, then as the frames do.
+
+use glam::{DMat4, DVec3};
+
+use super::Stage;
+use super::supported::Lights;
+use crate::geometry::displacement::between_poses;
+use crate::geometry::inside::is_inside;
+use crate::geometry::outline::Outline;
+use crate::gpu::context::Gpu;
+use app_scene::frame::FrameInput;
+use app_scene::geometry::bounds::Bounds;
+use app_scene::scene::Light;
+use app_scene::toy::ToyError;
+
+/// What was learned of an object in one pose holds in another one closer than this in the picture: below the noise of any
+/// tracker, and below what shows.
+const SAME_POSE_PX: f64 = 0.1;
+
+impl Stage {
+    /// Takes over the frame's pose of the object and its lights, where they differ from those that were learned under.
+    pub(super) fn follow_placement(&mut self, gpu: &Gpu, input: &FrameInput) -> Result<(), ToyError> {
+        let mut is_moved = false;
+        if !self.is_object_placed || self.is_object_moved(input) {
+            self.place_object(gpu, &input.world_from_object)?;
+            is_moved = true;
+        }
+        let listed: &[Light] = input.lights.as_deref().unwrap_or(&self.scene.lights);
+        if *listed != self.lights.listed {
+            self.lights = Lights::new(listed, &self.receivers);
+            is_moved = true;
+        }
+        if is_moved {
+            self.reach = None;
+            self.reached_rects.clear();
+            self.cached_footprint = None;
+            self.lights_inside = None;
+            if let Some(state) = &mut self.state {
+                state.is_placement_outdated = true;
+            }
+        }
+        if self.lights_inside.is_none() {
+            self.lights_inside = Some(self.find_lights_inside()?);
+        }
+        Ok(())
+    }
+
+    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    fn find_lights_inside(&mut self) -> Result<Vec<usize>, ToyError> {
+        let (anchor_from_world, bounds) = (self.layout().world_from_anchor().inverse(), self.physical_bounds);
+        let mut inside = Vec::new();
+        for (index, light) in self.lights.indices.iter().zip(&self.lights.used) {
+            let Light::Sphere {
+                position_in_world, ..
+            } = light
+            else {
+                continue;
+            };
+            let at = anchor_from_world.transform_point3(*position_in_world);
+            if at.cmpgt(bounds.min).all() && at.cmplt(bounds.max).all() {
+                inside.push((*index, at));
+            }
+        }
+        if inside.is_empty() {
+            return Ok(Vec::new());
+        }
+        let anchor_from_object = self.anchor_from_object();
+        let toy = &self.scene.toy;
+        toy.pose(&self.scene.physical_pose, &anchor_from_object, &mut self.posed)?;
+        let positions = &self.posed.positions;
+        inside.retain(|(_, at)| is_inside(positions, toy.indices(), *at));
+        Ok(inside.into_iter().map(|(index, _)| index).collect())
+    }
+
+    fn is_object_moved(&self, input: &FrameInput) -> bool {
+        let poses = [&self.world_from_object, &input.world_from_object];
+        let corners_in_object = self.bounds_in_object.corners();
+        let view = self.view(&input.camera);
+        poses[0] != poses[1] && between_poses(&view, &self.layout(), poses, corners_in_object) > SAME_POSE_PX
+    }
+
+    fn place_object(&mut self, gpu: &Gpu, world_from_object: &DMat4) -> Result<(), ToyError> {
+        let anchor_from_object = self.layout().world_from_anchor().inverse() * *world_from_object;
+        self.scene
+            .toy
+            .pose(&self.scene.physical_pose, &anchor_from_object, &mut self.posed)?;
+        self.world_from_object = *world_from_object;
+        self.is_object_placed = true;
+        self.physical_bounds = Bounds::around(self.posed.points());
+        self.physical_outline = Outline::around(&self.posed);
+        self.toy.physical.write(gpu, &self.posed);
+        Ok(())
+    }
+
+    /// To the anchor, which stays where it was put for the scene, from the object as it stands now.
+    pub(super) fn anchor_from_object(&self) -> DMat4 {
+        self.layout().world_from_anchor().inverse() * self.world_from_object
+    }
+
+    /// The middle of the physical toy.
+    pub(super) fn toy_in_anchor(&self) -> DVec3 {
+        self.physical_bounds.centre()
+    }
+}

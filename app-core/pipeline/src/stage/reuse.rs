@@ -1,0 +1,388 @@
+//! Decides how much of the method's state a frame can reuse, and makes the state fit the frame.
+
+use std::mem;
+use std::sync::Arc;
+
+use glam::{UVec2, Vec4};
+
+use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
+use super::method::Method;
+use super::{MethodState, Stage};
+use crate::baseline::Baseline;
+use crate::baseline::plan::BaselinePlan;
+use crate::baseline::uniform::{Baseline as Uniform, uniform};
+use crate::frame::warning::Warning;
+use crate::geometry::displacement::is_same_view;
+use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::governor::Step;
+use crate::gpu::context::Gpu;
+use crate::model::Model;
+use crate::model::plan::Plan;
+use crate::model::state::SceneState;
+use crate::model::state::grids::{grids_over, holds};
+use crate::passes::globals::{Globals, globals};
+use crate::passes::plate::PlateViews;
+use crate::plan::{Change, SceneFacts};
+use crate::plates::choice::{covered_fraction, exposed};
+use crate::plates::exposure::match_frame;
+use crate::preset::{BaselineSettings, ModelSettings, Settings};
+use app_scene::frame::FrameInput;
+use app_scene::geometry::light_points::light_points;
+use app_scene::scene::{Light, Plate};
+
+/// Sizes of the region under a moving camera, so that it keeps one for a while.
+const REGION_STEP_PX: u32 = 64;
+
+/// How much of the method's state a frame can reuse.
+enum Reuse {
+    /// Not even its targets.
+    Nothing,
+    /// Targets and pipelines: object or lights moved.
+    Targets,
+    /// Targets and the work region: visibilities were injected.
+    Region,
+    /// What was learned of the scene, in another view.
+    SceneState,
+    /// What was learned of the view too; the picture is new.
+    View,
+    /// All but the pose that is shown.
+    Picture,
+}
+
+impl Stage {
+    /// Makes the method's state fit the frame; returns how much of it is to be learned anew.
+    pub(super) fn update_method(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) -> Change {
+        self.plates.load(gpu, &self.scene, &footprint.choice.indices);
+        self.reached_rects = united(&self.reached_rects, &footprint.plane_rects);
+        match self.reusable(input, footprint) {
+            Reuse::Nothing => {
+                self.start(gpu, input, footprint);
+                Change::Scene
+            }
+            Reuse::Targets => {
+                self.relocate(gpu, input, footprint);
+                Change::Scene
+            }
+            Reuse::Region => Change::Scene,
+            Reuse::SceneState => {
+                self.follow(gpu, footprint, true);
+                Change::View
+            }
+            Reuse::View => Change::Picture,
+            Reuse::Picture => Change::Pose,
+        }
+    }
+
+    fn reusable(&mut self, input: &FrameInput, footprint: &Footprint) -> Reuse {
+        let Some(state) = &mut self.state else {
+            return Reuse::Nothing;
+        };
+        let has_grids = match &state.method {
+            Method::Model(model) => holds(&model.state.layout, &footprint.plane_rects),
+            Method::Baseline(_) => true,
+        };
+        let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
+            && state.method.region().contains(&footprint.least_region)
+            && state.method.holds_toy(footprint.least_toy_box);
+        // What was injected belongs to one view.
+        let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
+        let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
+        if !has_grids {
+            Reuse::Nothing
+        } else if mem::take(&mut state.is_placement_outdated) {
+            Reuse::Targets
+        } else if !is_within || are_settings_outdated {
+            Reuse::SceneState
+        } else if is_visibility_outdated {
+            Reuse::Region
+        } else if state.image.as_ref().is_some_and(|known| known.is(&input.image)) {
+            Reuse::Picture
+        } else {
+            Reuse::View
+        }
+    }
+
+    /// Starts from nothing.
+    fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        self.drop_method(gpu);
+        let method = match self.preset.settings() {
+            Settings::Model(settings) => match self.affordable(settings, footprint) {
+                Some(plan) => self.model(gpu, plan, footprint),
+                None => return,
+            },
+            Settings::Baseline(settings) => {
+                let (plan, globals, uniform) = self.baseline_parts(&settings, footprint.region, footprint);
+                Method::Baseline(Box::new(Baseline::new(gpu, plan, &globals, &uniform)))
+            }
+        };
+        self.state = Some(MethodState {
+            method,
+            view: footprint.view.clone(),
+            exposure: input.exposure,
+            n_pictures: 0,
+            image: None,
+            light_indices: self.lights.indices.clone(),
+            is_first_view: true,
+            is_visibility_outdated: false,
+            are_settings_outdated: false,
+            is_placement_outdated: false,
+        });
+    }
+
+    /// Follows the camera to another view, of toy and lights in the same place or not.
+    fn follow(&mut self, gpu: &Gpu, footprint: &Footprint, is_same_place: bool) {
+        let Some(mut state) = self.state.take() else {
+            return;
+        };
+        let region = region_in(&state.method, footprint);
+        state.method = match (self.preset.settings(), state.method) {
+            (Settings::Model(settings), Method::Model(model)) => {
+                let known = &model.region.plan;
+                let facts = self.facts(footprint, (region, Some(known)));
+                let facts = if is_same_place {
+                    facts.steadied(&known.penumbrae_px)
+                } else {
+                    facts
+                };
+                let plan = Plan::new(&facts, &self.settings(settings));
+                let globals = globals(&footprint.view, &region, &self.layout())
+                    .with_boxes(&plan.toy_box, &plan.physical_box);
+                let light_points = self.light_points(&plan);
+                Method::Model(Box::new(model.follow(gpu, plan, &globals, light_points)))
+            }
+            (Settings::Baseline(settings), Method::Baseline(mut baseline)) => {
+                let (plan, globals, uniform) = self.baseline_parts(&settings, region, footprint);
+                baseline.follow(gpu, plan, &globals, &uniform);
+                Method::Baseline(baseline)
+            }
+            _ => return,
+        };
+        state.view = footprint.view.clone();
+        state.is_first_view = false;
+        self.state = Some(state);
+    }
+
+    /// Follows the object and the lights to another place, from where all is learned anew.
+    fn relocate(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
+        if let Some(state) = &self.state
+            && let (Settings::Model(settings), Method::Model(model)) = (self.preset.settings(), &state.method)
+        {
+            let known = &model.region.plan;
+            let region = region_in(&state.method, footprint);
+            let facts = self.facts(footprint, (region, Some(known)));
+            let plan = Plan::new(&facts, &self.settings(settings));
+            if plan.self_shadow != known.self_shadow {
+                return self.start(gpu, input, footprint);
+            }
+        }
+        self.follow(gpu, footprint, false);
+        if let Some(mut state) = self.state.take() {
+            if let Method::Model(model) = &mut state.method {
+                let light_points = self.light_points(&model.region.plan);
+                model.relocate(gpu, light_points, &self.toy.physical.around);
+            }
+            state.is_first_view = true;
+            state.light_indices.clone_from(&self.lights.indices);
+            self.state = Some(state);
+        }
+    }
+
+    /// Those of a preset, as far as they can be afforded.
+    pub(super) fn settings(&self, preset: ModelSettings) -> ModelSettings {
+        let mut settings = ModelSettings {
+            is_shadow_withheld: self.is_shadow_withheld,
+            ..preset
+        };
+        let steps = self.turned_down.iter().chain(&self.asked_down);
+        steps.for_each(|step| step.apply(&mut settings));
+        settings
+    }
+
+    /// Turns settings down from the next frame on, or up again; what was learned stays.
+    pub(crate) fn turn_down(&mut self, steps: &[Step]) {
+        if self.asked_down != steps {
+            self.asked_down = steps.to_vec();
+            if let Some(state) = &mut self.state {
+                state.are_settings_outdated = true;
+            }
+        }
+    }
+
+    /// Of a region; its boxes become no smaller than those of a plan that is known.
+    pub(super) fn facts(
+        &self,
+        footprint: &Footprint,
+        (region, known): (PixelRect, Option<&Plan>),
+    ) -> SceneFacts {
+        #[allow(clippy::cast_possible_truncation, reason = "at most four")]
+        let n_receivers = self.receivers.len() as u32;
+        let physical_toy = self.physical_toy_in(&footprint.view);
+        let looked_at = physical_toy.map(|toy| toy.grown(AROUND_TOY_PX, footprint.view.image_px));
+        let boxed = (&region, footprint.view.image_px);
+        SceneFacts {
+            region,
+            physical_toy,
+            toy_box: box_in(
+                boxed,
+                footprint.least_toy_box,
+                known.map(|plan| plan.toy_box.size_px),
+            ),
+            physical_box: box_in(boxed, looked_at, known.map(|plan| plan.physical_box.size_px)),
+            pixel_in_object: self.pixel_in_object(footprint),
+            penumbrae_px: footprint.penumbrae_px.clone(),
+            n_receivers,
+            is_plate_complete: self.is_plate_complete(footprint, &region),
+            are_plates_scaled: footprint.plate_views.are_scaled(),
+        }
+    }
+
+    /// What a pixel is across at the nearest part of the toy.
+    fn pixel_in_object(&self, footprint: &Footprint) -> f64 {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let camera = footprint.view.camera_in(&world_from_anchor);
+        let (min, max) = (self.physical_bounds.min, self.physical_bounds.max);
+        let from_nearest_m = camera.distance(camera.clamp(min, max));
+        let metres_per_unit = self.world_from_object.x_axis.truncate().length();
+        footprint.view.pixel_m(from_nearest_m) / metres_per_unit
+    }
+
+    /// One plate or several show all of the region, which may be larger than the frame asks for.
+    fn is_plate_complete(&self, footprint: &Footprint, region: &PixelRect) -> bool {
+        let Footprint { view, choice, .. } = footprint;
+        let fraction = if *region == footprint.region {
+            footprint.plate_fraction
+        } else {
+            covered_fraction(&self.scene, &self.layout(), view, region, choice)
+        };
+        fraction == 1.0
+    }
+
+    pub(super) fn plate_warning(&self, footprint: &Footprint) -> Option<Warning> {
+        if self.scene.plates.is_empty() {
+            return Some(Warning::PlateEstimated);
+        }
+        let fraction = footprint.plate_fraction;
+        (fraction < 1.0).then_some(Warning::PlatePartial { fraction })
+    }
+
+    /// The plates as the baseline takes them; the model fits the exposure with the light.
+    pub(super) fn plate_views_at_exposure_of(&self, input: &FrameInput, footprint: &Footprint) -> PlateViews {
+        let frame = Plate {
+            camera: input.camera,
+            image: Arc::clone(input.image.rgba()),
+        };
+        let plates = (&footprint.choice.indices[..], &self.plates.gains[..]);
+        let gain = match_frame((&self.scene, &self.receivers), &frame, plates, &footprint.region);
+        exposed(&footprint.plate_views, gain)
+    }
+
+    fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
+        let globals = globals(&footprint.view, &plan.region, &self.layout())
+            .with_boxes(&plan.toy_box, &plan.physical_box);
+        let toy = (&self.toy.physical.around, self.toy.n_materials());
+        let n_lights = self.lights.used.len();
+        let state = SceneState::new(gpu, grids_over(&self.reached_rects), n_lights, toy);
+        let light_points = self.light_points(&plan);
+        Method::Model(Box::new(Model::new(gpu, plan, &globals, light_points, state)))
+    }
+
+    /// The points of each light, as many as are planned.
+    pub(super) fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+        let lights = self.lights.used.iter().zip(&plan.n_light_points);
+        lights
+            .map(|(light, n_points)| self.points_of(light, *n_points))
+            .collect()
+    }
+
+    /// Points over a light in the space of each receiver in turn: the same ones, so that shadows meet where receivers do.
+    pub(super) fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
+        let world_from_anchor = self.layout().world_from_anchor();
+        let target = self.toy_in_anchor();
+        let points = light_points(light, &world_from_anchor.inverse(), target, n_points);
+        let planes = self
+            .receivers
+            .iter()
+            .map(|receiver| receiver.world_from_plane.inverse() * world_from_anchor);
+        planes
+            .flat_map(|plane_from_anchor| {
+                points
+                    .iter()
+                    .map(move |p| (plane_from_anchor * p.as_dvec4()).as_vec4())
+            })
+            .collect()
+    }
+
+    /// What the baseline is made of in a view.
+    fn baseline_parts(
+        &self,
+        settings: &BaselineSettings,
+        region: PixelRect,
+        footprint: &Footprint,
+    ) -> (BaselinePlan, Globals, Uniform) {
+        let globals = globals(&footprint.view, &region, &self.layout());
+        let uniform = uniform(&self.layout(), &footprint.bounds, settings);
+        let plan = BaselinePlan::new(&self.facts(footprint, (region, None)), settings);
+        (plan, globals, uniform)
+    }
+}
+
+/// The region that a footprint asks for, of a size that it can keep for a while.
+fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
+    let image_px = footprint.view.image_px;
+    let size_px = moving_size(method.region().size_px, &footprint.region, image_px);
+    footprint.region.within(size_px, image_px)
+}
+
+/// The part of the image that is to be a box of a region which holds at least some pixels of it. Where there are none, it keeps its
+/// size for when they are seen again; none where it never had one.
+fn box_in(
+    (region, image_px): (&PixelRect, UVec2),
+    least: Option<PixelRect>,
+    known_px: Option<UVec2>,
+) -> Option<PixelRect> {
+    let needed = least.and_then(|least| least.grown(SPARE_PX, image_px).common(region));
+    let Some(needed) = needed else {
+        return known_px.map(|known_px| PixelRect {
+            size_px: known_px.min(region.size_px),
+            ..*region
+        });
+    };
+    // A first one is as large as it must be, as the region is.
+    let size_px = known_px.map_or(needed.size_px, |known_px| {
+        moving_size(known_px, &needed, region.size_px)
+    });
+    let in_region = PixelRect {
+        origin_px: needed.origin_px - region.origin_px,
+        ..needed
+    };
+    let in_region = in_region.within(size_px, region.size_px);
+    Some(PixelRect {
+        origin_px: in_region.origin_px + region.origin_px,
+        ..in_region
+    })
+}
+
+/// The size a region takes under a moving camera: as it is while that is enough, else the next step.
+fn moving_size(current_px: UVec2, needed: &PixelRect, image_px: UVec2) -> UVec2 {
+    let step = |side_px: u32| side_px.div_ceil(REGION_STEP_PX) * REGION_STEP_PX;
+    let stepped = UVec2::new(step(needed.size_px.x), step(needed.size_px.y)).min(image_px);
+    if needed.size_px.cmple(current_px).all() {
+        current_px
+    } else {
+        stepped.max(current_px)
+    }
+}
+
+/// What either reaches of each receiver, so that going back and forth between clips starts nothing anew.
+fn united(known: &[PlaneRect], new: &[PlaneRect]) -> Vec<PlaneRect> {
+    if known.is_empty() {
+        return new.to_vec();
+    }
+    let pairs = known.iter().zip(new);
+    pairs
+        .map(|(a, b)| PlaneRect {
+            min: a.min.min(b.min),
+            max: a.max.max(b.max),
+        })
+        .collect()
+}

@@ -1,0 +1,84 @@
+//! Selects the receivers and lights that a preset can use; the others become warnings that stand for all frames.
+
+use glam::{DMat4, DVec3};
+
+use crate::frame::warning::Warning;
+use crate::geometry::anchored::AnchoredReceiver;
+use app_scene::geometry::light_points::light_in_plane;
+use app_scene::geometry::nearest_receivers::nearest_receivers;
+use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
+
+/// Supported receivers.
+pub(crate) struct Receivers {
+    /// The [`MAX_RECEIVERS`] nearest to the toy, that one first, anchored near it.
+    pub(crate) anchored: Vec<AnchoredReceiver>,
+    /// Their indices in the scene's list.
+    pub(crate) indices: Vec<usize>,
+    /// About those that are left out.
+    pub(crate) warning: Option<Warning>,
+}
+
+impl Receivers {
+    /// Selects for a toy around `toy_in_world`, within a box of `corners_in_world`. In which order the receivers are listed makes no difference.
+    pub(crate) fn new(receivers: &[Receiver], toy_in_world: DVec3, corners_in_world: &[DVec3]) -> Self {
+        let mut indices = nearest_receivers(receivers, corners_in_world);
+        let left_out: Vec<usize> = indices.drain(MAX_RECEIVERS.min(receivers.len())..).collect();
+        let anchored = indices
+            .iter()
+            .map(|index| AnchoredReceiver::near(&receivers[*index], toy_in_world));
+        Self {
+            anchored: anchored.collect(),
+            warning: (!left_out.is_empty()).then(|| Warning::ReceiversLeftOut {
+                names: left_out
+                    .iter()
+                    .map(|index| receivers[*index].name.clone())
+                    .collect(),
+            }),
+            indices,
+        }
+    }
+}
+
+/// Supported lights.
+pub(crate) struct Lights {
+    /// The list that they are taken from: the scene's, or a frame's own.
+    pub(crate) listed: Vec<Light>,
+    /// The first [`MAX_LIGHTS`] that stand above any receiver.
+    pub(crate) used: Vec<Light>,
+    /// Indices of `used` in `listed`.
+    pub(crate) indices: Vec<usize>,
+    /// About those that are left out.
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl Lights {
+    pub(crate) fn new(listed: &[Light], receivers: &[AnchoredReceiver]) -> Self {
+        let planes_from_world: Vec<DMat4> = receivers
+            .iter()
+            .map(|receiver| receiver.world_from_plane.inverse())
+            .collect();
+        let is_above_any = |light: &Light| {
+            planes_from_world
+                .iter()
+                .any(|plane_from_world| light_in_plane(light, plane_from_world).y > 0.0)
+        };
+        let (mut indices, below): (Vec<usize>, Vec<usize>) =
+            (0..listed.len()).partition(|index| is_above_any(&listed[*index]));
+        let mut warnings = Vec::new();
+        if !below.is_empty() {
+            warnings.push(Warning::LightsBelowReceivers { lights: below });
+        }
+        if indices.len() > MAX_LIGHTS {
+            warnings.push(Warning::LightsLeftOut {
+                n_lights: indices.len() - MAX_LIGHTS,
+            });
+            indices.truncate(MAX_LIGHTS);
+        }
+        Self {
+            listed: listed.to_vec(),
+            used: indices.iter().map(|index| listed[*index]).collect(),
+            indices,
+            warnings,
+        }
+    }
+}

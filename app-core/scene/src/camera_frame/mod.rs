@@ -1,0 +1,19 @@
+//! A camera frame as phones deliver it: planes of luma and chroma, when it was taken, and how it is to be shown.
+
+mod arrival;
+mod display;
+mod encoding;
+mod fade;
+mod frame;
+mod image;
+mod planar_image;
+mod planes;
+
+pub use arrival::{Arrival, Arrivals, Stamp};
+pub use display::{Display, Fit};
+pub use encoding::{CodeRange, LumaCoefficients, YcbcrEncoding};
+pub use fade::Fade;
+pub use frame::{Anchor, CameraFrame, Exposure, FoundPlane, Tracking};
+pub use image::CameraImage;
+pub use planar_image::{LentPlanes, PlanarImage};
+pub use planes::{Plane, PlaneError, Planes, check_size, half_size_px};

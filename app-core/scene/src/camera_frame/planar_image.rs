@@ -1,0 +1,185 @@
+//! A picture as planes of luma and chroma: its own, or lent by the platform.
+
+use std::any::Any;
+use std::sync::{Arc, OnceLock};
+
+use glam::Vec3;
+
+use super::encoding::YcbcrEncoding;
+use super::planes::{PlaneError, Planes, check_size, half_size_px};
+use crate::scene::Image;
+
+/// Planes without padding, the chroma as Cb and Cr by turns, as textures take them.
+pub struct PlanarImage {
+    size_px: [u32; 2],
+    encoding: YcbcrEncoding,
+    /// Luma and chroma; of what was lent, once somebody asks for them.
+    bytes: OnceLock<[Vec<u8>; 2]>,
+    lent: Option<Box<dyn LentPlanes>>,
+    /// Decoded, once somebody asks for it.
+    rgba: OnceLock<Arc<Image>>,
+}
+
+/// Planes that stay in the platform's memory: passes read them where they lie.
+///
+/// They keep the platform's buffer; it is copied only for whoever reads pixels on the processor, as an alignment does about
+/// once a second.
+pub trait LentPlanes: Any + Send + Sync {
+    /// Copies the planes; none if the platform does not let them be read.
+    fn read(&self) -> Option<PlanarImage>;
+}
+
+impl PlanarImage {
+    /// Copies `planes`, so that the camera's buffer may be given back.
+    ///
+    /// # Errors
+    /// When they do not hold a picture of their size.
+    pub fn new(planes: &Planes<'_>) -> Result<Self, PlaneError> {
+        Ok(Self {
+            size_px: planes.size_px,
+            encoding: planes.encoding,
+            bytes: OnceLock::from(planes.packed()?),
+            lent: None,
+            rgba: OnceLock::new(),
+        })
+    }
+
+    /// A picture that stays where the platform has it.
+    ///
+    /// # Errors
+    /// When no picture has that size.
+    pub fn lent(
+        size_px: [u32; 2],
+        encoding: YcbcrEncoding,
+        lent: impl LentPlanes,
+    ) -> Result<Self, PlaneError> {
+        check_size(size_px)?;
+        Ok(Self {
+            size_px,
+            encoding,
+            bytes: OnceLock::new(),
+            lent: Some(Box::new(lent)),
+            rgba: OnceLock::new(),
+        })
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// What the codes mean.
+    #[must_use]
+    pub fn encoding(&self) -> YcbcrEncoding {
+        self.encoding
+    }
+
+    /// Luma, row by row.
+    #[must_use]
+    pub fn luma(&self) -> &[u8] {
+        &self.bytes()[0]
+    }
+
+    /// Cb and Cr by turns, row by row, of half the size, rounded up.
+    #[must_use]
+    pub fn chroma(&self) -> &[u8] {
+        &self.bytes()[1]
+    }
+
+    /// The planes where the platform has them, if they are lent and of this type.
+    #[must_use]
+    pub fn lent_as<T: LentPlanes>(&self) -> Option<&T> {
+        let lent: &dyn Any = &**self.lent.as_ref()?;
+        lent.downcast_ref()
+    }
+
+    /// A copy, where the planes are lent.
+    pub(super) fn kept(&self) -> Option<Self> {
+        self.lent.as_ref().map(|_| Self {
+            size_px: self.size_px,
+            encoding: self.encoding,
+            bytes: OnceLock::from(self.bytes().clone()),
+            lent: None,
+            rgba: self.rgba.clone(),
+        })
+    }
+
+    /// As sRGB codes with alpha 255: decoded at the first call, for whoever reads pixels on the processor.
+    #[must_use]
+    pub fn rgba(&self) -> &Arc<Image> {
+        self.rgba.get_or_init(|| Arc::new(self.decode()))
+    }
+
+    /// Luma and chroma. What cannot be read, or is of another size, is black: nothing is found in it.
+    fn bytes(&self) -> &[Vec<u8>; 2] {
+        self.bytes.get_or_init(|| {
+            let read = self.lent.as_ref().and_then(|lent| lent.read());
+            let same = read.filter(|read| read.size_px == self.size_px);
+            let bytes = same.and_then(|read| read.bytes.into_inner());
+            bytes.unwrap_or_else(|| {
+                let n_pixels = |[columns, rows]: [u32; 2]| columns as usize * rows as usize;
+                let n_chroma = 2 * n_pixels(half_size_px(self.size_px));
+                [vec![0; n_pixels(self.size_px)], vec![128; n_chroma]]
+            })
+        })
+    }
+
+    fn decode(&self) -> Image {
+        let srgb_from_ycbcr = self.encoding.srgb_from_ycbcr();
+        let [width, height] = self.size_px;
+        let mut rgba8 = Vec::with_capacity(4 * self.luma().len());
+        let mut at = self.luma().iter();
+        for y in 0..height {
+            for x in 0..width {
+                let luma = f32::from(at.next().copied().unwrap_or_default());
+                let [blue, red] = self.chroma_at([x, y]);
+                let srgb = srgb_from_ycbcr.decode(Vec3::new(luma, blue, red) / 255.0);
+                rgba8.extend(srgb.to_array().map(code));
+                rgba8.push(255);
+            }
+        }
+        Image {
+            width_px: width,
+            height_px: height,
+            rgba8,
+        }
+    }
+
+    /// Chroma in codes at a pixel, bilinear between the four samples around it, and that of the edge beyond it.
+    fn chroma_at(&self, pixel: [u32; 2]) -> [f32; 2] {
+        let [columns, rows] = half_size_px(self.size_px);
+        let [across, down] = [(pixel[0], columns), (pixel[1], rows)].map(|(at, n)| neighbours(at, n));
+        let mut sum = [0.0; 2];
+        for (row, row_weight) in down {
+            for (column, weight) in across {
+                let first = 2 * (row as usize * columns as usize + column as usize);
+                for (sum, offset) in sum.iter_mut().zip(0..) {
+                    let sample = self.chroma().get(first + offset).copied().unwrap_or_default();
+                    *sum += row_weight * weight * f32::from(sample);
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// The chroma sample that a luma sample is of, with three quarters, and that on its other side.
+fn neighbours(luma: u32, n: u32) -> [(u32, f32); 2] {
+    let own = luma / 2;
+    let other = if luma.is_multiple_of(2) {
+        own.saturating_sub(1)
+    } else {
+        (own + 1).min(n - 1)
+    };
+    [(own, 0.75), (other, 0.25)]
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "from 0 to 255"
+)]
+fn code(srgb: f32) -> u8 {
+    (255.0 * srgb).round() as u8
+}

@@ -1,0 +1,51 @@
+//! Inputs of one frame.
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use crate::camera_frame::CameraImage;
+use crate::scene::check;
+use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
+
+/// A camera frame of the real, static toy, and the pose to show.
+///
+/// Whatever changes from frame to frame, no pipeline is recompiled; see the architecture for what is learned anew.
+#[derive(Clone, Debug)]
+pub struct FrameInput {
+    /// The camera's picture, of the scene's size.
+    pub image: CameraImage,
+    /// The camera that took it.
+    pub camera: Camera,
+    /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where it
+    /// is unknown; the fit then takes it from the pixels.
+    pub exposure: f64,
+    /// Transform of the real toy, from the model's scene space to world: a rotation, a translation and one positive
+    /// scale.
+    pub world_from_object: DMat4,
+    /// The lights, where they differ from those of the scene.
+    pub lights: Option<Arc<[Light]>>,
+    /// What the platform estimates of the light, where it does. Alignment alone looks at it, and only where no light is listed.
+    pub light_estimate: Option<LightEstimate>,
+    /// The pose the toy is to be shown in.
+    pub shown_pose: Pose,
+    /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
+    /// known. At 0 nothing is learned.
+    pub effect: f64,
+}
+
+impl FrameInput {
+    /// Validates the input.
+    pub fn check(&self) -> Result<(), InputError> {
+        check::camera("camera", &self.camera)?;
+        InputError::at("exposure", check::number(self.exposure, &check::EXPOSURE))?;
+        InputError::at("effect", check::number(self.effect, &(0.0..=1.0)))?;
+        let similarity = check::similarity(self.world_from_object.to_cols_array());
+        InputError::at("world_from_object", similarity)?;
+        for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
+            check::light(&format!("lights[{index}]"), light)?;
+        }
+        let estimate = self.light_estimate.as_ref();
+        estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))
+    }
+}

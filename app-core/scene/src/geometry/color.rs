@@ -1,0 +1,31 @@
+//! The transfer function of pictures.
+
+/// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
+#[must_use]
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// Decodes an sRGB value in [0, 1]. Source: IEC 61966-2-1.
+#[must_use]
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Linear light of each code of 8 bits.
+#[must_use]
+pub fn linear_of_codes() -> [f32; 256] {
+    let mut linear = [0.0; 256];
+    for (code, linear) in (0..=u8::MAX).zip(&mut linear) {
+        *linear = linear_from_srgb(f32::from(code) / 255.0);
+    }
+    linear
+}

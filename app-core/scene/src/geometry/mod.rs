@@ -1,0 +1,6 @@
+//! Geometry and colour that the pipeline and alignment share.
+
+pub mod bounds;
+pub mod color;
+pub mod light_points;
+pub mod nearest_receivers;

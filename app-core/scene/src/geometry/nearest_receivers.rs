@@ -1,0 +1,41 @@
+//! Which receivers matter most to a toy.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3};
+
+use crate::scene::Receiver;
+
+/// Indices of receivers, from the one nearest to any of `points_in_world`. In which order they are listed makes no difference.
+pub fn nearest_receivers(receivers: &[Receiver], points_in_world: &[DVec3]) -> Vec<usize> {
+    let ranks: Vec<Vec<f64>> = receivers
+        .iter()
+        .map(|receiver| rank(receiver, points_in_world))
+        .collect();
+    let mut indices: Vec<usize> = (0..receivers.len()).collect();
+    indices.sort_by(|a, b| {
+        let orders = ranks[*a].iter().zip(&ranks[*b]).map(|(a, b)| a.total_cmp(b));
+        orders.fold(Ordering::Equal, Ordering::then)
+    });
+    indices
+}
+
+/// How far a receiver is, in metres, and of several as far something that tells them apart.
+fn rank(receiver: &Receiver, points_in_world: &[DVec3]) -> Vec<f64> {
+    let plane_from_world = receiver.world_from_plane.inverse();
+    let distance_m = |point: &DVec3| {
+        let at = plane_from_world.transform_point3(*point);
+        let beyond = DVec2::new(at.x, at.z).abs() - receiver.half_extent_m;
+        beyond.max(DVec2::ZERO).extend(at.y).length()
+    };
+    let nearest_m = points_in_world
+        .iter()
+        .map(distance_m)
+        .fold(f64::INFINITY, f64::min);
+    let own = receiver.world_from_plane.to_cols_array();
+    [nearest_m]
+        .into_iter()
+        .chain(own)
+        .chain(receiver.half_extent_m.to_array())
+        .collect()
+}

@@ -1,0 +1,13 @@
+//! The inputs of shadow retargeting: toys, scenes, cameras, and the pictures that cameras deliver. No device, no file,
+//! no clock.
+#![forbid(unsafe_code)]
+
+pub mod camera_frame;
+pub mod card;
+pub mod disjoint;
+pub mod frame;
+pub mod geometry;
+pub mod lens;
+pub mod scene;
+pub mod toy;
+pub mod words;

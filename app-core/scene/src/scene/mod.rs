@@ -1,0 +1,233 @@
+//! The scene of a toy: everything that stays the same for a whole session.
+//!
+//! World space is right-handed, +Y up, in metres.
+//! Camera space is +X right, +Y up and looks along -Z.
+
+pub mod check;
+mod light_estimate;
+mod probe;
+mod uncertainty;
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec2, DVec3};
+
+use crate::toy::Toy;
+
+pub use crate::toy::Pose;
+pub use check::{FieldError, InputError};
+pub use light_estimate::{LightEstimate, N_HARMONICS};
+pub use probe::MAX_FURTHER_PICTURES;
+pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
+pub use uncertainty::{LightUncertainty, PoseUncertainty, Uncertainty};
+
+/// Lights whose shadows are moved; those of further ones stay as photographed, with a warning.
+pub const MAX_LIGHTS: usize = 4;
+/// Receivers that shadows are moved on; on further ones they stay as photographed, with a warning.
+pub const MAX_RECEIVERS: usize = 4;
+
+/// Plates that a scene may have. Each is held in memory as it was decoded, 4 bytes a pixel, and is compared with those that
+/// overlap it when the scene is set.
+pub const MAX_SCENE_PLATES: usize = 512;
+
+/// The inputs that precede the first frame: toy, receivers, lights, plates.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name for people; may be empty.
+    pub name: String,
+    /// Width of every camera picture of the session.
+    pub width_px: u32,
+    /// Height of every camera picture of the session.
+    pub height_px: u32,
+    /// The toy's model.
+    pub toy: Arc<Toy>,
+    /// Transform of the real toy at first; frames bring their own. From the model's scene space to world: a rotation,
+    /// a translation and one positive scale.
+    pub world_from_object: DMat4,
+    /// The pose of the real toy.
+    pub physical_pose: Pose,
+    /// Planes that catch the shadow; at least one, in any order.
+    pub receivers: Vec<Receiver>,
+    /// Known lights, unless a frame brings its own. Without any, alignment looks for them; frames pass through where it finds none.
+    pub lights: Vec<Light>,
+    /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
+    pub plates: Vec<Plate>,
+    /// A light probe that lay in the scene, where there is one: it tells lights where none are listed.
+    pub probe: Option<Probe>,
+    /// How far camera, toy and lights may be off.
+    pub uncertainty: Uncertainty,
+}
+
+impl Scene {
+    /// Validates the scene.
+    pub fn check(&self) -> Result<(), InputError> {
+        let similarity = check::similarity(self.world_from_object.to_cols_array());
+        InputError::at("world_from_object", similarity)?;
+        let size = check::picture_size(self.width_px, self.height_px);
+        InputError::at("width_px, height_px", size)?;
+        if self.receivers.is_empty() {
+            return InputError::at("receivers", Err(FieldError::Empty));
+        }
+        for (index, receiver) in self.receivers.iter().enumerate() {
+            receiver.check(&format!("receivers[{index}]"))?;
+        }
+        for (index, light) in self.lights.iter().enumerate() {
+            check::light(&format!("lights[{index}]"), light)?;
+        }
+        InputError::at("plates", check::at_most(self.plates.len(), MAX_SCENE_PLATES))?;
+        for (index, plate) in self.plates.iter().enumerate() {
+            check::camera(&format!("plates[{index}].camera"), &plate.camera)?;
+        }
+        self.uncertainty.check("uncertainty")?;
+        self.probe.as_ref().map_or(Ok(()), |probe| probe.check("probe"))
+    }
+}
+
+impl Receiver {
+    fn check(&self, field: &str) -> Result<(), InputError> {
+        let world_from_plane = check::rigid(self.world_from_plane.to_cols_array());
+        InputError::at(&format!("{field}.world_from_plane"), world_from_plane)?;
+        for extent_m in self.half_extent_m.to_array() {
+            let extent_m = check::number(extent_m, &check::EXTENT_M);
+            InputError::at(&format!("{field}.half_extent_m"), extent_m)?;
+        }
+        Ok(())
+    }
+}
+
+/// Appearance of a receiver, which decides how its shadow may be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// One colour all over.
+    Uniform,
+    /// Colour varies over the surface.
+    Textured,
+}
+
+/// A rectangle that catches shadows: local y = 0 with its normal along local +Y.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Receiver {
+    /// Name for people.
+    pub name: String,
+    /// Rigid transform from the plane's space to world.
+    pub world_from_plane: DMat4,
+    /// The rectangle is `|x| <= half_extent_m.x`, `|z| <= half_extent_m.y`; both positive.
+    pub half_extent_m: DVec2,
+    /// Appearance of the receiver.
+    pub surface: Surface,
+}
+
+/// A light whose direct shadow is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// A bulb. A radius of zero is a point.
+    Sphere {
+        /// Centre of the bulb, in metres.
+        position_in_world: DVec3,
+        /// Radius of the bulb, zero or more.
+        radius_m: f64,
+    },
+    /// A light too far away for its distance to matter.
+    Directional {
+        /// Unit vector from the scene towards the light.
+        direction_to_light_in_world: DVec3,
+        /// Half the angle that the light's disc fills, from 0 to just under 90 degrees.
+        angular_radius_rad: f64,
+    },
+}
+
+/// Pinhole projection, in pixels of the picture.
+///
+/// Pixel (0, 0) is top left and its centre lies at (0.5, 0.5). The point (x, y, z) in camera
+/// space lands at `u = cx_px + fx_px * x / -z`, `v = cy_px - fy_px * y / -z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    /// Focal length along the picture's rows; positive.
+    pub fx_px: f64,
+    /// Focal length along the picture's columns; positive.
+    pub fy_px: f64,
+    /// Principal point, from the left border.
+    pub cx_px: f64,
+    /// Principal point, from the top border.
+    pub cy_px: f64,
+}
+
+impl Intrinsics {
+    /// The same projection, in pixels of a picture that is `factor` times as large.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            fx_px: factor * self.fx_px,
+            fy_px: factor * self.fy_px,
+            cx_px: factor * self.cx_px,
+            cy_px: factor * self.cy_px,
+        }
+    }
+
+    /// Where a point in camera space is seen, in pixels; none behind the camera.
+    #[must_use]
+    pub fn pixel_of(&self, point: DVec3) -> Option<DVec2> {
+        let depth_m = -point.z;
+        (depth_m > 0.0).then(|| {
+            DVec2::new(
+                self.cx_px + self.fx_px * point.x / depth_m,
+                self.cy_px - self.fy_px * point.y / depth_m,
+            )
+        })
+    }
+}
+
+/// A pinhole camera in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Its projection.
+    pub intrinsics: Intrinsics,
+    /// Rigid transform: the camera's pose.
+    pub world_from_camera: DMat4,
+}
+
+impl Camera {
+    /// The same camera with a focal length `ratio` times as long.
+    pub fn with_focal_length(&self, ratio: f64) -> Self {
+        let intrinsics = Intrinsics {
+            fx_px: ratio * self.intrinsics.fx_px,
+            fy_px: ratio * self.intrinsics.fy_px,
+            ..self.intrinsics
+        };
+        Self { intrinsics, ..*self }
+    }
+}
+
+/// A picture: sRGB-encoded, 8 bit, four bytes a pixel, rows from the top without padding.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels in a row; at least one.
+    pub width_px: u32,
+    /// Rows; at least one.
+    pub height_px: u32,
+    /// `width_px * height_px * 4` bytes. Alpha is 255 unless the picture documents another meaning.
+    pub rgba8: Vec<u8>,
+}
+
+impl Image {
+    /// Whether it is of a size, width first, with all of its bytes.
+    pub fn is_of_size(&self, size_px: [u32; 2]) -> bool {
+        let n_bytes = 4 * u64::from(self.width_px) * u64::from(self.height_px);
+        [self.width_px, self.height_px] == size_px && self.rgba8.len() as u64 == n_bytes
+    }
+}
+
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Image({} x {} px)", self.width_px, self.height_px)
+    }
+}
+
+/// A picture of the scene before the toy was put there.
+#[derive(Clone, Debug)]
+pub struct Plate {
+    /// The camera that took it.
+    pub camera: Camera,
+    /// The picture, of the session's size.
+    pub image: Arc<Image>,
+}

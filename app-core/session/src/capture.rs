@@ -1,0 +1,296 @@
+//! Reads `shadow-capture` folders, version 1: `capture.json`, a glTF binary and pictures.
+
+mod convert;
+mod field;
+mod light_estimate;
+mod light_probe;
+mod place;
+mod record;
+#[cfg(feature = "schema")]
+mod rules;
+#[cfg(feature = "schema")]
+mod schema;
+mod uncertainty;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DMat4;
+use serde::Deserialize;
+
+use self::field::{INDEX_FILE, LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
+use self::record::{CaptureRecord, FORMAT, Header, VERSION};
+use super::error::{PictureError, SessionError, SessionErrorKind};
+use super::files::Files;
+use super::picture::{PictureSize, decode_mask, decode_photo};
+use super::tags::exif_orientation;
+use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
+use app_scene::lens::{Distortion, Lens};
+use app_scene::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
+
+#[cfg(feature = "schema")]
+pub use schema::schema;
+
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+
+/// A `shadow-capture` folder.
+///
+/// Opening checks all of `capture.json` and reads the toy, the plates and the pictures of a probe. The frames' pictures are
+/// read when they are asked for.
+pub struct Capture {
+    store: PictureStore,
+    scene: Scene,
+    warnings: Vec<SessionWarning>,
+    frames: Vec<Frame>,
+    /// The last frame's picture: a still camera repeats one picture over and over.
+    last_picture: Mutex<Option<(FrameKey, Photo)>>,
+}
+
+/// A picture, and the camera whose lens it was freed of.
+type FrameKey = (String, Option<Lens>);
+
+/// A photograph, and how its file asks to turn it.
+#[derive(Clone)]
+struct Photo {
+    /// As by a pinhole.
+    image: Arc<Image>,
+    /// As the camera gave it.
+    as_taken: Arc<Image>,
+    orientation: u8,
+}
+
+impl Photo {
+    /// What is to be said of it where a field names it.
+    fn warning(&self, file: &str, field: &str) -> Option<SessionWarning> {
+        (self.orientation != 1).then(|| SessionWarning::Turned {
+            file: file.to_owned(),
+            field: field.to_owned(),
+            orientation: self.orientation,
+        })
+    }
+}
+
+/// A frame whose picture is not read yet.
+struct Frame {
+    time_secs: f64,
+    picture: String,
+    camera: Camera,
+    world_from_object: DMat4,
+    exposure: f64,
+    light_estimate: Option<LightEstimate>,
+    shown_pose: Pose,
+    warnings: Vec<SessionWarning>,
+    truth: Option<TruthFiles>,
+}
+
+struct TruthFiles {
+    picture: String,
+    mask: String,
+}
+
+impl Capture {
+    /// Opens the capture that `files` reads from.
+    ///
+    /// # Errors
+    /// When `capture.json`, the toy, a plate or a picture of the probe is missing, damaged or breaks a
+    /// rule of the format. The error names the file, the field and the reason.
+    pub fn open(files: impl Files + 'static) -> Result<Self, SessionError> {
+        let record = read_index(&files)?;
+        let distortion = convert::distortion(&record)?;
+        convert::capture_from_record(Box::new(files), record, distortion)
+    }
+
+    /// Opens the capture as taken with a lens, or by a pinhole, whatever its index says of one.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and where the lens folds a picture.
+    pub fn open_with_lens(
+        files: impl Files + 'static,
+        distortion: Option<Distortion>,
+    ) -> Result<Self, SessionError> {
+        let record = read_index(&files)?;
+        convert::capture_from_record(Box::new(files), record, distortion)
+    }
+
+    fn frame_at(&self, index: usize) -> Result<&Frame, SessionError> {
+        let n_frames = self.frames.len();
+        self.frames.get(index).ok_or_else(|| {
+            in_index(
+                &frame_field(index, ""),
+                SessionErrorKind::NoSuchFrame { n_frames },
+            )
+        })
+    }
+
+    fn frame_picture(&self, index: usize) -> Result<(&Frame, Photo), SessionError> {
+        let frame = self.frame_at(index)?;
+        let path = &frame.picture;
+        let key = (path.clone(), self.store.lens(&frame.camera.intrinsics)?);
+        let mut last = self.last_picture.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, photo)) = last.as_ref().filter(|(of_last, _)| *of_last == key) {
+            return Ok((frame, photo.clone()));
+        }
+        let field = frame_field(index, ".image");
+        let photo = self.store.photo(path, &field, &frame.camera.intrinsics)?;
+        *last = Some((key, photo.clone()));
+        Ok((frame, photo))
+    }
+}
+
+impl Session for Capture {
+    fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    fn warnings(&self) -> &[SessionWarning] {
+        &self.warnings
+    }
+
+    fn n_frames(&self) -> usize {
+        self.frames.len()
+    }
+
+    fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
+        let (frame, photo) = self.frame_picture(index)?;
+        let turned = photo.warning(&frame.picture, &frame_field(index, ".image"));
+        Ok(SessionFrame {
+            time_secs: frame.time_secs,
+            image: photo.image,
+            camera: frame.camera,
+            world_from_object: frame.world_from_object,
+            exposure: frame.exposure,
+            light_estimate: frame.light_estimate,
+            shown_pose: frame.shown_pose.clone(),
+            warnings: frame.warnings.iter().cloned().chain(turned).collect(),
+        })
+    }
+
+    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
+        Ok(self.frame_picture(index)?.1.as_taken)
+    }
+
+    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError> {
+        let (frame, photo) = self.frame_picture(index)?;
+        let lens = self.store.lens(&frame.camera.intrinsics)?;
+        Ok(match lens {
+            Some(lens) if made.is_of_size([photo.image.width_px, photo.image.height_px]) => {
+                lens.with_changes(&photo.as_taken, [&photo.image, &made])
+            }
+            _ => made,
+        })
+    }
+
+    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError> {
+        let frame = self.frame_at(index)?;
+        let lens = self.store.lens(&frame.camera.intrinsics)?;
+        let size_px = [self.store.size.width_px, self.store.size.height_px];
+        Ok(match lens {
+            Some(lens) if map.is_of_size(size_px) => lens.of_map(&map),
+            _ => map,
+        })
+    }
+}
+
+impl GroundTruth for Capture {
+    fn truth(&self, index: usize) -> Result<Option<Truth>, SessionError> {
+        let Some(files) = &self.frame_at(index)?.truth else {
+            return Ok(None);
+        };
+        let image = self
+            .store
+            .read(&files.picture, &frame_field(index, ".truth"), decode_photo)?;
+        let mask = self
+            .store
+            .read(&files.mask, &frame_field(index, ".mask"), decode_mask)?;
+        Ok(Some(Truth { image, mask }))
+    }
+}
+
+/// Reads pictures of one size.
+struct PictureStore {
+    files: Box<dyn Files>,
+    size: PictureSize,
+    /// Of all photographs, but not of labels.
+    distortion: Option<Distortion>,
+}
+
+impl PictureStore {
+    /// The lens of a camera.
+    fn lens(&self, intrinsics: &Intrinsics) -> Result<Option<Lens>, SessionError> {
+        let size_px = [self.size.width_px, self.size.height_px];
+        let lens = self
+            .distortion
+            .map(|distortion| Lens::new(distortion, intrinsics, size_px));
+        at(LENS, lens.transpose())
+    }
+
+    /// A photograph by a camera.
+    fn photo(&self, path: &str, field: &str, intrinsics: &Intrinsics) -> Result<Photo, SessionError> {
+        let lens = self.lens(intrinsics)?;
+        self.read(path, field, |bytes, size| {
+            let as_taken = Arc::new(decode_photo(bytes, size)?);
+            Ok(Photo {
+                image: lens.map_or_else(|| Arc::clone(&as_taken), |lens| lens.to_pinhole(&as_taken).into()),
+                as_taken,
+                orientation: exif_orientation(bytes),
+            })
+        })
+    }
+
+    fn read<T>(
+        &self,
+        path: &str,
+        field: &str,
+        decode: impl Fn(&[u8], PictureSize) -> Result<T, PictureError>,
+    ) -> Result<T, SessionError> {
+        let bytes = read_named(self.files.as_ref(), path, field, self.size.max_file_bytes())?;
+        decode(&bytes, self.size).map_err(|error| SessionError::new(path, field, error))
+    }
+}
+
+fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
+    let bytes = files
+        .read(INDEX_FILE, MAX_INDEX_BYTES)
+        .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
+    parse_index(&bytes)
+}
+
+/// Checks format and version first: another version may break every other rule.
+fn parse_index(bytes: &[u8]) -> Result<CaptureRecord, SessionError> {
+    let header: Header = match parse(bytes) {
+        Ok(header) => header,
+        // A syntax error is found again by parsing everything, which can name the field.
+        Err(error) if !is_about_values(&error) => {
+            return Err(parse::<CaptureRecord>(bytes).err().unwrap_or(error));
+        }
+        Err(error) => return Err(error),
+    };
+    if header.format != FORMAT {
+        let kind = SessionErrorKind::Format {
+            found: header.format,
+            supported: FORMAT,
+        };
+        return Err(in_index("format", kind));
+    }
+    if header.version != VERSION {
+        let kind = SessionErrorKind::Version {
+            found: header.version,
+            supported: VERSION,
+        };
+        return Err(in_index("version", kind));
+    }
+    parse(bytes)
+}
+
+fn is_about_values(error: &SessionError) -> bool {
+    matches!(error.kind.as_ref(), SessionErrorKind::Json(error) if error.is_data())
+}
+
+fn parse<'json, T: Deserialize<'json>>(bytes: &'json [u8]) -> Result<T, SessionError> {
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let record = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let field = error.path().to_string();
+        in_index(if field == "." { WHOLE_FILE } else { &field }, error.into_inner())
+    })?;
+    json.end().map_err(|error| in_index(WHOLE_FILE, error))?;
+    Ok(record)
+}

@@ -1,0 +1,212 @@
+//! From the records of `capture.json` to a capture of checked values.
+
+use std::sync::{Arc, Mutex};
+
+use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
+use super::light_estimate::light_estimate;
+use super::light_probe::probe;
+use super::place::{self, camera, intrinsics, light, plates, receiver};
+use super::record::{CaptureRecord, FrameRecord, PoseRecord};
+use super::{Capture, Frame, PictureStore, TruthFiles, uncertainty};
+use crate::SessionWarning;
+use crate::error::SessionError;
+use crate::files::Files;
+use crate::picture::PictureSize;
+use app_scene::lens::Distortion;
+use app_scene::scene::{Intrinsics, Pose, Scene, check};
+use app_scene::toy::Toy;
+use glam::DMat4;
+
+const MAX_TOY_BYTES: u64 = 256 << 20;
+
+/// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.
+pub(super) fn capture_from_record(
+    files: Box<dyn Files>,
+    record: CaptureRecord,
+    distortion: Option<Distortion>,
+) -> Result<Capture, SessionError> {
+    let size = picture_size(&record)?;
+    let intrinsics = intrinsics("intrinsics", &record.intrinsics)?;
+    let world_from_object = at(
+        "toy.world_from_object",
+        check::similarity(record.toy.world_from_object),
+    )?;
+    let receivers = non_empty("receivers", &record.receivers, receiver)?;
+    let lights = each("lights", &record.lights, light)?;
+    let uncertainty = record.uncertainty.as_ref();
+    let uncertainty = uncertainty.map(|record| uncertainty::uncertainty("uncertainty", record));
+    let uncertainty = uncertainty.transpose()?.unwrap_or_default();
+
+    let toy = read_toy(files.as_ref(), &record.toy.file)?;
+    let mut warnings = toy_warnings(&toy, &record.toy.file);
+    let physical_pose = pose(
+        &toy,
+        "toy.physical_pose",
+        &record.toy.physical_pose,
+        &mut warnings,
+    )?;
+    let defaults = Defaults {
+        intrinsics,
+        world_from_object,
+    };
+    let frames = non_empty("frames", &record.frames, |field, frame| {
+        frame_from_record(&toy, &defaults, field, frame)
+    })?;
+
+    let store = PictureStore {
+        files,
+        size,
+        distortion,
+    };
+    for frame in &frames {
+        store.lens(&frame.camera.intrinsics)?;
+    }
+    let plates = plates(&store, &intrinsics, &record.backgrounds, &mut warnings)?;
+    let probe = record
+        .probe
+        .as_ref()
+        .zip(frames.first())
+        .map(|(record, first)| probe(&store, record, (&intrinsics, &first.camera), &mut warnings))
+        .transpose()?;
+    let scene = Scene {
+        name: record.name,
+        width_px: size.width_px,
+        height_px: size.height_px,
+        toy: Arc::new(toy),
+        world_from_object,
+        physical_pose,
+        receivers,
+        lights,
+        plates,
+        probe,
+        uncertainty,
+    };
+    Ok(Capture {
+        store,
+        scene,
+        warnings,
+        frames,
+        last_picture: Mutex::new(None),
+    })
+}
+
+/// That of the index, if it has any.
+pub(super) fn distortion(record: &CaptureRecord) -> Result<Option<Distortion>, SessionError> {
+    record.lens.as_ref().map(place::distortion).transpose()
+}
+
+fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
+    at("width", check::number(f64::from(record.width), &check::SIDE_PX))?;
+    at("height", check::number(f64::from(record.height), &check::SIDE_PX))?;
+    at("width, height", check::picture_size(record.width, record.height))?;
+    Ok(PictureSize {
+        width_px: record.width,
+        height_px: record.height,
+    })
+}
+
+fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
+    let field = "toy.file";
+    let bytes = read_named(files, path, field, MAX_TOY_BYTES)?;
+    Toy::from_glb(path, &bytes).map_err(|error| SessionError::new(path, field, error))
+}
+
+fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {
+    let warnings = toy.warnings().iter().cloned();
+    warnings
+        .map(|warning| SessionWarning::Toy {
+            file: file.to_owned(),
+            warning,
+        })
+        .collect()
+}
+
+/// Finds the clip and clamps the time to it, with a warning where it had to be changed.
+fn pose(
+    toy: &Toy,
+    field: &str,
+    record: &PoseRecord,
+    warnings: &mut Vec<SessionWarning>,
+) -> Result<Pose, SessionError> {
+    let time_field = format!("{field}.time");
+    let asked_secs = at(&time_field, check::number(record.time, &check::CLIP_TIME_SECS))?;
+    let Some(name) = &record.clip else {
+        return Ok(Pose::Authored);
+    };
+    let clip = toy
+        .find_clip(name)
+        .map_err(|error| in_index(&format!("{field}.clip"), error))?;
+    let (used_secs, clamped) = toy
+        .clamp_time(clip, asked_secs)
+        .map_err(|error| in_index(&time_field, error))?;
+    if clamped {
+        let file = INDEX_FILE.to_owned();
+        warnings.push(SessionWarning::TimeClamped {
+            file,
+            field: time_field,
+            asked_secs,
+            used_secs,
+        });
+    }
+    Ok(Pose::Clip {
+        clip,
+        time_secs: used_secs,
+    })
+}
+
+/// Values of a frame that does not bring its own.
+struct Defaults {
+    intrinsics: Intrinsics,
+    world_from_object: DMat4,
+}
+
+fn frame_from_record(
+    toy: &Toy,
+    defaults: &Defaults,
+    field: &str,
+    record: &FrameRecord,
+) -> Result<Frame, SessionError> {
+    let mut warnings = Vec::new();
+    let picture_fields = [
+        ("image", Some(&record.image)),
+        ("truth", record.truth.as_ref()),
+        ("mask", record.mask.as_ref()),
+    ];
+    for (name, path) in picture_fields {
+        path.map_or(Ok(()), |path| check_named(path, &format!("{field}.{name}")))?;
+    }
+    let truth = record.truth.clone().zip(record.mask.clone());
+    Ok(Frame {
+        time_secs: at(
+            &format!("{field}.time"),
+            check::number(record.time, &check::TIME_SECS),
+        )?,
+        picture: record.image.clone(),
+        camera: camera(
+            field,
+            record.world_from_camera,
+            (record.intrinsics.as_ref(), &defaults.intrinsics),
+        )?,
+        world_from_object: match record.world_from_object {
+            Some(matrix) => at(&format!("{field}.world_from_object"), check::similarity(matrix))?,
+            None => defaults.world_from_object,
+        },
+        exposure: at(
+            &format!("{field}.exposure"),
+            check::number(record.exposure.unwrap_or(1.0), &check::EXPOSURE),
+        )?,
+        light_estimate: record
+            .light_estimate
+            .as_ref()
+            .map(|estimate| light_estimate(&format!("{field}.light_estimate"), estimate))
+            .transpose()?,
+        shown_pose: pose(
+            toy,
+            &format!("{field}.animation"),
+            &record.animation,
+            &mut warnings,
+        )?,
+        warnings,
+        truth: truth.map(|(picture, mask)| TruthFiles { picture, mask }),
+    })
+}

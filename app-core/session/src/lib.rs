@@ -1,0 +1,170 @@
+//! Sessions: a scene, and camera frames of it, however they are stored.
+//!
+//! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that is available at once
+//! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself.
+//!
+#![doc = include_str!("../../doc/session.md")]
+#![forbid(unsafe_code)]
+
+mod capture;
+mod error;
+mod files;
+mod picture;
+pub mod recording;
+pub mod tags;
+
+use std::sync::Arc;
+
+use glam::DMat4;
+use thiserror::Error;
+
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Camera, Image, LightEstimate, Pose, Scene};
+use app_scene::toy::ToyWarning;
+use app_scene::words::Number;
+
+pub use app_scene::scene::FieldError;
+pub use capture::Capture;
+#[cfg(feature = "schema")]
+pub use capture::schema;
+pub use error::{PictureError, SessionError, SessionErrorKind};
+pub use files::{FileError, Files, PathError, check_path};
+
+/// A scene with frames of it.
+pub trait Session {
+    /// The scene, which stays the same for all frames.
+    fn scene(&self) -> &Scene;
+
+    /// Warnings about the session as a whole.
+    fn warnings(&self) -> &[SessionWarning];
+
+    /// Number of frames; at least one.
+    fn n_frames(&self) -> usize;
+
+    /// Fetches and decodes the frame `index`, counted from 0.
+    ///
+    /// # Errors
+    /// When there is no such frame, or its picture cannot be read.
+    fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
+
+    /// The photograph of the frame `index` as its camera gave it, distortion and all: [`SessionFrame::image`] where the session has no lens.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError>;
+
+    /// The photograph of the frame `index` with what was changed in [`SessionFrame::image`] to make `made`, of the same size: `made`
+    /// itself where the session has no lens. Pixels whose surroundings did not change are the photograph's own.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError>;
+
+    /// A map over [`SessionFrame::image`] of the frame `index`, of the same size, as it lies over [`Session::photograph`]: `map` itself
+    /// where the session has no lens. What lies beside it is all zero.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError>;
+}
+
+/// One camera frame and the pose to show in it.
+#[derive(Clone, Debug)]
+pub struct SessionFrame {
+    /// When the frame was taken, from an origin of the session's own.
+    pub time_secs: f64,
+    /// The camera's picture of the real toy, as a pinhole would have seen it. Frames that repeat a picture share it.
+    pub image: Arc<Image>,
+    /// The camera that took it.
+    pub camera: Camera,
+    /// Transform of the real toy, from object space to world.
+    pub world_from_object: DMat4,
+    /// Exposure of the picture, relative to that of the session's other frames; 1 where it is unknown.
+    pub exposure: f64,
+    /// What the platform estimated of the light, where it is recorded.
+    pub light_estimate: Option<LightEstimate>,
+    /// The pose the toy is to be shown in.
+    pub shown_pose: Pose,
+    /// Warnings about this frame.
+    pub warnings: Vec<SessionWarning>,
+}
+
+impl From<&SessionFrame> for FrameInput {
+    fn from(frame: &SessionFrame) -> Self {
+        Self {
+            image: Arc::clone(&frame.image).into(),
+            camera: frame.camera,
+            exposure: frame.exposure,
+            world_from_object: frame.world_from_object,
+            lights: None,
+            light_estimate: frame.light_estimate,
+            shown_pose: frame.shown_pose.clone(),
+            effect: 1.0,
+        }
+    }
+}
+
+/// The photographs that the camera would have taken if the toy really had moved, through the lens that it has.
+///
+/// For scoring only. It is not part of [`Session`], so code that makes pictures from a session cannot reach them.
+pub trait GroundTruth {
+    /// Fetches the truth of the frame `index`, or `None` where the session has none.
+    ///
+    /// # Errors
+    /// When there is no such frame, or its pictures cannot be read.
+    fn truth(&self, index: usize) -> Result<Option<Truth>, SessionError>;
+}
+
+/// The truth of one frame, both pictures of the session's size.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// The photograph of the moved toy.
+    pub image: Image,
+    /// Labels of each pixel, as plain numbers in all four channels.
+    ///
+    /// R is 255 where the moved toy is, G where the real toy is. B is 255 times one minus the
+    /// smallest visibility over all lights with the moved toy, A the same with the real one.
+    pub mask: Image,
+}
+
+/// A value that was corrected or left out while reading.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SessionWarning {
+    /// A time lay beyond the end of its clip; the clip's last moment is shown.
+    #[error(
+        "{file} ({field}): {} s is beyond the end of the clip, {} s is used",
+        Number(*asked_secs),
+        Number(*used_secs)
+    )]
+    TimeClamped {
+        /// File that holds the time.
+        file: String,
+        /// Path of the time within the file.
+        field: String,
+        /// The time as written.
+        asked_secs: f64,
+        /// The time that is used instead.
+        used_secs: f64,
+    },
+    /// A picture that asks to be turned before it is looked at. It is taken as stored, as cameras' intrinsics have it.
+    #[error(
+        "{file} ({field}): its EXIF orientation is {orientation}, which is not applied: where it lies on its side or is mirrored, turn its pixels; where not, drop the tag"
+    )]
+    Turned {
+        /// File of the picture.
+        file: String,
+        /// Path of the field that names it.
+        field: String,
+        /// 2 to 8, as EXIF numbers them.
+        orientation: u8,
+    },
+    /// A feature of the toy's file that is not supported.
+    #[error("{file}: {warning}")]
+    Toy {
+        /// File of the toy.
+        file: String,
+        /// What it is.
+        warning: ToyWarning,
+    },
+}

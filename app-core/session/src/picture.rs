@@ -1,0 +1,110 @@
+//! Decodes the pictures of a session: PNG or JPEG, of exactly the size the session states.
+
+use std::io::Cursor;
+
+use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
+use image::{DynamicImage, ImageDecoder, Limits};
+
+use super::error::PictureError;
+use super::tags::{JPEG_MAGIC, PNG_MAGIC};
+use app_scene::scene::Image;
+
+/// Room for what a picture file holds besides pixels: colour profiles, previews, text.
+const EXTRA_BYTES: u64 = 16 << 20;
+
+/// The size that each picture of a session has.
+#[derive(Clone, Copy)]
+pub(super) struct PictureSize {
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
+}
+
+impl PictureSize {
+    pub(super) fn n_pixels(self) -> u64 {
+        u64::from(self.width_px) * u64::from(self.height_px)
+    }
+
+    /// Largest file of this size: 16-bit RGBA that did not compress at all.
+    pub(super) fn max_file_bytes(self) -> u64 {
+        self.n_pixels() * 8 + EXTRA_BYTES
+    }
+}
+
+/// Decodes a photograph. Its alpha, if any, is dropped.
+pub(super) fn decode_photo(bytes: &[u8], size: PictureSize) -> Result<Image, PictureError> {
+    let mut image = decode(bytes, size)?.into_rgba8().into_raw();
+    for pixel in image.chunks_exact_mut(4) {
+        pixel[3] = u8::MAX;
+    }
+    Ok(with_size(image, size))
+}
+
+/// Decodes a mask, whose four channels are numbers of their own.
+pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, PictureError> {
+    match decode(bytes, size)? {
+        DynamicImage::ImageRgba8(image) => Ok(with_size(image.into_raw(), size)),
+        _ => Err(PictureError::NotAMask),
+    }
+}
+
+fn with_size(rgba8: Vec<u8>, size: PictureSize) -> Image {
+    Image {
+        width_px: size.width_px,
+        height_px: size.height_px,
+        rgba8,
+    }
+}
+
+fn decode(bytes: &[u8], size: PictureSize) -> Result<DynamicImage, PictureError> {
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(size.max_file_bytes());
+    if bytes.starts_with(PNG_MAGIC) {
+        decode_sized(PngDecoder::with_limits(Cursor::new(bytes), limits)?, size)
+    } else if bytes.starts_with(JPEG_MAGIC) {
+        let mut decoder = JpegDecoder::new(Cursor::new(bytes))?;
+        decoder.set_limits(limits)?;
+        if !jpeg_has_end(bytes) {
+            return Err(PictureError::Truncated);
+        }
+        decode_sized(decoder, size)
+    } else {
+        Err(PictureError::Format)
+    }
+}
+
+/// Compares the size in the header before a pixel is decoded or room for it is made.
+fn decode_sized(decoder: impl ImageDecoder, size: PictureSize) -> Result<DynamicImage, PictureError> {
+    let (width_px, height_px) = decoder.dimensions();
+    if (width_px, height_px) != (size.width_px, size.height_px) {
+        return Err(PictureError::Size {
+            width_px,
+            height_px,
+            expected_width_px: size.width_px,
+            expected_height_px: size.height_px,
+        });
+    }
+    Ok(DynamicImage::from_decoder(decoder)?)
+}
+
+/// Walks a JPEG's segments to its end marker. Previews in its metadata have ends of their own, so
+/// looking for the marker's bytes alone would not do.
+fn jpeg_has_end(bytes: &[u8]) -> bool {
+    const STUFFED: u8 = 0x00;
+    const FILL: u8 = 0xff;
+    const END: u8 = 0xd9;
+    let mut at = 2;
+    while let Some(&[first, code]) = bytes.get(at..at + 2) {
+        at += match (first, code) {
+            (0xff, END) => return true,
+            (0xff, STUFFED | 0xd0..=0xd7) => 2,
+            (0xff, FILL) => 1,
+            (0xff, _) => match bytes.get(at + 2..at + 4) {
+                Some(&[high, low]) => 2 + usize::from(u16::from_be_bytes([high, low])),
+                _ => return false,
+            },
+            // A byte of compressed data.
+            _ => 1,
+        };
+    }
+    false
+}

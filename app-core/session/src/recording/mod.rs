@@ -1,0 +1,36 @@
+//! Recordings: a session in one MCAP file, written while it is taken and read as a folder is.
+//!
+//! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this crate opens no
+//! file itself, and times come from the caller.
+//!
+#![doc = include_str!("../../../doc/recording.md")]
+
+mod bounds;
+mod chunk;
+mod codec;
+pub mod entry;
+mod error;
+mod found;
+mod message;
+mod protobuf;
+mod queue;
+mod reader;
+mod scan;
+mod source;
+mod summary;
+mod take;
+mod topics;
+mod viewer;
+mod wire;
+mod writer;
+
+pub use codec::{PictureCodec, PlatformEncoder};
+pub use entry::LiveFrame;
+pub use error::{Damage, Loss, RecordingError, Stop, WriteError};
+pub use found::Note;
+pub use queue::{Inlet, Item, Outlet, queue};
+pub use reader::Recording;
+pub use source::Source;
+pub use take::{Ending, Take, TakeOptions, Taken};
+pub use topics::Topic;
+pub use writer::{Flushed, Limits, Picture, Writer};

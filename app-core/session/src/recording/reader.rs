@@ -1,0 +1,124 @@
+//! A recording as the files of a session.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::value::RawValue;
+
+use super::bounds::{INDEX_PATH, MAX_INDEX_BYTES};
+use super::error::{Loss, RecordingError};
+use super::found::{Found, Note, Span};
+use super::scan::scan;
+use super::source::Source;
+use crate::{FileError, Files, check_path};
+
+/// A recording that is read: its files are those of a session's folder, `capture.json` made of its messages.
+///
+/// Opening goes through all of it once. Memory for its texts is taken, and for one chunk, whatever its size.
+pub struct Recording {
+    source: Box<dyn Source>,
+    index: Vec<u8>,
+    /// Pictures of frames come before attached files.
+    spans: BTreeMap<String, Span>,
+    n_frames: usize,
+    device: BTreeMap<String, String>,
+    notes: Vec<Note>,
+    losses: Vec<Loss>,
+}
+
+impl Recording {
+    /// Opens the recording that `source` reads from, as far as it is whole.
+    ///
+    /// # Errors
+    /// When it cannot be read, is no MCAP file, or no chunk of it is whole and has a session in it.
+    pub fn open(source: impl Source + 'static) -> Result<Self, RecordingError> {
+        let mut found = scan(&source)?;
+        found.tell_losses();
+        let Some(session) = found.session.take() else {
+            return Err(RecordingError::NoSession { losses: found.losses });
+        };
+        let Some(index) = index_of(&session.session, &found) else {
+            return Err(RecordingError::NoSession { losses: found.losses });
+        };
+        let pictures = found.frames.iter().filter_map(|frame| {
+            let span = found.pictures.get(&frame.picture)?;
+            Some((frame.path.clone(), *span))
+        });
+        let mut spans = found.files;
+        spans.extend(pictures);
+        spans.remove(INDEX_PATH);
+        Ok(Self {
+            source: Box::new(source),
+            index,
+            spans,
+            n_frames: found.frames.len(),
+            device: session.device,
+            notes: found.notes,
+            losses: found.losses,
+        })
+    }
+
+    /// Paths of all files, relative to the session; those that a session may not use are left out.
+    #[must_use]
+    pub fn paths(&self) -> BTreeSet<&str> {
+        let named = self.spans.keys().map(String::as_str).chain([INDEX_PATH]);
+        named.filter(|path| check_path(path).is_ok()).collect()
+    }
+
+    /// Frames whose entry and picture are whole.
+    #[must_use]
+    pub fn n_frames(&self) -> usize {
+        self.n_frames
+    }
+
+    /// What is known of the device that recorded it.
+    #[must_use]
+    pub fn device(&self) -> &BTreeMap<String, String> {
+        &self.device
+    }
+
+    /// Messages of the platform's channels, as they were recorded.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// What of it is lost; nothing of one that was finished and is whole.
+    #[must_use]
+    pub fn losses(&self) -> &[Loss] {
+        &self.losses
+    }
+}
+
+impl Files for Recording {
+    fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
+        check_path(path)?;
+        if path == INDEX_PATH {
+            let is_allowed = self.index.len() as u64 <= max_bytes;
+            return if is_allowed {
+                Ok(self.index.clone())
+            } else {
+                Err(FileError::TooLarge { max_bytes })
+            };
+        }
+        let span = self.spans.get(path).ok_or(FileError::Missing)?;
+        if span.n_bytes > max_bytes {
+            return Err(FileError::TooLarge { max_bytes });
+        }
+        let n_bytes = usize::try_from(span.n_bytes).map_err(|_| FileError::TooLarge { max_bytes })?;
+        let mut bytes = vec![0; n_bytes];
+        self.source
+            .read_at(span.at, &mut bytes)
+            .map_err(|error| FileError::Io(error.to_string()))?;
+        Ok(bytes)
+    }
+}
+
+/// The session's index with the frames that were found, as they were written.
+fn index_of(session: &RawValue, found: &Found) -> Option<Vec<u8>> {
+    let mut keys: BTreeMap<String, &RawValue> = serde_json::from_str(session.get()).ok()?;
+    let entries: Vec<&str> = found.frames.iter().map(|frame| frame.entry.as_str()).collect();
+    let frames = RawValue::from_string(format!("[\n{}\n]", entries.join(",\n"))).ok()?;
+    keys.insert("frames".to_owned(), &frames);
+    let index = serde_json::to_vec(&keys).ok()?;
+    (index.len() as u64 <= 2 * MAX_INDEX_BYTES).then_some(index)
+}

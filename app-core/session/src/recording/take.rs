@@ -1,0 +1,171 @@
+//! A live session that is recorded: what is known of it when it begins, and a queue of what comes.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::Arc;
+
+use super::codec::{PictureCodec, png};
+use super::entry;
+use super::error::{Stop, WriteError};
+use super::queue::{Inlet, Outlet, queue};
+use super::writer::{Limits, Writer};
+use app_scene::scene::{Intrinsics, Scene};
+
+/// Items that may wait: a second of frames with what is said of them.
+const N_ITEMS: usize = 256;
+/// Bytes that may wait: ten of a phone's pictures.
+const MAX_BYTES: u64 = 48 << 20;
+/// Path of the toy.
+const TOY: &str = "toy.glb";
+
+/// A recording that is to be written: by a thread of the caller's, which has the file.
+#[derive(Debug)]
+pub struct Take {
+    number: u64,
+    scene: Scene,
+    intrinsics: Intrinsics,
+    outlet: Outlet,
+}
+
+/// What the caller knows of a recording.
+#[derive(Debug)]
+pub struct TakeOptions<'a> {
+    /// The toy's file.
+    pub toy: &'a [u8],
+    /// How pictures are encoded; plates never lose a code.
+    pub codec: PictureCodec,
+    /// What is to be known of the device: model, system, version of the app.
+    pub device: BTreeMap<String, String>,
+    /// How much it may take.
+    pub limits: Limits,
+}
+
+/// Why a recording ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It was asked to.
+    Asked,
+    /// The device has no more room for it.
+    NoRoom,
+    /// It is as large as it may be.
+    TooLarge,
+    /// It may not be put there.
+    NotAllowed,
+    /// It cannot be written, and why.
+    Failed(String),
+}
+
+/// What became of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Taken {
+    /// Which it was.
+    pub number: u64,
+    /// Frames in it.
+    pub n_frames: u32,
+    /// Frames that came and are not in it, since writing was too slow or their pictures could not be encoded.
+    pub n_dropped: u64,
+    /// Why it ended.
+    pub ending: Ending,
+}
+
+impl Taken {
+    /// Of one whose thread did not come to its end.
+    #[must_use]
+    pub fn died(number: u64) -> Self {
+        Self {
+            number,
+            n_frames: 0,
+            n_dropped: 0,
+            ending: Ending::Failed("its thread ended".to_owned()),
+        }
+    }
+}
+
+impl Take {
+    /// The recording of that number of a scene whose cameras mostly have these `intrinsics`, and where its frames go: it ends when all
+    /// inlets are gone.
+    #[must_use]
+    pub fn new(number: u64, scene: Scene, intrinsics: Intrinsics) -> (Inlet, Self) {
+        let (inlet, outlet) = queue(N_ITEMS, MAX_BYTES);
+        let take = Self {
+            number,
+            scene,
+            intrinsics,
+            outlet,
+        };
+        (inlet, take)
+    }
+
+    /// Writes it into an empty sink until it ends: the toy, the plates, then what comes; seconds or minutes.
+    pub fn run<W: Write>(mut self, sink: W, options: TakeOptions<'_>) -> Taken {
+        self.outlet
+            .take_live_frames(options.codec, Arc::clone(&self.scene.toy));
+        let paths: Vec<_> = (0..self.scene.plates.len())
+            .map(|place| format!("plates/{place:03}.png"))
+            .collect();
+        let index = entry::index(&self.scene, &self.intrinsics, TOY, &paths).to_string();
+        let begun = Writer::new(sink, &index, options.device, options.limits).and_then(|mut writer| {
+            writer.file(0, TOY, options.toy)?;
+            for (plate, path) in self.scene.plates.iter().zip(&paths) {
+                writer.file(0, path, &png(&plate.image)?)?;
+            }
+            Ok(writer)
+        });
+        let mut writer = match begun {
+            Ok(writer) => writer,
+            Err(error) => return self.ended(0, ending_of(error)),
+        };
+        let mut stop = None;
+        while let Some(written) = self.outlet.write_next(&mut writer) {
+            // What cannot be encoded is left out; a writer that has stopped stays so.
+            if let Err(WriteError::Stopped(reason)) = written {
+                stop = Some(reason);
+                break;
+            }
+        }
+        self.outlet.drop_rest();
+        let flushed = writer.flushed();
+        match (writer.finish(), stop) {
+            (Ok((_, flushed)), stop) => {
+                let ending = stop.map_or(Ending::Asked, |stop| ending_of(stop.into()));
+                self.ended(flushed.n_frames, ending)
+            }
+            (Err(error), _) => self.ended(flushed.n_frames, ending_of(error)),
+        }
+    }
+
+    /// What is told of one that has no file.
+    #[must_use]
+    pub fn without_file(self, error: &std::io::Error) -> Taken {
+        use std::io::ErrorKind;
+        let ending = match error.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Ending::NoRoom,
+            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => Ending::NotAllowed,
+            _ => Ending::Failed(error.to_string()),
+        };
+        self.ended(0, ending)
+    }
+
+    /// Which it is.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    fn ended(&self, n_frames: u32, ending: Ending) -> Taken {
+        Taken {
+            number: self.number,
+            n_frames,
+            n_dropped: self.outlet.n_dropped_frames(),
+            ending,
+        }
+    }
+}
+
+fn ending_of(error: WriteError) -> Ending {
+    match error {
+        WriteError::Stopped(Stop::Size { .. }) => Ending::TooLarge,
+        WriteError::Stopped(Stop::Space { .. } | Stop::Full) => Ending::NoRoom,
+        error => Ending::Failed(error.to_string()),
+    }
+}

@@ -1,0 +1,52 @@
+//! Writes a session anew, with the cameras, the toy's pose and the lights as its pictures show them.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::session::Session;
+use clap::Parser;
+use desk::alignment::{Alignments, Asked, Lights, RatioArgs};
+use desk::check::aligned_session;
+use desk::opened;
+use desk::opened::Opened;
+use desk::program::exit_code;
+use desk::stored::Stored;
+
+/// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it is.
+#[derive(Parser)]
+#[command(name = "align", bin_name = "cargo xtask align")]
+struct Args {
+    /// Folder of the session, or a recording
+    session: PathBuf,
+    /// Folder for the corrected session, or a recording where it ends in .mcap, which must not be there yet
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Put the session's list of lights aside, and write those that their shadows show; the list stays where none does
+    #[arg(long, value_enum, default_value_t)]
+    lights: Lights,
+    #[command(flatten)]
+    ratio: RatioArgs,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Args::parse()))
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let opened = opened::open(&args.session, args.ratio.lens(), args.lights);
+    let Opened { capture, lens } = opened.with_context(|| args.session.display().to_string())?;
+    let asked = Asked {
+        lights: args.lights,
+        ratio: args.ratio.asked(),
+    };
+    let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
+    let session = Stored::open(&args.session)?;
+    let n_corrected = aligned_session::write(&session, &args.out, &alignments)?;
+    println!(
+        "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}",
+        capture.n_frames(),
+        args.out.display()
+    );
+    Ok(())
+}

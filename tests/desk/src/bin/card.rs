@@ -1,0 +1,44 @@
+//! The card to print: pages for a printer, and the picture that a platform knows it by.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use app_core::card::{PATTERN_M, reference};
+use clap::Parser;
+use desk::card::{CROSSES_M, Paper, page, png};
+use desk::output::{make_folder, write_whole};
+use desk::program::{exit_code, repository};
+
+/// Where the pages go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/card";
+
+/// Write a card to print and to lay beside the toy: for a tracker to hold on to, with a place for the lens of a light probe.
+#[derive(Parser)]
+#[command(name = "card", bin_name = "cargo xtask card")]
+struct Args {
+    /// Folder for the pages [default: target/card]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(Args::parse()))
+}
+
+fn run(args: Args) -> Result<()> {
+    let results = || repository().join(RESULTS);
+    let out = args.out.unwrap_or_else(results);
+    make_folder(&out)?;
+    for paper in Paper::ALL {
+        let path = out.join(format!("card_{}.png", paper.name()));
+        write_whole(&path, &png(&page(paper))?)?;
+        println!("{}", path.display());
+    }
+    let path = out.join("card_reference.png");
+    write_whole(&path, &png(&reference())?)?;
+    println!("{}: {:.0} mm wide when printed", path.display(), 1e3 * PATTERN_M);
+    let [across, down] = (1e3 * CROSSES_M).to_array();
+    println!("Print at 100 %: the crosses are {across:.0} mm apart across and {down:.0} mm down.");
+    Ok(())
+}

@@ -1,0 +1,65 @@
+//! Says what is wrong with a session, and draws over its first frame what it predicts.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clap::Parser;
+use desk::alignment::{Asked, Lights, RatioArgs};
+use desk::check::check;
+use desk::output::make_folder;
+use desk::program::{exit_code, repository};
+
+/// Where drawings go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/check";
+
+/// Say what is wrong with a session, all at once, and draw what it predicts over its first frame: outlines of the toy and of
+/// its shadows, as given and as aligned. The exit code is 1 when anything is wrong.
+#[derive(Parser)]
+#[command(name = "check", bin_name = "cargo xtask check")]
+struct Args {
+    /// Folder of the session, or a recording
+    session: PathBuf,
+    /// Folder for the drawing [default: target/check]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Put the session's list of lights aside, and compare it with those that their shadows show
+    #[arg(long, value_enum, default_value_t)]
+    lights: Lights,
+    #[command(flatten)]
+    ratio: RatioArgs,
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    match run(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => exit_code(Err(error)),
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<bool> {
+    let results = || repository().join(RESULTS);
+    let out = args.out.clone().unwrap_or_else(results);
+    make_folder(&out)?;
+    let asked = Asked {
+        lights: args.lights,
+        ratio: args.ratio.asked(),
+    };
+    let findings = check(&args.session, &out, (asked, args.ratio.lens()))
+        .with_context(|| args.session.display().to_string())?;
+    for line in &findings.facts {
+        println!("{line}");
+    }
+    for line in &findings.wrong {
+        println!("wrong: {line}");
+    }
+    if let Some(drawing) = &findings.drawing {
+        println!(
+            "red as given, green as aligned, blue receivers, yellow lights as aligned: {}",
+            drawing.display()
+        );
+    }
+    Ok(findings.wrong.is_empty())
+}

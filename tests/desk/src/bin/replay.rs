@@ -1,0 +1,180 @@
+//! Replays a recorded session through the core and writes its pictures and a report.
+
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::wgpu;
+use clap::Parser;
+use desk::alignment::{Lights, RatioArgs};
+use desk::files::BUNDLED_SESSION;
+use desk::opened;
+use desk::opened::Opened;
+use desk::page::PAGE_FILE;
+use desk::program::{exit_code, repository};
+use desk::progress::{Progress, Quiet, on_stderr};
+use desk::replay::{Options, REPORT_FILE, replay};
+use desk::report::Report;
+
+/// Where results go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/replay";
+
+/// Replay a recorded session: one picture per frame, report.json with times, passes and, where there is a truth, errors,
+/// and index.html to look at it all.
+#[derive(Parser)]
+#[command(name = "replay", bin_name = "cargo xtask replay")]
+struct Args {
+    /// Folder of the session, or a recording [default: the bundled one]
+    session: Option<PathBuf>,
+    /// Folder for pictures, report and page [default: target/replay/ and the name of folder or recording]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How much work a frame may cost; several are shown side by side
+    #[arg(long = "preset", value_name = "NAME,...", value_delimiter = ',', default_values_t = [Preset::default()])]
+    presets: Vec<Preset>,
+    /// Only frames A up to, but without, B
+    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    frames: Option<Range<usize>>,
+    /// Part of a graphics adapter's name [default: the fastest]
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Take cameras, poses and lights as recorded, without aligning them by the pictures
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
+    as_given: bool,
+    /// Put the session's list of lights aside, and find them by their shadows
+    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
+    lights: Lights,
+    #[command(flatten)]
+    ratio: RatioArgs,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Args::parse()))
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let folder = args.session.as_deref().unwrap_or(Path::new(BUNDLED_SESSION));
+    let out = match &args.out {
+        Some(out) => out.clone(),
+        None => default_out(folder)?,
+    };
+    let opened = opened::open(folder, args.ratio.lens(), args.lights);
+    let Opened { capture, lens } = opened.with_context(|| folder.display().to_string())?;
+    let adapter = args
+        .adapter
+        .clone()
+        .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    let options = Options {
+        presets: without_repeats(&args.presets),
+        turned_down: &[],
+        frames: args.frames.clone(),
+        out: Some(out.clone()),
+        is_aligned: !args.as_given,
+        lights: args.lights,
+        ratio: args.ratio.asked(),
+        lens,
+    };
+    let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
+    let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
+    if !args.quiet {
+        io::stdout()
+            .write_all(summary(&reports, &out).as_bytes())
+            .context("writing to standard output")?;
+    }
+    Ok(())
+}
+
+/// `A..B` with A < B.
+fn parse_frames(text: &str) -> Result<Range<usize>, String> {
+    let wanted = "two numbers A..B, the first smaller than the second";
+    let (start, end) = text.split_once("..").ok_or(wanted)?;
+    let number = |text: &str| text.parse::<usize>().map_err(|_| wanted);
+    let frames = number(start)?..number(end)?;
+    if frames.is_empty() {
+        Err(wanted.to_owned())
+    } else {
+        Ok(frames)
+    }
+}
+
+fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
+    // `.` and `..` have a name of their own only when they are followed.
+    let session = session
+        .canonicalize()
+        .with_context(|| session.display().to_string())?;
+    let results = repository().join(RESULTS);
+    let name = if session.is_file() {
+        session.file_stem()
+    } else {
+        session.file_name()
+    };
+    Ok(results.join(name.unwrap_or("session".as_ref())))
+}
+
+fn without_repeats(presets: &[Preset]) -> Vec<Preset> {
+    let mut unique = Vec::new();
+    for preset in presets {
+        if !unique.contains(preset) {
+            unique.push(*preset);
+        }
+    }
+    unique
+}
+
+fn summary(reports: &[Report], out: &Path) -> String {
+    let mut lines: Vec<String> = reports.iter().flat_map(summary_of).collect();
+    let n_pictures: usize = reports.iter().map(|report| report.frames.len()).sum();
+    lines.push(format!(
+        "{n_pictures} pictures and {REPORT_FILE} in {}, to be seen in {PAGE_FILE}",
+        out.display()
+    ));
+    lines.join("\n") + "\n"
+}
+
+fn summary_of(report: &Report) -> Vec<String> {
+    let mut lines = vec![format!(
+        "{} with preset {} on {}",
+        report.session, report.preset, report.adapter
+    )];
+    lines.extend(
+        report
+            .warnings
+            .iter()
+            .map(|warning| format!("warning: {warning}")),
+    );
+    if let Some(lens) = &report.lens {
+        lines.push(format!(
+            "lens k1 {:.4}, k2 {:.4}: {}",
+            lens.k1, lens.k2, lens.outcome
+        ));
+    }
+    if let Some(scores) = report.mean.scores {
+        let regions = [
+            ("shadow", scores.shadow),
+            ("toy", scores.toy),
+            ("edge", scores.edge),
+            ("frame", scores.frame),
+        ]
+        .map(|(name, score)| format!("{name} {:.2} ({:.4})", score.rmse, score.ssim));
+        lines.push(format!(
+            "mean RMSE (SSIM) against the truth: {}",
+            regions.join(", ")
+        ));
+    }
+    if let Some(flicker) = report.mean.flicker {
+        lines.push(format!(
+            "mean flicker (RMSE of changes from frame to frame): shadow {:.2}, toy {:.2}, edge {:.2}, frame {:.2}",
+            flicker.shadow, flicker.toy, flicker.edge, flicker.frame
+        ));
+    }
+    lines
+}

@@ -1,0 +1,45 @@
+//! Keys of `capture.json` that no reader knows, which are mostly misspelt.
+
+use app_core::session::Files;
+use serde_json::Value;
+
+use crate::files::SESSION_FILE;
+
+/// The format's schema, as a test holds it to the types that read it.
+const SCHEMA: &str = include_str!("../../../../app-core/doc/session.schema.json");
+/// No longer index is read.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// Those of a session's index; none where it cannot be read, which the reader tells.
+pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
+    let bytes = session.read(SESSION_FILE, MOST_BYTES).unwrap_or_default();
+    let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    let mut unknown = Vec::new();
+    let schema = serde_json::from_str(SCHEMA).unwrap_or_default();
+    look(&index, &schema, "", &mut unknown);
+    unknown
+}
+
+/// Goes through a value and its schema side by side. Where the schema has no keys, any may stand.
+fn look(value: &Value, schema: &Value, path: &str, unknown: &mut Vec<String>) {
+    match (value, &schema["properties"]) {
+        (Value::Object(entries), Value::Object(known)) => {
+            for (key, value) in entries {
+                let path = match path {
+                    "" => key.clone(),
+                    parent => format!("{parent}.{key}"),
+                };
+                match known.get(key) {
+                    Some(schema) => look(value, schema, &path, unknown),
+                    None => unknown.push(format!("{SESSION_FILE} ({path}): the key is not known")),
+                }
+            }
+        }
+        (Value::Array(entries), _) => {
+            for (index, value) in entries.iter().enumerate() {
+                look(value, &schema["items"], &format!("{path}[{index}]"), unknown);
+            }
+        }
+        _ => {}
+    }
+}

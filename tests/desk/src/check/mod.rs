@@ -1,0 +1,301 @@
+//! What is wrong with a session, as far as it can be told without any truth.
+
+pub mod aligned_session;
+mod icc;
+mod keys;
+mod overlay;
+mod pictures;
+mod sense;
+
+use std::path::{Path, PathBuf};
+
+use app_core::alignment::{Alignment, DiscoveredLight, Outlines};
+use app_core::frame::FrameInput;
+use app_core::lens::Distortion;
+use app_core::probe::ProbeReport;
+use app_core::scene::{Camera, Image};
+use app_core::session::{Capture, Session, SessionWarning};
+use glam::{DVec2, DVec3};
+
+use crate::alignment::{Aligned, Alignments, Asked, Lights, SeenLight, Source};
+use crate::gizmo;
+use crate::gizmo::Gizmo;
+use crate::opened;
+use crate::opened::Opened;
+use crate::output::{remove_file, write_png};
+use crate::report::alignment::ErrorEntry;
+use crate::stored::Stored;
+
+pub use pictures::wrong_of_picture;
+
+/// File name of the drawing.
+const DRAWING: &str = "check.png";
+
+/// What was looked at.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// How toy, lights and camera stand to one another.
+    pub facts: Vec<String>,
+    /// What is wrong; nothing in a good session.
+    pub wrong: Vec<String>,
+    /// Of the first frame.
+    pub drawing: Option<PathBuf>,
+}
+
+/// Looks at a session's index, files, numbers and pictures, and draws what it predicts into `out`.
+///
+/// # Errors
+/// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
+pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyhow::Result<Findings> {
+    let stored = Stored::open(session)?;
+    // A drawing in the folder is of this session.
+    remove_file(&out.join(DRAWING))?;
+    let mut findings = Findings {
+        wrong: keys::unknown(&stored),
+        ..Findings::default()
+    };
+    findings
+        .wrong
+        .extend(stored.losses().iter().map(ToString::to_string));
+    findings.wrong.extend(pictures::wrong(&stored));
+    let capture = match Capture::open(stored) {
+        Ok(capture) => capture,
+        Err(error) => {
+            findings.wrong.push(error.to_string());
+            return Ok(findings);
+        }
+    };
+    let capture = match lens {
+        Source::Given => capture,
+        Source::Found => findings.freed_of_lens(session, asked.lights)?,
+    };
+    findings.wrong.extend(told(capture.warnings()));
+    findings.facts.extend(sense::without(capture.scene()));
+    findings.wrong.extend(sense::wrong(capture.scene()));
+    let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
+    for (index, frame) in frames {
+        match frame {
+            Ok(frame) => {
+                findings.wrong.extend(told(&frame.warnings));
+                findings
+                    .wrong
+                    .extend(sense::wrong_of_frame(capture.scene(), index, &frame));
+            }
+            Err(error) => findings.wrong.push(format!("frame {index}: {error}")),
+        }
+    }
+    if let Ok(first) = capture.frame(0) {
+        let given = FrameInput::from(&first);
+        match Alignments::find(&capture, 0..1, asked) {
+            Ok(alignments) => {
+                if let Some(aligned) = alignments.of(0) {
+                    findings.aligned(aligned);
+                    let picture = drawn(&capture, &given, &aligned.alignment)?;
+                    let path = out.join(DRAWING);
+                    write_png(&path, &picture)?;
+                    findings.drawing = Some(path);
+                }
+            }
+            Err(error) => findings.wrong.push(error.to_string()),
+        }
+    }
+    Ok(findings)
+}
+
+/// How far a light that was found is from the nearest one of the list that was put aside; nothing without a list.
+fn against_listed(found: &DiscoveredLight, listed: &[SeenLight]) -> String {
+    let Some(error) = ErrorEntry::nearest(&SeenLight::found(found), listed) else {
+        return String::new();
+    };
+    let times = |ratio: Option<f64>, what: &str| {
+        ratio.map_or(String::new(), |ratio| format!(", {ratio:.2} times its {what}"))
+    };
+    format!(
+        "; {:.2} degrees from lights[{}]{}{}",
+        error.direction_deg,
+        error.index,
+        times(error.distance_ratio, "distance"),
+        times(error.size_ratio, "angular size"),
+    )
+}
+
+/// The reader's warnings, but those of files that were looked at before.
+fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
+    let others = warnings
+        .iter()
+        .filter(|warning| !matches!(warning, SessionWarning::Turned { .. }));
+    others.map(ToString::to_string)
+}
+
+impl Findings {
+    fn tell(&mut self, told: String, is_wrong: bool) {
+        let list = if is_wrong {
+            &mut self.wrong
+        } else {
+            &mut self.facts
+        };
+        list.push(told);
+    }
+
+    /// The session with the lens that its pictures tell.
+    fn freed_of_lens(&mut self, session: &Path, lights: Lights) -> anyhow::Result<Capture> {
+        let Opened { capture, lens } = opened::open(session, Source::Found, lights)?;
+        if let Some(found) = lens {
+            let Distortion { k1, k2 } = found.distortion;
+            let told = match found.errors {
+                Some(_) => format!(
+                    "lens: toy and shadow tell k1 {k1:.4} and k2 {k2:.4}: {}",
+                    found.outcome
+                ),
+                None => format!("lens: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        Ok(capture)
+    }
+
+    fn aligned(&mut self, aligned: &Aligned) {
+        let alignment = &aligned.alignment;
+        let report = &alignment.report;
+        if let Some(found) = &report.focal_length {
+            let told = match found.errors {
+                Some(_) => format!(
+                    "intrinsics: toy and shadow tell {:.4} times the focal length, +- {:.4}: {}",
+                    found.ratio, found.deviation, found.outcome
+                ),
+                None => format!("intrinsics: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        if let Some(found) = &report.world_scale {
+            let told = match found.errors {
+                Some(_) => format!(
+                    "toy.world_from_object: toy and shadow tell a world {:.4} times as large as the toy's model says, +- {:.4}: {}",
+                    found.ratio, found.deviation, found.outcome
+                ),
+                None => format!("toy.world_from_object: its scale: {}", found.outcome),
+            };
+            self.tell(told, found.is_applied());
+        }
+        if let Some(camera) = &report.camera {
+            let told = format!(
+                "world_from_camera: the table moves by {:.2} px in the picture where the camera is moved by {:.2} mm and turned by {:.2} degrees",
+                camera.moved_px,
+                1e3 * camera.moved_m,
+                camera.turned_rad.to_degrees(),
+            );
+            self.tell(told, camera.is_applied);
+        }
+        match &report.pose {
+            None => self.wrong.push(
+                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
+                    .to_owned(),
+            ),
+            Some(pose) => {
+                let told = format!(
+                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px where the toy is moved by {:.2} mm and turned by {:.2} degrees",
+                    pose.given_outline_px,
+                    pose.outline_px,
+                    1e3 * pose.moved_m,
+                    pose.turned_rad.to_degrees(),
+                );
+                self.tell(told, pose.is_applied);
+            }
+        }
+        for (index, light) in report.lights.iter().enumerate() {
+            let size = light.size_ratio.map_or(String::new(), |ratio| {
+                format!(", {ratio:.2} times its angular size")
+            });
+            let told = format!(
+                "lights[{index}]: its shadow tells a direction {:.2} degrees from that given, {:.2} times its distance{size}",
+                light.turned_rad.to_degrees(),
+                light.distance_ratio
+            );
+            self.tell(told, light.is_applied && light.is_moved);
+        }
+        if let Some(probe) = &report.probe {
+            self.probe(probe, report.no_light.is_some());
+        }
+        for (index, light) in report.discovered.iter().enumerate() {
+            let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
+                format!("{distance_m:.2} m away")
+            });
+            let against = against_listed(light, &aligned.listed);
+            self.facts.push(format!(
+                "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees{against}",
+                2.0 * light.angular_radius_rad.to_degrees(),
+                100.0 * light.share,
+                light.deviation.direction_rad.to_degrees()
+            ));
+        }
+        self.wrong.extend(
+            alignment
+                .warnings
+                .iter()
+                .map(|warning| format!("frames[0]: {warning}")),
+        );
+    }
+}
+
+impl Findings {
+    fn probe(&mut self, probe: &ProbeReport, stands: bool) {
+        for (index, light) in probe.lights.iter().enumerate() {
+            let [u, v] = light.seen.at_px.to_array();
+            let distance = light
+                .distance_m
+                .map_or("not told".to_owned(), |distance_m| format!("{distance_m:.2} m"));
+            let then = if stands {
+                ", and stands so: no shadow shows it"
+            } else {
+                ""
+            };
+            self.facts.push(format!(
+                "probe: light {index} at ({u:.1}, {v:.1}) px, its direction known to {:.2} degrees, its distance {distance}{then}",
+                light.seen.deviation_rad.to_degrees(),
+            ));
+        }
+        for rejected in &probe.rejected {
+            let [u, v] = rejected.at_px.to_array();
+            self.facts.push(format!(
+                "probe: what is bright at ({u:.1}, {v:.1}) px is no light: {}",
+                rejected.reason
+            ));
+        }
+        if probe.lights.is_empty() {
+            self.wrong.push(
+                "probe: its pictures show no light: check probe.world_from_lens, probe.radius and whether the pictures are too dark"
+                    .to_owned(),
+            );
+        }
+        if probe.n_unseen > 0 {
+            self.facts.push(format!(
+                "probe: its last {} pictures do not show it, so that what was seen before stands",
+                probe.n_unseen
+            ));
+        }
+    }
+}
+
+/// Where a point of the world is in a camera's picture; none behind the camera.
+fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
+    let at = camera.world_from_camera.inverse().transform_point3(world);
+    camera.intrinsics.pixel_of(at)
+}
+
+fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow::Result<Image> {
+    let scene = capture.scene();
+    let aligned = &alignment.applied_to(given);
+    let mut picture = Image::clone(given.image.rgba());
+    overlay::receivers(&mut picture, scene, given);
+    overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
+    overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);
+    gizmo::rays(
+        &mut picture,
+        (scene, given),
+        &Gizmo::listed(scene, given),
+        gizmo::GIVEN,
+    );
+    let found = Gizmo::aligned(scene, aligned, &alignment.report);
+    gizmo::rays(&mut picture, (scene, aligned), &found, gizmo::FOUND);
+    Ok(capture.through_lens(0, picture)?)
+}

@@ -1,0 +1,107 @@
+//! Numbers that can be read, but are hardly meant.
+
+use app_core::scene::{Light, Scene};
+use app_core::session::SessionFrame;
+use app_scene::geometry::bounds::Bounds;
+use glam::{DMat4, DVec2, DVec3, UVec2};
+
+use super::pixel;
+
+/// Sizes of a toy and distances to it that are no mistake, in metres.
+const TOY_M: [f64; 2] = [0.005, 3.0];
+const CAMERA_M: [f64; 2] = [0.03, 30.0];
+
+/// What a session does without, and what is made of it.
+pub(super) fn without(scene: &Scene) -> Vec<String> {
+    let mut facts = Vec::new();
+    if let (true, Some(_)) = (scene.lights.is_empty(), &scene.probe) {
+        facts.push(
+            "lights: none is listed, so that the probe tells them, and the toy's shadow corrects them"
+                .to_owned(),
+        );
+    } else if scene.lights.is_empty() {
+        facts.push("lights: none is listed, so that they are looked for by the toy's shadow".to_owned());
+    }
+    if scene.plates.is_empty() {
+        facts.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());
+    }
+    facts
+}
+
+/// Of the session as a whole.
+pub(super) fn wrong(scene: &Scene) -> Vec<String> {
+    let mut wrong = Vec::new();
+    if let Some(corners) = corners(scene, &scene.world_from_object) {
+        let toy_m = corners[0].distance(corners[7]);
+        if !(TOY_M[0]..=TOY_M[1]).contains(&toy_m) {
+            wrong.push(format!(
+                "toy.world_from_object: the toy is {toy_m:.3} m from corner to corner: lengths are in metres, and the matrix holds the scale of the model"
+            ));
+        }
+    }
+    for (index, light) in scene.lights.iter().enumerate() {
+        let is_above = scene.receivers.iter().any(|receiver| {
+            let plane_from_world = receiver.world_from_plane.inverse();
+            match light {
+                Light::Sphere {
+                    position_in_world, ..
+                } => plane_from_world.transform_point3(*position_in_world).y > 0.0,
+                Light::Directional {
+                    direction_to_light_in_world,
+                    ..
+                } => plane_from_world.transform_vector3(*direction_to_light_in_world).y > 0.0,
+            }
+        });
+        if !is_above {
+            wrong.push(format!("lights[{index}]: it is above none of the receivers"));
+        }
+    }
+    wrong
+}
+
+/// Of one frame.
+pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) -> Vec<String> {
+    let Some(corners) = corners(scene, &frame.world_from_object) else {
+        return vec![format!("frames[{index}]: the toy cannot be posed")];
+    };
+    let mut wrong = Vec::new();
+    let camera = &frame.camera;
+    let centre = 0.5 * (corners[0] + corners[7]);
+    let camera_m = camera.world_from_camera.w_axis.truncate().distance(centre);
+    if !(CAMERA_M[0]..=CAMERA_M[1]).contains(&camera_m) {
+        wrong.push(format!(
+            "frames[{index}].world_from_camera: the camera is {camera_m:.3} m from the toy: lengths are in metres"
+        ));
+    }
+    let size_px = UVec2::new(scene.width_px, scene.height_px).as_dvec2();
+    let before_camera: Vec<DVec2> = corners
+        .iter()
+        .filter_map(|corner| pixel(camera, *corner))
+        .collect();
+    let is_inside = |at_px: &DVec2| at_px.cmpge(DVec2::ZERO).all() && at_px.cmplt(size_px).all();
+    if before_camera.is_empty() {
+        wrong.push(format!(
+            "frames[{index}].world_from_camera: the toy is behind the camera, which looks along -Z with +Y up: the matrix may be of another convention, inverted or transposed"
+        ));
+    } else if !before_camera.iter().any(is_inside) {
+        wrong.push(format!(
+            "frames[{index}].world_from_camera: the toy is out of the picture"
+        ));
+    }
+    wrong
+}
+
+/// Of the toy's box, in the world: the first and the last are opposite.
+fn corners(scene: &Scene, world_from_object: &DMat4) -> Option<Vec<DVec3>> {
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).ok()?;
+    let bounds = Bounds {
+        min: bounds.min.as_dvec3(),
+        max: bounds.max.as_dvec3(),
+    };
+    let corners = bounds.corners();
+    Some(
+        corners
+            .map(|corner| world_from_object.transform_point3(corner))
+            .collect(),
+    )
+}

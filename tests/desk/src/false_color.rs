@@ -1,0 +1,284 @@
+//! Numbers as colours: the error against the truth, and the maps between input and picture.
+
+use app_core::scene::Image;
+use app_pipeline::geometry::rect::PixelRect;
+use app_pipeline::readback::{FloatMap, Map};
+use serde::Serialize;
+
+/// Colours at equal steps from the lowest value to the highest, as 8-bit sRGB.
+pub type Ramp = &'static [[u8; 3]];
+
+/// Error in codes at and above which the ramp stays at its end.
+pub const ERROR_END_CODES: u8 = 16;
+/// Even steps of lightness from black. Source: inferno of matplotlib (CC0), every 32nd colour.
+pub const ERROR_RAMP: Ramp = &[
+    [0, 0, 4],
+    [31, 12, 72],
+    [85, 15, 109],
+    [136, 34, 106],
+    [186, 54, 85],
+    [227, 89, 51],
+    [249, 140, 10],
+    [249, 201, 50],
+    [252, 255, 164],
+];
+const GRAY: Ramp = &[[0; 3], [255; 3]];
+const TAPS_RAMP: Ramp = &[
+    [68, 1, 84],
+    [59, 82, 139],
+    [33, 145, 140],
+    [94, 201, 98],
+    [253, 231, 37],
+];
+/// Blue where light is missing from the model, red where the model has too little.
+const SIGNED_RAMP: Ramp = &[[33, 102, 172], [247, 247, 247], [178, 24, 43]];
+
+const RECEIVER: [u8; 3] = [86, 180, 233];
+const TOY: [u8; 3] = [230, 159, 0];
+const NOTHING: [u8; 4] = [0; 4];
+/// Residual, in plates, at which the ramp ends.
+const RESIDUAL_END: f32 = 0.1;
+/// Candidates at which the ramp of the ring search ends.
+const TAPS_END: f32 = 3200.0;
+
+/// How a map is shown to a person.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shown {
+    /// Name in file names.
+    pub name: &'static str,
+    /// Name for a person.
+    pub title: &'static str,
+    /// What is to be seen.
+    pub caption: &'static str,
+    /// The meaning of its colours; none where the caption tells it.
+    pub legend: Option<Legend>,
+}
+
+/// The meaning of a ramp.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Legend {
+    /// What its first colour means.
+    pub low: &'static str,
+    /// What its last colour means.
+    pub high: &'static str,
+    /// Its colours.
+    pub ramp: Ramp,
+}
+
+/// How the error is shown.
+pub const ERROR: Shown = shown(
+    "error",
+    "Error",
+    "Largest difference from the truth over red, green and blue.",
+    Some(("0", "16 codes of 255 and more", ERROR_RAMP)),
+);
+
+/// How the lights are shown.
+pub const LIGHTS: Shown = shown(
+    "lights",
+    "Lights",
+    "From the toy a ray towards each light, with a ring as wide as the light; yellow as found or corrected, its dashed ring two deviations of \
+     the direction; red as listed.",
+    None,
+);
+
+const fn shown(
+    name: &'static str,
+    title: &'static str,
+    caption: &'static str,
+    legend: Option<(&'static str, &'static str, Ramp)>,
+) -> Shown {
+    let legend = match legend {
+        Some((low, high, ramp)) => Some(Legend { low, high, ramp }),
+        None => None,
+    };
+    Shown {
+        name,
+        title,
+        caption,
+        legend,
+    }
+}
+
+/// How `map` is shown; none for a map that is not.
+#[must_use]
+pub fn describe(map: Map) -> Option<Shown> {
+    let light = Some(("hidden", "in full sight", GRAY));
+    let (name, title, caption, legend) = match map {
+        Map::Validity => (
+            "validity",
+            "Validity",
+            "Blue: the frame shows the table alone. Orange: it shows one surface of the toy. Neither: mixed, not used.",
+            None,
+        ),
+        Map::GbufferBase => (
+            "gbuffer",
+            "Toy as modelled",
+            "Base colour of the real toy's model where the camera sees it; its outline must fit the camera frame.",
+            None,
+        ),
+        Map::GbufferReceived => (
+            "received",
+            "Light on the toy",
+            "What each point of the real toy receives of each light, its own shadow on itself included; three lights as \
+             red, green, blue.",
+            Some(("turned away or hidden", "in full light", GRAY)),
+        ),
+        Map::Appearance => (
+            "appearance",
+            "Toy's own colours",
+            "Colours taken from the camera frame and carried past the outline: what the moved toy is painted with.",
+            None,
+        ),
+        Map::PhysicalVisibility => (
+            "visibility-before",
+            "Light, real pose",
+            "How much of each light every point of the table sees past the real toy; three lights as red, green, blue.",
+            light,
+        ),
+        Map::PhysicalAmbient => (
+            "ambient-before",
+            "Surroundings, real pose",
+            "How much of the surroundings every point of the table sees past the real toy.",
+            light,
+        ),
+        Map::Visibility => (
+            "visibility",
+            "Light, shown pose",
+            "How much of each light every point of the table sees past the moved toy; three lights as red, green, blue.",
+            light,
+        ),
+        Map::Ambient => (
+            "ambient",
+            "Surroundings, shown pose",
+            "How much of the surroundings every point of the table sees past the moved toy.",
+            light,
+        ),
+        Map::Residual => (
+            "residual",
+            "Residual",
+            "What the model of light and shadow leaves unexplained, as a fraction of the plate.",
+            Some(("\u{2212}0.1: darker than modelled", "+0.1: brighter", SIGNED_RAMP)),
+        ),
+        Map::DirectFraction => (
+            "share",
+            "Share of the lights (f)",
+            "How much of the table's light comes from the listed lights, for red, green and blue; the rest is ambient.",
+            None,
+        ),
+        Map::Masks => ("mask", "Object mask (3a)", "White: the real toy.", None),
+        Map::Eligible => (
+            "eligible",
+            "Shadow masks (3b, 3c)",
+            "Blue: the real shadow. Orange: the part of it that samples may be taken from.",
+            None,
+        ),
+        Map::SearchTaps => (
+            "taps",
+            "Sample distance",
+            "Candidates that the ring search looked at until it found a sample; more is farther. Empty: none was needed.",
+            Some(("1", "3200 candidates, in logarithmic steps", TAPS_RAMP)),
+        ),
+        _ => return None,
+    };
+    Some(shown(name, title, caption, legend))
+}
+
+/// The colour at `t` of a ramp; below 0 its first, above 1 its last.
+#[expect(clippy::cast_possible_truncation, reason = "within the ramp")]
+pub(crate) fn color_at(ramp: Ramp, t: f32) -> [u8; 3] {
+    let last = ramp.len().saturating_sub(1);
+    let position = t.clamp(0.0, 1.0) * last as f32;
+    let below = (position as usize).min(last);
+    let above = (below + 1).min(last);
+    let share = position - below as f32;
+    let channel =
+        |i: usize| code(f32::from(ramp[below][i]) * (1.0 - share) + f32::from(ramp[above][i]) * share);
+    [channel(0), channel(1), channel(2)]
+}
+
+/// The largest difference over the three colours of each pixel as a colour. Both pictures are of one size.
+#[must_use]
+pub fn error(picture: &Image, truth: &Image) -> Image {
+    let pairs = picture.rgba8.chunks_exact(4).zip(truth.rgba8.chunks_exact(4));
+    let colors = pairs.flat_map(|(a, b)| {
+        let codes = (0..3).map(|i| a[i].abs_diff(b[i])).max().unwrap_or(0);
+        let t = f32::from(codes) / f32::from(ERROR_END_CODES);
+        opaque(color_at(ERROR_RAMP, t))
+    });
+    Image {
+        width_px: picture.width_px,
+        height_px: picture.height_px,
+        rgba8: colors.collect(),
+    }
+}
+
+/// `values` of `map` as a picture of the whole frame, transparent around the region that they are of.
+#[must_use]
+pub fn picture(map: Map, values: &FloatMap, region: PixelRect, size_px: [u32; 2]) -> Image {
+    let [width_px, height_px] = size_px;
+    let mut rgba8 = vec![0; width_px as usize * height_px as usize * 4];
+    let is_colored = values.texels.iter().any(|texel| texel[1] + texel[2] > 0.0);
+    let [columns, rows] = [values.width, values.height].map(|n| n.max(1));
+    let size = region.size_px.max(glam::UVec2::ONE);
+    for y in 0..region.size_px.y.min(height_px.saturating_sub(region.origin_px.y)) {
+        for x in 0..region.size_px.x.min(width_px.saturating_sub(region.origin_px.x)) {
+            let texel = (y * rows / size.y * columns + x * columns / size.x) as usize;
+            let pixel =
+                (region.origin_px.y + y) as usize * width_px as usize + (region.origin_px.x + x) as usize;
+            if let Some(texel) = values.texels.get(texel) {
+                rgba8[pixel * 4..][..4].copy_from_slice(&color_of(map, *texel, is_colored));
+            }
+        }
+    }
+    Image {
+        width_px,
+        height_px,
+        rgba8,
+    }
+}
+
+fn color_of(map: Map, [r, g, b, a]: [f32; 4], is_colored: bool) -> [u8; 4] {
+    match map {
+        Map::GbufferBase | Map::Appearance if a == 0.0 => NOTHING,
+        Map::GbufferBase | Map::Appearance => {
+            opaque([r, g, b].map(|value| code(255.0 * srgb_from_linear(value))))
+        }
+        Map::Validity => two_sets(r, g, RECEIVER, TOY),
+        Map::Eligible => two_sets(g, r, RECEIVER, TOY),
+        Map::SearchTaps if r == 0.0 => NOTHING,
+        Map::SearchTaps => opaque(color_at(TAPS_RAMP, r.max(1.0).ln() / TAPS_END.ln())),
+        Map::Residual => opaque(color_at(SIGNED_RAMP, 0.5 + (r + g + b) / (6.0 * RESIDUAL_END))),
+        _ if is_colored => opaque([r, g, b].map(|value| code(255.0 * value))),
+        _ => opaque(color_at(GRAY, r)),
+    }
+}
+
+/// The second set lies over the first.
+fn two_sets(first: f32, second: f32, first_color: [u8; 3], second_color: [u8; 3]) -> [u8; 4] {
+    if second > 0.5 {
+        opaque(second_color)
+    } else if first > 0.5 {
+        opaque(first_color)
+    } else {
+        opaque([0; 3])
+    }
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
+    [r, g, b, 255]
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounded and kept within a byte")]
+fn code(value: f32) -> u8 {
+    value.round().clamp(0.0, 255.0) as u8
+}
+
+/// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}

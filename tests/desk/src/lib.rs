@@ -1,0 +1,20 @@
+//! The desktop programs: they run the core over recorded sessions, score what it makes and report what it took.
+
+pub mod alignment;
+pub mod card;
+pub mod check;
+pub mod convert;
+pub mod false_color;
+pub mod files;
+pub mod gizmo;
+pub mod import;
+mod lights_drawn;
+pub mod metrics;
+pub mod opened;
+pub mod output;
+pub mod page;
+pub mod program;
+pub mod progress;
+pub mod replay;
+pub mod report;
+pub mod stored;

@@ -1,0 +1,65 @@
+//! Pictures of the lights that alignment found, beside a report.
+
+use app_core::alignment::LightSearch;
+use app_core::frame::FrameInput;
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use app_core::session::Session;
+
+use crate::alignment::Alignments;
+use crate::false_color::LIGHTS;
+use crate::gizmo;
+use crate::gizmo::Gizmo;
+use crate::page::pictures::Pictures;
+use crate::replay::ReplayError;
+use crate::report::MapEntry;
+
+/// Name of the picture of all directions that lights were looked for in.
+pub(crate) const HEMISPHERE: &str = "hemisphere";
+
+/// Draws the lights of an aligned frame over its photograph, and where lights were found that nobody lists, what each direction
+/// explained.
+pub(crate) fn write_lights(
+    pictures: &mut Pictures,
+    (session, alignments, index): (&dyn Session, &Alignments, usize),
+    preset: Preset,
+) -> Result<Vec<MapEntry>, ReplayError> {
+    let Some(aligned) = alignments.of(index) else {
+        return Ok(Vec::new());
+    };
+    let frame = session.frame(index)?;
+    let scene = session.scene();
+    let input = alignments.input(index, &frame, preset);
+    let given = Gizmo::listed(scene, &FrameInput::from(&frame));
+    let found = Gizmo::aligned(scene, &input, &aligned.alignment.report);
+    let mut picture = Image::clone(&frame.image);
+    let recorded = FrameInput::from(&frame);
+    gizmo::rays(&mut picture, (scene, &recorded), &given, gizmo::GIVEN);
+    gizmo::rays(&mut picture, (scene, &input), &found, gizmo::FOUND);
+    let picture = session.through_lens(index, picture)?;
+    let mut entries = vec![MapEntry {
+        name: LIGHTS.name,
+        file: pictures.write(LIGHTS.name, index, picture.into())?,
+    }];
+    let discovered = &aligned.alignment.report.discovered;
+    let before = index.checked_sub(1).and_then(|before| alignments.of(before));
+    let is_known = before.is_some_and(|before| before.alignment.report.discovered == *discovered);
+    if discovered.is_empty() || is_known {
+        return Ok(entries);
+    }
+    let failed = |reason| ReplayError::Align {
+        index,
+        reason: Box::new(reason),
+    };
+    if let Some(search) = LightSearch::of(&alignments.scene(scene), &input).map_err(failed)? {
+        let listed = given.iter().map(|light| (*light, gizmo::GIVEN));
+        let found = found.iter().map(|light| (*light, gizmo::FOUND));
+        let lights: Vec<_> = listed.chain(found).collect();
+        let picture = gizmo::hemisphere(&search, &input.camera, &lights);
+        entries.push(MapEntry {
+            name: HEMISPHERE,
+            file: pictures.write(HEMISPHERE, index, picture.into())?,
+        });
+    }
+    Ok(entries)
+}

@@ -1,0 +1,43 @@
+//! How a desktop program opens its session, and how it ends.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use crate::stored::{Stored, StoredError};
+
+/// The top folder of the repository, below which programs write unless another folder is named.
+#[must_use]
+pub fn repository() -> &'static Path {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.ancestors().nth(2).unwrap_or(package)
+}
+
+/// Opens a folder or a recording, and says on standard error what is lost of it.
+///
+/// # Errors
+/// When there is none.
+pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
+    let session = Stored::open(path)?;
+    for loss in session.losses() {
+        let _ = writeln!(io::stderr(), "warning: {}: {loss}", path.display());
+    }
+    Ok(session)
+}
+
+/// Success, or failure with one line on standard error that tells the whole cause.
+#[must_use]
+pub fn exit_code(result: anyhow::Result<()>) -> ExitCode {
+    let Err(error) = result else {
+        return ExitCode::SUCCESS;
+    };
+    // Drivers and parsers may speak in several lines.
+    let message = format!("{error:#}")
+        .lines()
+        .map(str::trim)
+        .collect::<Vec<_>>()
+        .join(" ");
+    // Where even this cannot be written, the exit code still tells.
+    let _ = writeln!(io::stderr(), "error: {message}");
+    ExitCode::FAILURE
+}

@@ -1,0 +1,274 @@
+//! What a replay found out, as it stands in `report.json`. The order of the fields is the order in the file.
+
+use app_core::frame::{FrameReport, LeftOut, PassRun, PassTime, Path, PixelRect};
+use app_core::scene::MAX_LIGHTS;
+use app_pipeline::model::state::solution::Fit;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+
+use crate::metrics::flicker::{Flicker, mean_flicker};
+use crate::metrics::{Score, Scores};
+use crate::report::alignment::{AlignmentEntry, LensEntry};
+
+pub mod alignment;
+
+/// A replay of one session.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Name of the session; may be empty.
+    pub session: String,
+    /// Name of the preset.
+    pub preset: &'static str,
+    /// Name of the adapter and of its driver.
+    pub adapter: String,
+    /// Whether the adapter is a processor: its times then say nothing about a graphics card.
+    pub is_software: bool,
+    /// Size of every picture, width first.
+    pub size_px: [u32; 2],
+    /// What was odd about the session as a whole.
+    pub warnings: Vec<String>,
+    /// The lens that photographs were freed of; none where nobody asked for it.
+    pub lens: Option<LensEntry>,
+    /// Means over frames.
+    pub mean: Mean,
+    /// What was learned from the real shadow, as of the last frame; none where nothing was learned.
+    pub fit: Option<FitEntry>,
+    /// One entry a replayed frame.
+    pub frames: Vec<FrameEntry>,
+}
+
+/// Means over frames.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Mean {
+    /// Frames that have a truth.
+    pub n_scored: usize,
+    /// Mean of their scores; none where there are none.
+    pub scores: Option<Scores>,
+    /// Mean flicker over frames of which that before has a truth as well; none where there are none.
+    pub flicker: Option<Flicker>,
+    /// Steady frames: a region was worked on and nothing was learned anew.
+    pub n_steady: usize,
+    /// Mean of their device time, where each has one.
+    pub gpu_ms: Option<f64>,
+    /// Mean of their time on the processor.
+    pub cpu_ms: Option<f64>,
+    /// Mean of their time until the picture was read back.
+    pub wall_ms: Option<f64>,
+    /// Mean time that alignment took on the processor, over all frames; none where nothing was aligned.
+    pub align_ms: Option<f64>,
+}
+
+/// One frame.
+#[derive(Clone, Debug, Serialize)]
+pub struct FrameEntry {
+    /// Its place in the session, from 0.
+    pub index: usize,
+    /// When it was taken.
+    pub time_secs: f64,
+    /// File name of its picture; none where pictures are not written.
+    pub picture: Option<String>,
+    /// File of its false-colour error against the truth, where there is one and pictures are written.
+    pub error: Option<String>,
+    /// The maps between input and picture, where pictures are written and a region was worked on.
+    pub maps: Vec<MapEntry>,
+    /// The rectangle that was worked on; none where the camera frame passed through.
+    pub region: Option<RectEntry>,
+    /// Device time of all passes; none where the device cannot tell.
+    pub gpu_ms: Option<f64>,
+    /// Time that the core took on the processor to hand the frame to the device.
+    pub cpu_ms: f64,
+    /// Time until the picture was back in memory, waiting for the device and copying included.
+    pub wall_ms: f64,
+    /// What ran, in order.
+    pub passes: Vec<PassEntry>,
+    /// What did not run, and why.
+    pub skipped: Vec<SkippedEntry>,
+    /// What was odd about the frame, and how it is degraded.
+    pub warnings: Vec<String>,
+    /// What alignment found; none where the session is replayed as recorded.
+    pub alignment: Option<AlignmentEntry>,
+    /// Error against the truth, where there is one.
+    pub scores: Option<Scores>,
+    /// Flicker since the frame before, where both have a truth.
+    pub flicker: Option<Flicker>,
+}
+
+/// A map as a picture of the whole frame.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MapEntry {
+    /// Name of the map.
+    pub name: &'static str,
+    /// Its file; frames with equal maps share one.
+    pub file: String,
+}
+
+/// A rectangle of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct RectEntry {
+    /// Top left corner.
+    pub origin_px: [u32; 2],
+    /// Width and height.
+    pub size_px: [u32; 2],
+}
+
+/// A pass that ran.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassEntry {
+    /// `capture` or `frame`.
+    pub path: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// How often it ran.
+    pub n_runs: u32,
+    /// Its device time over all its runs; none where the device cannot tell.
+    pub gpu_ms: Option<f64>,
+}
+
+/// Work that was not done.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SkippedEntry {
+    /// What.
+    pub what: &'static str,
+    /// Why.
+    pub why: &'static str,
+}
+
+/// What the fit learned, each as linear red, green and blue.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitEntry {
+    /// Frame over plate where nothing changed: the exposure between the two.
+    pub gain: [f32; 3],
+    /// Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
+    pub bounce: [f32; 3],
+    /// Each light's share of the plate's radiance at the reference point.
+    pub direct_fraction: Vec<[f32; 3]>,
+    /// Radiance of the toy over its base colour: from above, from below, and each light's where it falls straight on.
+    pub toy: Vec<[f32; 3]>,
+}
+
+impl FrameEntry {
+    /// Whether nothing was learned anew, so that its times are those of a frame in the long run.
+    #[must_use]
+    pub fn is_steady(&self) -> bool {
+        self.region.is_some() && self.passes.iter().all(|pass| pass.path != Path::Capture.name())
+    }
+}
+
+impl Mean {
+    /// Means over `frames`.
+    #[must_use]
+    pub fn of(frames: &[FrameEntry]) -> Self {
+        let scores: Vec<Scores> = frames.iter().filter_map(|frame| frame.scores).collect();
+        let flicker: Vec<Flicker> = frames.iter().filter_map(|frame| frame.flicker).collect();
+        let steady: Vec<&FrameEntry> = frames.iter().filter(|frame| frame.is_steady()).collect();
+        let aligned = frames.iter().filter_map(|frame| frame.alignment.as_ref());
+        let align_ms: Vec<f64> = aligned.map(|alignment| alignment.cpu_ms).collect();
+        let gpu_ms: Option<Vec<f64>> = steady.iter().map(|frame| frame.gpu_ms).collect();
+        Self {
+            n_scored: scores.len(),
+            scores: mean_scores(&scores),
+            flicker: mean_flicker(&flicker),
+            n_steady: steady.len(),
+            gpu_ms: gpu_ms.and_then(|times| mean(times.into_iter())),
+            cpu_ms: mean(steady.iter().map(|frame| frame.cpu_ms)),
+            wall_ms: mean(steady.iter().map(|frame| frame.wall_ms)),
+            align_ms: mean(align_ms.into_iter()),
+        }
+    }
+}
+
+/// The mean of scores, region by region; none of none.
+#[must_use]
+pub fn mean_scores(scores: &[Scores]) -> Option<Scores> {
+    let region = |region: fn(&Scores) -> Score| {
+        Some(Score {
+            rmse: mean(scores.iter().map(|scores| region(scores).rmse))?,
+            ssim: mean(scores.iter().map(|scores| region(scores).ssim))?,
+        })
+    };
+    Some(Scores {
+        shadow: region(|scores| scores.shadow)?,
+        toy: region(|scores| scores.toy)?,
+        edge: region(|scores| scores.edge)?,
+        frame: region(|scores| scores.frame)?,
+    })
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
+    let n_values = values.len() as f64;
+    (n_values > 0.0).then(|| values.sum::<f64>() / n_values)
+}
+
+/// The passes of a frame with the times that can be told to be theirs.
+pub(crate) fn pass_entries(report: &FrameReport, times: &[PassTime]) -> Vec<PassEntry> {
+    let entry = |run: &PassRun| {
+        let time = times
+            .iter()
+            .find(|time| (time.path, time.pass) == (run.path, run.pass));
+        PassEntry {
+            path: run.path.name(),
+            name: run.pass,
+            n_runs: run.n_runs,
+            gpu_ms: time.map(|time| time.gpu_ms),
+        }
+    };
+    report.ran.iter().map(entry).collect()
+}
+
+impl FitEntry {
+    pub(crate) fn new(fit: &Fit, n_lights: usize) -> Self {
+        let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
+        Self {
+            gain: rgb(fit.gain),
+            bounce: rgb(fit.receivers[0].bounce),
+            direct_fraction: fit.receivers[0]
+                .direct_fraction
+                .iter()
+                .take(n_lights.min(MAX_LIGHTS))
+                .map(|direct_fraction| rgb(*direct_fraction))
+                .collect(),
+            toy: fit.toy[..2 + n_lights.min(MAX_LIGHTS)]
+                .iter()
+                .map(|light| rgb(*light))
+                .collect(),
+        }
+    }
+}
+
+impl From<PixelRect> for RectEntry {
+    fn from(rect: PixelRect) -> Self {
+        Self {
+            origin_px: rect.origin_px.to_array(),
+            size_px: rect.size_px.to_array(),
+        }
+    }
+}
+
+impl From<&LeftOut> for SkippedEntry {
+    fn from(left_out: &LeftOut) -> Self {
+        Self {
+            what: left_out.what,
+            why: left_out.why,
+        }
+    }
+}
+
+impl Serialize for Score {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut score = serializer.serialize_struct("Score", 2)?;
+        score.serialize_field("rmse", &self.rmse)?;
+        score.serialize_field("ssim", &self.ssim)?;
+        score.end()
+    }
+}
+
+impl Serialize for Scores {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut scores = serializer.serialize_struct("Scores", 4)?;
+        scores.serialize_field("shadow", &self.shadow)?;
+        scores.serialize_field("toy", &self.toy)?;
+        scores.serialize_field("edge", &self.edge)?;
+        scores.serialize_field("frame", &self.frame)?;
+        scores.end()
+    }
+}

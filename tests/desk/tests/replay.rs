@@ -1,0 +1,340 @@
+//! The bundled session end to end: through the library into pictures and a report, and through the program into
+//! errors that a person can act on.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use std::process::{self, Command, Output};
+
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use app_core::session::{Capture, GroundTruth, Session};
+use app_core::wgpu;
+use desk::files::{BUNDLED_SESSION, Folder};
+use desk::metrics::{Score, Scores, score};
+use desk::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
+use desk::progress::Quiet;
+use desk::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
+use desk::report::{Report, mean_scores};
+
+/// The bundled session ends with a frame that shows the real toy's own pose.
+const IDENTITY_FRAME: usize = 4;
+
+fn bundled() -> Capture {
+    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
+}
+
+/// Replays with one preset.
+fn run(session: &Capture, options: &Options) -> Result<Report, ReplayError> {
+    run_all(session, options).map(|mut reports| reports.remove(0))
+}
+
+fn run_all(session: &Capture, options: &Options) -> Result<Vec<Report>, ReplayError> {
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
+    replay(session, Some(session), &mut core, options, &mut Quiet)
+}
+
+#[test]
+fn the_bundled_session_becomes_pictures_and_a_report() {
+    let (session, out) = (bundled(), TemporaryFolder::new("whole"));
+    let options = Options {
+        out: Some(out.to_owned()),
+        ..Options::default()
+    };
+    let report = run(&session, &options).unwrap();
+
+    let mut expected: Vec<String> = (0..session.n_frames()).map(picture_file).collect();
+    expected.extend([PAGE_FILE, INPUTS_FOLDER, MAPS_FOLDER, REPORT_FILE].map(str::to_owned));
+    assert_eq!(out.names(), expected);
+    for index in 0..session.n_frames() {
+        let picture = image::open(out.join(picture_file(index))).unwrap().into_rgba8();
+        let frame = session.frame(index).unwrap().image;
+        assert_eq!(picture.dimensions(), (frame.width_px, frame.height_px));
+        let is_camera_frame = picture.as_raw() == &frame.rgba8;
+        assert_eq!(is_camera_frame, index == IDENTITY_FRAME, "frame {index}");
+    }
+
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join(REPORT_FILE)).unwrap()).unwrap();
+    assert_eq!(json["session"], "llama");
+    assert_eq!(json["frames"].as_array().unwrap().len(), session.n_frames());
+    assert_eq!(json["frames"][0]["passes"][0]["path"], "capture");
+    assert_eq!(json["frames"][1]["passes"][0]["path"], "frame");
+    assert_eq!(json["frames"][IDENTITY_FRAME]["scores"]["frame"]["rmse"], 0.0);
+    assert!(
+        json["frames"][0]["flicker"].is_null() && json["frames"][1]["flicker"]["toy"].as_f64().unwrap() > 0.0
+    );
+    assert!(json["mean"]["flicker"]["shadow"].as_f64().unwrap() > 0.0);
+    assert_eq!(
+        json["fit"]["direct_fraction"].as_array().unwrap().len(),
+        session.scene().lights.len()
+    );
+    let [first, .., last] = [0, 1, 2, 3, 4].map(|index| report.frames[index].scores.unwrap().shadow.rmse);
+    assert!(first > 0.0 && last == 0.0, "{first} {last}");
+}
+
+#[test]
+fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
+    let (session, out) = (bundled(), TemporaryFolder::new("some"));
+    fs::write(out.join(REPORT_FILE), "of an earlier run").unwrap();
+    let options = |frames| Options {
+        frames: Some(frames),
+        out: Some(out.to_owned()),
+        ..Options::default()
+    };
+
+    // Not empty, so that no file can take its place.
+    let obstacle = out.join(picture_file(4));
+    fs::create_dir_all(obstacle.join("full")).unwrap();
+    let error = run(&session, &options(3..5)).unwrap_err().to_string();
+    assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
+    assert_eq!(
+        out.names(),
+        [picture_file(3), picture_file(4), MAPS_FOLDER.to_owned()],
+        "what was whole stays, and no remnants"
+    );
+
+    fs::remove_dir_all(&obstacle).unwrap();
+    let report = run(&session, &options(4..5)).unwrap();
+    assert_eq!(
+        report.frames.iter().map(|frame| frame.index).collect::<Vec<_>>(),
+        [4]
+    );
+    assert_eq!(
+        out.names(),
+        [
+            &picture_file(3),
+            &picture_file(4),
+            PAGE_FILE,
+            INPUTS_FOLDER,
+            MAPS_FOLDER,
+            REPORT_FILE
+        ]
+    );
+}
+
+#[test]
+fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
+    const NAME: &str = "</script><script>alert(1)</script>";
+    let (folder, out) = (TemporaryFolder::new("named"), TemporaryFolder::new("page"));
+    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
+    let index = fs::read_to_string(folder.join("capture.json")).unwrap();
+    let mut index: serde_json::Value = serde_json::from_str(&index).unwrap();
+    index["name"] = NAME.into();
+    fs::write(folder.join("capture.json"), index.to_string()).unwrap();
+    let session = Capture::open(Folder::open(&*folder).unwrap()).unwrap();
+    let options = Options {
+        presets: vec![Preset::Flat, Preset::Balanced],
+        frames: Some(1..2),
+        out: Some(out.to_owned()),
+        ..Options::default()
+    };
+    run_all(&session, &options).unwrap();
+
+    let page = fs::read_to_string(out.join(PAGE_FILE)).unwrap();
+    assert_eq!(
+        page.matches("</script>").count(),
+        2,
+        "one for the data, one for the script"
+    );
+    for remote in [
+        "http:", "https:", "src=\"", "href=", "url(", "@import", "fetch(", "{{",
+    ] {
+        assert!(!page.contains(remote), "{remote}");
+    }
+    let (_, data) = page.split_once("id=\"data\">").unwrap();
+    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    assert_eq!(data["session"], NAME);
+    let mut n_pictures = 0;
+    let mut check = |folder: &serde_json::Value, file: &serde_json::Value| {
+        let path = out.join(folder.as_str().unwrap()).join(file.as_str().unwrap());
+        assert_eq!(
+            image::image_dimensions(&path).unwrap(),
+            (640, 360),
+            "{}",
+            path.display()
+        );
+        n_pictures += 1;
+    };
+    let (inputs, presets) = (&data["frames"][0], data["presets"].as_array().unwrap());
+    check(&"".into(), &inputs["before"]);
+    check(&"".into(), &inputs["truth"]);
+    for preset in presets {
+        let frame = &preset["report"]["frames"][0];
+        check(&preset["folder"], &frame["picture"]);
+        check(&preset["folder"], &frame["error"]);
+        for map in frame["maps"].as_array().unwrap() {
+            check(&preset["folder"], &map["file"]);
+        }
+    }
+    // Inputs, then picture, error and maps of each preset, the lights over the photograph among them.
+    assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 5 + 2 + 11));
+}
+
+#[test]
+fn the_folder_of_a_session_is_never_written_to() {
+    let (session, out) = (bundled(), TemporaryFolder::new("session"));
+    fs::copy(
+        Path::new(BUNDLED_SESSION).join("capture.json"),
+        out.join("capture.json"),
+    )
+    .unwrap();
+    let error = run(
+        &session,
+        &Options {
+            out: Some(out.to_owned()),
+            ..Options::default()
+        },
+    )
+    .unwrap_err();
+    assert!(matches!(error, ReplayError::OutIsSession { .. }), "{error}");
+    assert_eq!(out.names(), ["capture.json"]);
+}
+
+/// Mean RMSE and SSIM over shadow, toy, edge and frame of the bundled session, for pictures that do not depend on this
+/// project's pipeline. Recorded with a scorer in Python that shares no code with ours: scikit-image 0.26,
+/// `structural_similarity` (Gaussian weights, sigma 1.5, biased covariance, data range 255) and `dilation` and
+/// `erosion` by squares.
+const RECORDED_FOR_INPUT: [[f64; 2]; 4] = [
+    [18.8630, 0.84161],
+    [27.6232, 0.67717],
+    [18.5666, 0.67802],
+    [9.8155, 0.95588],
+];
+const RECORDED_FOR_PLATE: [[f64; 2]; 4] = [
+    [34.5451, 0.81998],
+    [55.5540, 0.37039],
+    [31.0878, 0.28529],
+    [18.4957, 0.92791],
+];
+
+#[test]
+fn scores_agree_with_an_independent_scorer() {
+    let session = bundled();
+    let plate = &session.scene().plates[0].image;
+    check_recorded(
+        &mean_over_truths(&session, |_| plate.as_ref().clone()),
+        &RECORDED_FOR_PLATE,
+    );
+    let input = |index| session.frame(index).unwrap().image.as_ref().clone();
+    check_recorded(&mean_over_truths(&session, input), &RECORDED_FOR_INPUT);
+}
+
+fn mean_over_truths(session: &Capture, picture: impl Fn(usize) -> Image) -> Scores {
+    let score_of = |index| {
+        let truth = session.truth(index).unwrap().unwrap();
+        score(&picture(index), &truth).unwrap()
+    };
+    mean_scores(&(0..session.n_frames()).map(score_of).collect::<Vec<_>>()).unwrap()
+}
+
+fn check_recorded(actual: &Scores, recorded: &[[f64; 2]; 4]) {
+    let actual: [Score; 4] = [actual.shadow, actual.toy, actual.edge, actual.frame];
+    for (actual, [rmse, ssim]) in actual.iter().zip(recorded) {
+        // The last digit recorded.
+        assert!(
+            (actual.rmse - rmse).abs() < 1e-4 && (actual.ssim - ssim).abs() < 1e-5,
+            "{actual:?} {rmse} {ssim}"
+        );
+    }
+}
+
+#[test]
+fn the_program_says_what_is_wrong() {
+    let out = TemporaryFolder::new("program");
+    let out_arg = out.to_str().unwrap();
+    let missing = out.join("missing");
+    let missing_arg = missing.to_str().unwrap();
+    let cases: [(&[&str], i32, &str); 7] = [
+        (
+            &["--preset", "dazzling"],
+            2,
+            "preset \"dazzling\" is not built; there are flat, paper, fast, balanced",
+        ),
+        (&["--frames", "3..3"], 2, "3..3"),
+        (&["--frames", "3-4"], 2, "3-4"),
+        (
+            &["--frames", "3..6"],
+            1,
+            "frames 3..6 are asked for, but the session has 5",
+        ),
+        (&["--adapter", "abacus"], 1, "\"abacus\""),
+        (&[missing_arg], 1, missing_arg),
+        (&[out_arg], 1, "capture.json"),
+    ];
+    for (args, code, cause) in cases {
+        let output = program(&[args, &["--out", out_arg]].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {stderr}");
+        let mut lines = stderr.lines().filter(|line| line.starts_with("error: "));
+        let error = lines.next_back().unwrap_or_default();
+        assert!(error.contains(cause), "{args:?}: {stderr}");
+        assert!(!stderr.contains("panicked"), "{args:?}: {stderr}");
+        assert_eq!(out.names(), [""; 0], "{args:?}");
+    }
+}
+
+#[test]
+fn the_program_replays_quietly() {
+    let out = TemporaryFolder::new("quiet");
+    let output = program(&["--quiet", "--frames", "4..5", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
+    let expected = [
+        &picture_file(4),
+        PAGE_FILE,
+        INPUTS_FOLDER,
+        MAPS_FOLDER,
+        REPORT_FILE,
+    ];
+    assert_eq!(out.names(), expected);
+}
+
+fn program(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_replay"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+/// An empty folder that goes with its test.
+struct TemporaryFolder(PathBuf);
+
+impl TemporaryFolder {
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("replay-{name}-{}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// What lies in it, in order.
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Deref for TemporaryFolder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        // A remnant in the target folder does no harm.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

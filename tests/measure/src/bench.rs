@@ -1,0 +1,250 @@
+//! Speed against error: presets over sessions, timed by what is new in a frame, and where nothing is compiled any more.
+
+mod basin;
+mod exact;
+mod front;
+mod kinds;
+mod table;
+mod withheld;
+
+use std::ops::Range;
+
+use app_core::camera_frame::PlaneError;
+use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
+use app_core::governor::Step;
+use app_core::preset::Preset;
+use app_core::session::{Capture, Session};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::Map;
+
+use crate::count::count;
+use crate::planar::{BT601_FULL, planar};
+use crate::sized::{SizePx, sized_input, sized_scene};
+use desk::alignment::{Alignments, Lights, Ratio};
+use desk::metrics::Scores;
+use desk::metrics::flicker::Flicker;
+use desk::progress::Quiet;
+use desk::replay;
+use desk::replay::{ReplayError, replay_aligned};
+use desk::report::Report;
+
+pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
+pub use front::{Point, front, front_drawing, points};
+pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
+pub(crate) use table::aligned;
+pub use table::{csv, json, table};
+pub use withheld::{Rebuilt, rebuild, rebuilt_table};
+
+/// Presets that are also measured with exact visibility, which tells errors of visibility from all others.
+const EXACT_PRESETS: &[Preset] = &[Preset::Paper, Preset::Balanced];
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The presets, in the order of the rows.
+    pub presets: Vec<Preset>,
+    /// Whether to add rows of what the governor turns down of `balanced`, one step after the other.
+    pub with_front: bool,
+    /// How often each frame is timed; at least 1.
+    pub n_repeats: usize,
+    /// The frames, all without it.
+    pub frames: Option<Range<usize>>,
+    /// Size of the pictures that are timed and counted, the session's own without it; errors are always of that.
+    pub size_px: Option<SizePx>,
+    /// Whether they come as a phone's planes rather than as pixels.
+    pub as_planes: bool,
+    /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
+    pub with_exact: bool,
+    /// Whether cameras, toy and lights are first aligned by the pictures; with exact visibility they never are.
+    pub is_aligned: bool,
+    /// Where the lights come from then.
+    pub lights: Lights,
+    /// The number that is looked for then.
+    pub ratio: Ratio,
+}
+
+/// One preset on one session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Name of the session.
+    pub session: String,
+    /// Name of the preset, `+exact` behind it where visibility is the reference's.
+    pub preset: String,
+    /// Number of frames.
+    pub n_frames: usize,
+    /// Mean scores over those frames that have a truth.
+    pub scores: Option<Scores>,
+    /// Mean flicker over those of which the frame before has one as well.
+    pub flicker: Option<Flicker>,
+    /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
+    pub align_ms: Option<f64>,
+    /// Width and height of the pictures.
+    pub size_px: [u32; 2],
+    /// Times of each kind of frame; none where visibility is the reference's, or nothing was worked on.
+    pub times: Vec<KindTimes>,
+    /// Candidates of the ring search for a texel that needed it, on average; none without a search.
+    pub n_taps: Option<f64>,
+}
+
+/// Measures all presets on one session.
+///
+/// # Errors
+/// When a frame cannot be read, made or scored.
+pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Vec<Row>, ReplayError> {
+    let mut rows = Vec::new();
+    let alignments = replay::alignments(session, &replay_options(options))?;
+    for &preset in &options.presets {
+        rows.push(measure(session, core, (preset, &[]), (options, &alignments))?);
+    }
+    for steps in front::turned_down().filter(|_| options.with_front) {
+        let setting = (Preset::Balanced, steps);
+        rows.push(measure(session, core, setting, (options, &alignments))?);
+    }
+    compare_with_paper(&mut rows);
+    if options.with_exact {
+        let presets = options
+            .presets
+            .iter()
+            .filter(|preset| EXACT_PRESETS.contains(preset));
+        for &preset in presets {
+            rows.push(exact::measure(session, core, preset, options)?);
+        }
+    }
+    Ok(rows)
+}
+
+/// Divides the time of each kind of frame by that of the published method's.
+fn compare_with_paper(rows: &mut [Row]) {
+    let Some(paper) = rows.iter().find(|row| row.preset == Preset::Paper.name()) else {
+        return;
+    };
+    let paper = paper.times.clone();
+    for times in rows.iter_mut().flat_map(|row| &mut row.times) {
+        let same = paper.iter().find(|paper| paper.kind == times.kind);
+        let both = times.frame_ms().zip(same.and_then(KindTimes::frame_ms));
+        times.ratio_to_paper = both.map(|(own, paper)| own / paper);
+    }
+}
+
+fn measure(
+    session: &Capture,
+    core: &mut Core,
+    (preset, turned_down): (Preset, &'static [Step]),
+    (options, alignments): (&Options, &Alignments),
+) -> Result<Row, ReplayError> {
+    let asked = replay::Options {
+        presets: vec![preset],
+        turned_down,
+        ..replay_options(options)
+    };
+    // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
+    let mut reports = replay_aligned((session, Some(session)), core, &asked, alignments, &mut Quiet)?;
+    // One preset, one report.
+    let report = reports.swap_remove(0);
+    let inputs = inputs(session, (&report, preset), alignments)?;
+    Ok(Row {
+        session: report.session,
+        preset: front::named(preset, turned_down),
+        n_frames: report.frames.len(),
+        scores: report.mean.scores,
+        flicker: report.mean.flicker,
+        align_ms: report.mean.align_ms,
+        n_taps: mean_taps(core, &inputs)?,
+        size_px: options.size_px.unwrap_or(own_px(session)),
+        times: times(session, core, (preset, turned_down), (options, &inputs))?,
+    })
+}
+
+/// Times and costs in pictures of the size that is asked for.
+fn times(
+    session: &Capture,
+    core: &mut Core,
+    (preset, turned_down): (Preset, &[Step]),
+    (options, inputs): (&Options, &[FrameInput]),
+) -> Result<Vec<KindTimes>, ReplayError> {
+    let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
+        Some(size_px) => {
+            let inputs = inputs.iter().take(kinds::MOST_INPUTS);
+            let scene = sized_scene(session.scene(), size_px);
+            core.set_scene(scene.clone(), preset)?;
+            core.turn_down(turned_down)?;
+            (scene, inputs.map(|input| sized_input(input, size_px)).collect())
+        }
+        None => (session.scene().clone(), inputs.to_vec()),
+    };
+    let inputs = if options.as_planes {
+        as_planes(inputs)?
+    } else {
+        inputs
+    };
+    let mut times = kinds::measure(core, &inputs, options.n_repeats)?;
+    if let Some(first) = inputs.first() {
+        for (times, counted) in times.iter_mut().zip(count(&scene, (preset, turned_down), first)?) {
+            times.counted = Some(counted);
+        }
+    }
+    Ok(times)
+}
+
+/// The same frames as phones deliver them.
+fn as_planes(inputs: Vec<FrameInput>) -> Result<Vec<FrameInput>, PlaneError> {
+    let planes = |input: FrameInput| {
+        let image = planar(input.image.rgba(), BT601_FULL)?.into();
+        Ok(FrameInput { image, ..input })
+    };
+    inputs.into_iter().map(planes).collect()
+}
+
+fn own_px(session: &Capture) -> SizePx {
+    [session.scene().width_px, session.scene().height_px]
+}
+
+fn replay_options(options: &Options) -> replay::Options {
+    replay::Options {
+        presets: options.presets.clone(),
+        turned_down: &[],
+        frames: options.frames.clone(),
+        out: None,
+        is_aligned: options.is_aligned,
+        lights: options.lights,
+        ratio: options.ratio,
+        lens: None,
+    }
+}
+
+/// The replayed frames on which something was worked on, as the core was given them.
+fn inputs(
+    session: &Capture,
+    (report, preset): (&Report, Preset),
+    alignments: &Alignments,
+) -> Result<Vec<FrameInput>, ReplayError> {
+    let worked = report.frames.iter().filter(|frame| frame.region.is_some());
+    worked
+        .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?, preset)))
+        .collect()
+}
+
+fn mean_taps(core: &mut Core, inputs: &[FrameInput]) -> Result<Option<f64>, CoreError> {
+    let mut taps = Vec::new();
+    for input in inputs {
+        core.frame(input)?;
+        let map = core.read_map(Map::SearchTaps)?;
+        let texels = map.iter().flat_map(|map| &map.texels);
+        taps.extend(texels.map(|texel| f64::from(texel[0])).filter(|taps| *taps > 0.0));
+    }
+    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 texels")]
+    let n_texels = taps.len() as f64;
+    Ok((!taps.is_empty()).then(|| taps.iter().sum::<f64>() / n_texels))
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = values.get(middle).copied()?;
+    Some(if values.len() % 2 == 1 {
+        upper
+    } else {
+        0.5 * (values[middle - 1] + upper)
+    })
+}

@@ -1,0 +1,206 @@
+//! Measures presets over recorded sessions: speed against error, as a table and as bench.csv.
+
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::session::{Capture, Session};
+use app_core::wgpu;
+use clap::Parser;
+use desk::alignment::{Lights, RatioArgs};
+use desk::files::BUNDLED_SESSION;
+use desk::opened;
+use desk::opened::Opened;
+use desk::output::{make_folder, remove_file, write_png, write_whole};
+use desk::program::{exit_code, open_session, repository};
+use measure::bench::{
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front_drawing, json, rebuild,
+    rebuilt_table, table,
+};
+use measure::sized::{SizePx, parse_size};
+
+/// Where the result goes that was given no place, below the top of the repository.
+const RESULTS: &str = "target/bench";
+/// File name of the result.
+const CSV_FILE: &str = "bench.csv";
+/// The same for programs.
+const JSON_FILE: &str = "bench.json";
+/// Error against time.
+const FRONT_FILE: &str = "front.svg";
+
+/// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table, bench.csv and bench.json.
+#[derive(Parser)]
+#[command(name = "bench", bin_name = "cargo xtask bench")]
+struct Args {
+    /// Folders of sessions, or recordings [default: the bundled one]
+    sessions: Vec<PathBuf>,
+    /// Folder for bench.csv [default: target/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Presets, apart by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    presets: Vec<Preset>,
+    /// How often each frame is timed
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Only the first N frames of each session
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    first: Option<u16>,
+    /// Time and count pictures of this size; errors are of the session's own [default: the session's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
+    size: Option<SizePx>,
+    /// Time and count pictures as a phone's planes of luma and chroma rather than as pixels
+    #[arg(long)]
+    planes: bool,
+    /// Add rows of what the governor turns down, one step after the other, and draw error against time
+    #[arg(long)]
+    front: bool,
+    /// Add rows with visibility from rays, which takes minutes
+    #[arg(long)]
+    exact: bool,
+    /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens"])]
+    withheld: bool,
+    /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
+    basin: bool,
+    /// Where the directions of these disturbances are drawn from
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
+    seed: u64,
+    /// How many of them
+    #[arg(long, value_name = "N", default_value_t = 24, requires = "basin", value_parser = clap::value_parser!(u16).range(1..))]
+    draws: u16,
+    /// Take cameras, poses and lights as recorded, without aligning them by the pictures
+    #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
+    as_given: bool,
+    /// Put the session's list of lights aside, and find them by their shadows
+    #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
+    lights: Lights,
+    #[command(flatten)]
+    ratio: RatioArgs,
+    /// Part of a graphics adapter's name [default: the fastest]
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Args::parse()))
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let bundled = [PathBuf::from(BUNDLED_SESSION)];
+    let folders = if args.sessions.is_empty() {
+        &bundled[..]
+    } else {
+        &args.sessions
+    };
+    let adapter = args
+        .adapter
+        .clone()
+        .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    let results = || repository().join(RESULTS);
+    let out = args.out.clone().unwrap_or_else(results);
+    let result = out.join(CSV_FILE);
+    make_folder(&out)?;
+    if args.basin {
+        return basins(folders, args, &out);
+    }
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    if args.withheld {
+        return rebuild_all(folders, &mut core, args, &out);
+    }
+    // A result in the folder means that all sessions were measured.
+    remove_file(&result)?;
+    let mut rows = Vec::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let measured = measure(folder, &mut core, args);
+        rows.extend(measured.with_context(|| folder.display().to_string())?);
+    }
+    write_whole(&out.join(JSON_FILE), format!("{:#}\n", json(&rows)).as_bytes())?;
+    if args.front {
+        let drawing = front_drawing(&rows).map_err(anyhow::Error::msg)?;
+        write_whole(&out.join(FRONT_FILE), drawing.as_bytes())?;
+    }
+    write_whole(&result, csv(&rows).as_bytes())?;
+    let text = table(&rows, &core.adapter_name(), core.is_software());
+    io::stdout()
+        .write_all(format!("{text}{}\n", result.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+/// Prints from how far off alignment comes back, and writes tables and drawings. Needs no device.
+fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
+    let mut text = String::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let capture = Capture::open(open_session(folder)?)?;
+        let draws = basin(&capture, args.seed, args.draws);
+        let draws = draws.with_context(|| folder.display().to_string())?;
+        let name = &capture.scene().name;
+        let drawing = basin_drawing(name, &draws).map_err(anyhow::Error::msg)?;
+        write_whole(
+            &out.join(format!("{name}-basin.csv")),
+            basin_csv(&draws).as_bytes(),
+        )?;
+        write_whole(&out.join(format!("{name}-basin.svg")), drawing.as_bytes())?;
+        text.push_str(&format!("{name}\n{}", basin_table(&draws)));
+    }
+    text.push_str(
+        "Median and worst of what is left, against what is recorded; starts are by sixths of the largest.\n",
+    );
+    io::stdout()
+        .write_all(format!("{text}{}\n", out.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+/// Prints how well real shadows are rebuilt, and writes the pictures.
+fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) -> anyhow::Result<()> {
+    let mut all = Vec::new();
+    for folder in folders {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        let capture = Capture::open(open_session(folder)?)?;
+        let rebuilt = rebuild(&capture, core, &presets(args), !args.as_given);
+        all.extend(rebuilt.with_context(|| folder.display().to_string())?);
+    }
+    for one in &all {
+        let file = format!("{}-{}-rebuilt_{:04}.png", one.session, one.preset, one.frame);
+        write_png(&out.join(file), &one.picture)?;
+    }
+    io::stdout()
+        .write_all(format!("{}{}\n", rebuilt_table(&all), out.display()).as_bytes())
+        .context("writing to standard output")
+}
+
+fn presets(args: &Args) -> Vec<Preset> {
+    if args.presets.is_empty() {
+        Preset::ALL.to_vec()
+    } else {
+        args.presets.clone()
+    }
+}
+
+fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
+    let Opened { capture, .. } = opened::open(folder, args.ratio.lens(), args.lights)?;
+    let options = Options {
+        presets: presets(args),
+        with_front: args.front,
+        n_repeats: usize::from(args.repeats),
+        frames: args.first.map(|n_frames| Range {
+            start: 0,
+            end: usize::from(n_frames),
+        }),
+        size_px: args.size,
+        as_planes: args.planes,
+        with_exact: args.exact,
+        is_aligned: !args.as_given,
+        lights: args.lights,
+        ratio: args.ratio.asked(),
+    };
+    Ok(bench(&capture, core, &options)?)
+}

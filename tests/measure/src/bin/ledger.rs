@@ -1,0 +1,91 @@
+//! Prints what frames of a session must cost on any device, pass by pass. Needs no device.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use app_core::frame::FrameInput;
+use app_core::preset::Preset;
+use app_core::scene::Pose;
+use app_core::session::{Capture, Session};
+use clap::Parser;
+use desk::files::BUNDLED_SESSION;
+use desk::program::{exit_code, open_session};
+use measure::count::{count, ledgers};
+use measure::scaling::{by_area, by_lights, by_picture, by_triangles};
+use measure::sized::{SizePx, parse_size, sized_input, sized_scene};
+use measure::stability::draw;
+
+/// Say what frames of a session must cost on any device, pass by pass: triangles, vertices, bytes that a tiler moves, copies
+/// of the screen; for a new pose, a new picture and a new view.
+#[derive(Parser)]
+#[command(name = "ledger", bin_name = "cargo xtask ledger")]
+struct Args {
+    /// Folder of the session, or a recording [default: the bundled one]
+    session: Option<PathBuf>,
+    /// Presets, apart by commas
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "balanced")]
+    presets: Vec<Preset>,
+    /// In pictures, and on a screen, of this size [default: the session's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
+    size: Option<SizePx>,
+    /// Instead, draw how the cost of a ball grows with picture, region, lights and triangles, into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["session", "presets", "size"])]
+    scaling: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Args::parse()))
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    if let Some(folder) = &args.scaling {
+        return draw_scaling(folder);
+    }
+    let folder = args
+        .session
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(BUNDLED_SESSION));
+    let session = Capture::open(open_session(&folder)?)?;
+    let own_px = [session.scene().width_px, session.scene().height_px];
+    let size_px = args.size.unwrap_or(own_px);
+    let scene = sized_scene(session.scene(), size_px);
+    let first = first_moved(&session)?.context("no frame shows another pose than the physical one")?;
+    let input = sized_input(&first, size_px);
+    let [width, height] = size_px;
+    let mut text = String::new();
+    for &preset in &args.presets {
+        let counted = count(&scene, (preset, &[]), &input)?;
+        text.push_str(&format!(
+            "{} {preset} {width} x {height}\n{}",
+            scene.name,
+            ledgers(&counted)
+        ));
+    }
+    io::stdout()
+        .write_all(text.as_bytes())
+        .context("writing to standard output")
+}
+
+fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    for sweep in [by_picture()?, by_area()?, by_lights()?, by_triangles()?] {
+        draw(folder, &sweep)?;
+        let path = folder.join(format!("{}.svg", sweep.name));
+        writeln!(io::stdout(), "{}", path.display()).context("writing to standard output")?;
+    }
+    Ok(())
+}
+
+/// The first frame that is worked on.
+fn first_moved(session: &Capture) -> anyhow::Result<Option<FrameInput>> {
+    for index in 0..session.n_frames() {
+        let input = FrameInput::from(&session.frame(index)?);
+        let physical: &Pose = &session.scene().physical_pose;
+        if input.shown_pose != *physical {
+            return Ok(Some(input));
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,15 @@
+//! The measuring programs, and the photographer that makes their scenes.
+
+pub mod ball;
+pub mod bench;
+pub mod count;
+pub mod glb;
+pub mod heap;
+pub mod photographer;
+pub mod planar;
+pub mod process;
+pub mod profiled;
+pub mod random;
+pub mod scaling;
+pub mod sized;
+pub mod stability;

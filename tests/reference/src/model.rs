@@ -1,0 +1,284 @@
+//! What every pass knows of the scene, the model of the receiver, and which values carry evidence: CPU reference of
+//! `common/globals.wgsl`, `common/model.wgsl` and `common/pixel.wgsl`.
+
+use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
+use app_pipeline::geometry::scene_layout::SceneLayout;
+use app_pipeline::geometry::view::View;
+use app_pipeline::passes::globals::globals;
+use app_scene::geometry::light_points::light_in_plane;
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
+
+use super::raster::Raster;
+use super::real::{Real, Vector, transform};
+
+/// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
+pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
+/// Linear value of the 8-bit code 250: brighter ones may be clipped.
+pub(super) const BRIGHTEST_USABLE: f64 = 0.955_973_35;
+
+/// What a pixel counts that may be clipped in both pictures.
+const CLIPPED_WEIGHT: f64 = 1e-3;
+
+/// The work region over the receivers, and the lights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// The planes that catch shadows.
+    pub receivers: Vec<ReceiverPlane>,
+    /// Size of the region, in pixels.
+    pub size_px: UVec2,
+    /// Width of the fade at the left, top, right and bottom edge, in pixels; 0 where there is none.
+    pub border_px: [f64; 4],
+    /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
+    pub lights: Vec<DVec4>,
+}
+
+/// One receiver as the camera sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReceiverPlane {
+    /// From anchor space.
+    pub plane_from_anchor: DMat4,
+    /// From (u, v, 1) in pixels of the region to (x, z, w) on the receiver; w > 0 in front of the camera.
+    pub plane_from_region_px: DMat3,
+    /// The lights in plane space, homogeneous.
+    pub lights: Vec<DVec4>,
+    /// Where the lights' shares are stated, (x, z) in plane space.
+    pub reference_in_plane: DVec2,
+    /// Where the receiver ends.
+    pub rect: PlaneRect,
+}
+
+/// A point of a receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReceiverPoint {
+    /// Which receiver.
+    pub receiver: usize,
+    /// (x, z) in its plane space.
+    pub in_plane: DVec2,
+}
+
+impl ReceiverPlane {
+    /// The point of the endless plane, (x, z) in metres, that is seen at `region_px`.
+    #[must_use]
+    pub fn plane_point<R: Real>(&self, region_px: DVec2) -> Option<DVec2> {
+        let at = transform::<R>(&self.plane_from_region_px, region_px.extend(1.0).into());
+        let [x, z, w] = at.0;
+        (w > R::ZERO).then(|| (Vector([x, z]) / w).into())
+    }
+
+    /// Where a point of the plane is seen.
+    #[must_use]
+    pub fn region_px(&self, in_plane: DVec2) -> Option<DVec2> {
+        let at = self.plane_from_region_px.inverse() * in_plane.extend(1.0);
+        (at.z > 0.0).then(|| at.truncate() / at.z)
+    }
+
+    /// Whether the camera is before the receiver: then x and z turn in the picture as right and down do.
+    #[must_use]
+    pub fn shows_front(&self) -> bool {
+        self.plane_from_region_px.determinant() > 0.0
+    }
+
+    /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; none from behind the receiver.
+    #[must_use]
+    pub fn falloff<R: Real>(&self, i: usize, in_plane: DVec2) -> R {
+        let light = self.lights[i];
+        if light.y <= 0.0 {
+            return R::ZERO;
+        }
+        if light.w == 0.0 {
+            return R::ONE;
+        }
+        let irradiance = |at: DVec2| {
+            let at = DVec3::new(at.x, 0.0, at.y);
+            let to_light = Vector::from(light.truncate()) - Vector::from(at);
+            let cosine: R = to_light.normalize()[1];
+            cosine / to_light.dot(to_light)
+        };
+        irradiance(in_plane) / irradiance(self.reference_in_plane)
+    }
+}
+
+impl Region {
+    /// The region `rect` of a camera's picture.
+    #[must_use]
+    pub fn new(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Self {
+        let globals = globals(view, rect, layout);
+        let world_from_anchor = layout.world_from_anchor();
+        let lights_in = |space_from_world: &DMat4| {
+            let lights = layout.lights.iter();
+            lights
+                .map(|light| light_in_plane(light, space_from_world))
+                .collect()
+        };
+        let receivers = layout.receivers.iter().map(|receiver| {
+            let plane_from_world = receiver.world_from_plane.inverse();
+            let toy = (plane_from_world * world_from_anchor).transform_point3(layout.toy_in_anchor);
+            ReceiverPlane {
+                plane_from_anchor: plane_from_world * world_from_anchor,
+                plane_from_region_px: view.plane_from_region_px(rect, &receiver.world_from_plane),
+                lights: lights_in(&plane_from_world),
+                reference_in_plane: receiver.rect.nearest(DVec2::new(toy.x, toy.z)),
+                rect: receiver.rect,
+            }
+        });
+        Self {
+            receivers: receivers.collect(),
+            size_px: rect.size_px,
+            border_px: globals.border_px.map(f64::from),
+            lights: lights_in(&world_from_anchor.inverse()),
+        }
+    }
+
+    /// The nearest receiver seen at `region_px`, and the point of it; none where that is the receiver's back.
+    #[must_use]
+    pub fn receiver_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        self.surface_point::<R>(region_px)
+            .filter(|point| self.plane_of(*point).shows_front())
+    }
+
+    /// The nearest receiver seen at `region_px`, from whichever side, and the point of it.
+    #[must_use]
+    pub fn surface_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
+            let in_plane = plane.plane_point::<R>(region_px)?;
+            let [_, _, inverse_depth] =
+                transform::<R>(&plane.plane_from_region_px, region_px.extend(1.0).into()).0;
+            plane
+                .rect
+                .holds(in_plane)
+                .then_some((inverse_depth, ReceiverPoint { receiver, in_plane }))
+        });
+        hits.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
+    }
+
+    /// The receiver that a point is of.
+    #[must_use]
+    pub fn plane_of(&self, point: ReceiverPoint) -> &ReceiverPlane {
+        &self.receivers[point.receiver]
+    }
+}
+
+/// What is learned from the real shadow and the real toy, per colour channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Frame over plate where nothing changed.
+    pub gain: DVec3,
+    /// Each light's power over that when the plate was taken.
+    pub intensities: Vec<DVec3>,
+    /// What is learned of each receiver.
+    pub receivers: Vec<ReceiverSolution>,
+    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor for what is received of
+    /// each light at the power it had for the plate.
+    pub toy: Vec<DVec3>,
+}
+
+/// What is learned of one receiver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReceiverSolution {
+    /// Light thrown back by the toy, as a fraction of the ambient light it takes away.
+    pub bounce: DVec3,
+    /// Each light's share of the plate's radiance at the reference point.
+    pub direct_fractions: Vec<DVec3>,
+    /// Part of the energy of the plate's column that pixels give which are clipped in frame and plate.
+    pub clipped: DVec3,
+}
+
+impl Solution {
+    /// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
+    #[must_use]
+    pub fn plate_falloff<R: Real>(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
+        let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
+        let plane = region.plane_of(point);
+        let more = direct_fractions.map(|(i, direct_fraction)| {
+            Vector::from(*direct_fraction) * (plane.falloff::<R>(i, point.in_plane) - R::ONE)
+        });
+        let more: Vector<R, 3> = more.sum();
+        (Vector::splat(R::ONE) + more).into()
+    }
+
+    /// A light's share of the plate's radiance at a point.
+    #[must_use]
+    pub fn light_fraction<R: Real>(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
+        let falloff: R = region.plane_of(point).falloff(i, point.in_plane);
+        let at_reference = Vector::from(self.receivers[point.receiver].direct_fractions[i]);
+        let here = at_reference * falloff / Vector::from(self.plate_falloff::<R>(region, point));
+        here.into()
+    }
+
+    /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
+    ///
+    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V.
+    #[must_use]
+    pub fn receiver_model<R: Real>(
+        &self,
+        region: &Region,
+        point: ReceiverPoint,
+        ambient: f64,
+        visibility: DVec4,
+    ) -> DVec3 {
+        let bounce = Vector::from(self.receivers[point.receiver].bounce);
+        let ambient = R::from_f64(ambient);
+        let mut ratio = Vector::splat(ambient) + bounce * ambient * (R::ONE - ambient);
+        for (i, intensity) in self.intensities.iter().enumerate() {
+            let lit = Vector::from(*intensity) * R::from_f64(visibility[i]);
+            let fraction = Vector::from(self.light_fraction::<R>(region, i, point));
+            ratio = ratio + fraction * (lit - Vector::splat(ambient));
+        }
+        ratio.into()
+    }
+}
+
+/// What the passes see of a frame, over the region. Colours are linear.
+#[derive(Clone, Debug)]
+pub struct Pictures {
+    /// The camera's frame.
+    pub frame: Raster<DVec3>,
+    /// The place without the toy.
+    pub plate: Raster<DVec3>,
+    /// 1 where the frame shows the receiver alone.
+    pub seen: Raster<f64>,
+    /// Visibility of each light with the physical toy.
+    pub visibility: Raster<DVec4>,
+    /// Visibility of the ambient light with the physical toy, of any size.
+    pub ambient: Raster<f64>,
+}
+
+/// The centre of a pixel.
+#[must_use]
+pub fn centre_px(texel: UVec2) -> DVec2 {
+    texel.as_dvec2() + 0.5
+}
+
+/// The value of a coarse map of the whole region at `region_px`.
+#[must_use]
+pub fn coarse_at<R: Real>(map: &Raster<f64>, region: &Region, region_px: DVec2) -> R {
+    let sizes_px = [map.size(), region.size_px].map(|size_px| Vector::from(size_px.as_dvec2()));
+    let at: Vector<R, 2> = Vector::from(region_px) * sizes_px[0] / sizes_px[1];
+    map.bilinear(at, R::from_f64)
+}
+
+/// Whether both linear values may be clipped.
+#[must_use]
+pub fn is_clipped<R: Real>(a: R, b: R) -> bool {
+    a.to_f64().min(b.to_f64()) > BRIGHTEST_USABLE
+}
+
+/// How much a pixel of frame and plate tells of the light there, in one channel.
+#[must_use]
+pub fn evidence<R: Real>(frame: R, plate: R) -> R {
+    if is_clipped(frame, plate) {
+        R::from_f64(CLIPPED_WEIGHT)
+    } else {
+        usable(frame, plate)
+    }
+}
+
+/// 1 where both linear values carry evidence, else 0.
+pub(super) fn usable<R: Real>(a: R, b: R) -> R {
+    let is_within = |value: R| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value.to_f64());
+    if is_within(a) && is_within(b) {
+        R::ONE
+    } else {
+        R::ZERO
+    }
+}

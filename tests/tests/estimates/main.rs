@@ -1,0 +1,16 @@
+//! What is estimated from pictures: cameras, poses, lights, lenses and plates.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod alignment;
+mod discovery;
+mod focal_length;
+mod lens_found;
+mod moved_lights;
+mod plate_taker;
+mod pose_filter;
+mod probe;
+mod probe_session;
+mod uncertainty;
+mod withheld;
+mod world_scale;

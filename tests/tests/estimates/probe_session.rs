@@ -1,0 +1,199 @@
+//! A session whose lights nobody lists: its probe tells them, and the toy's shadow makes them exact.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
+
+use app_core::alignment::{Aligner, DiscoveredLight};
+use app_core::preset::Preset;
+use app_core::scene::{Light, Probe};
+use app_core::session::{Capture, Session};
+use desk::alignment::{Alignments, Asked, Lights, SeenLight, Source};
+use desk::check::check;
+use desk::files::Folder;
+use desk::report::alignment::{AlignmentEntry, ErrorEntry};
+use glam::{DMat4, DVec3};
+use measure::photographer::world::{camera, toward};
+use measure::photographer::{Exposure, Lamp, Mirror, Quality, Shot, World, folder};
+
+const SIZE_PX: [u32; 2] = [512, 288];
+/// Where the lens lies, beside the toy: near lights stand some 10 degrees elsewhere over it.
+const LENS: DVec3 = DVec3::new(-0.14, 0.0, 0.06);
+
+fn lamps() -> [Lamp; 2] {
+    [
+        Lamp::bulb(toward(50.0, 30.0), 0.01, 0.4),
+        Lamp::bulb(0.8 * toward(60.0, -70.0), 0.02, 0.16),
+    ]
+}
+
+/// Boxes under two bulbs and a lens, in as many pictures as there are viewers.
+fn shot(viewers: &[DVec3]) -> (World, Shot) {
+    let mut world = World::boxes().resized(SIZE_PX).lit_by(lamps().to_vec());
+    world.quality = Quality {
+        n_across: 2,
+        n_light_rays: 48,
+        n_sky_rays: 32,
+    };
+    let mut shot = Shot::of(&world).unwrap();
+    let lens = Mirror::lens(DMat4::from_translation(LENS));
+    let pictures = viewers.iter().zip(1..).map(|(eye, seed)| {
+        let exposure = Exposure {
+            seed,
+            ..Exposure::default()
+        };
+        lens.photograph(
+            (&world.lamps, world.sky),
+            (&camera(SIZE_PX, *eye, LENS), SIZE_PX),
+            &exposure,
+        )
+    });
+    shot.scene.probe = Some(Probe {
+        pictures: pictures.collect(),
+        shape: lens.shape,
+    });
+    (world, shot)
+}
+
+/// With the lamps listed.
+static SESSION: LazyLock<(PathBuf, Shot)> = LazyLock::new(|| {
+    let (world, shot) = shot(&[DVec3::new(-0.3, 0.3, 0.2), DVec3::new(0.05, 0.3, 0.2)]);
+    let session = Path::new(env!("CARGO_TARGET_TMPDIR")).join("probe-session");
+    folder::write(&session, &world, &shot).unwrap();
+    (session, shot)
+});
+
+fn aligned(lights: Lights) -> (Capture, Alignments) {
+    let capture = Capture::open(Folder::open(&SESSION.0).unwrap()).unwrap();
+    let asked = Asked {
+        lights,
+        ..Asked::default()
+    };
+    let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
+    (capture, alignments)
+}
+
+fn of_each(errors: impl Iterator<Item = Option<ErrorEntry>>) -> [f64; 2] {
+    let mut deg = [f64::INFINITY; 2];
+    for error in errors.flatten() {
+        deg[error.index] = deg[error.index].min(error.direction_deg);
+    }
+    deg
+}
+
+/// Within .3 degrees before and within .1 after the shadow is looked at.
+#[test]
+fn the_shadow_makes_exact_what_the_probe_tells() {
+    let (_, alignments) = aligned(Lights::Probe);
+    let entry = AlignmentEntry::from(alignments.of(0).unwrap());
+    let probe = entry.probe.unwrap();
+    assert_eq!(
+        (probe.lights.len(), probe.rejected.len(), entry.discovered.len()),
+        (2, 0, 2)
+    );
+    let before_deg = of_each(probe.lights.into_iter().map(|light| light.against_listed));
+    let after_deg = of_each(entry.discovered.into_iter().map(|light| light.against_listed));
+    assert!(before_deg.iter().all(|deg| *deg < 0.3), "{before_deg:?}");
+    assert!(after_deg.iter().all(|deg| *deg < 0.1), "{after_deg:?}");
+}
+
+/// One view tells no distance, and the same place in the sky of the lens is 10 degrees off over the toy.
+#[test]
+fn one_view_is_enough_for_the_shadow() {
+    let (_, mut shot) = shot(&[DVec3::new(-0.1, 0.3, 0.2)]);
+    shot.scene.lights.clear();
+    let found = Aligner::new(shot.scene.clone()).align(&shot.input).unwrap();
+    let told = found.report.probe.as_ref().unwrap();
+    assert!(
+        told.lights.iter().all(|light| light.distance_m.is_none()),
+        "{told:?}"
+    );
+    let bounds = shot.scene.toy.bounds_of_pose(&shot.scene.physical_pose).unwrap();
+    let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
+    let middle = shot.input.world_from_object.transform_point3(middle);
+    assert_eq!(found.report.discovered.len(), 2, "{:#?}", found.report);
+    for lamp in lamps() {
+        let truth = SeenLight::from(middle, &lamp.light).direction_in_world;
+        let off_deg = |direction: DVec3| direction.angle_between(truth).to_degrees();
+        let told = told
+            .lights
+            .iter()
+            .map(|light| off_deg(light.seen.direction_in_world));
+        let refined = |light: &DiscoveredLight| off_deg(light.direction_in_world);
+        let refined = found.report.discovered.iter().map(refined);
+        let [told, refined] = [told.fold(180.0, f64::min), refined.fold(180.0, f64::min)];
+        assert!(told > 5.0 && refined < 0.1, "{told} and {refined} degrees off");
+    }
+}
+
+/// The paper looks at no shadow, and takes the viewer to be on the axis.
+#[test]
+fn preset_paper_has_the_published_lights() {
+    let (capture, alignments) = aligned(Lights::Probe);
+    let frame = capture.frame(0).unwrap();
+    let [paper, ours] = [Preset::Paper, Preset::Balanced].map(|preset| {
+        let input = alignments.input(0, &frame, preset);
+        assert_eq!(alignments.n_lights(capture.scene(), preset), 2);
+        input.lights.unwrap()
+    });
+    let alignment = &alignments.of(0).unwrap().alignment;
+    assert_eq!(Some(&ours), alignment.lights.as_ref());
+    assert_eq!(paper[..], alignment.report.probe.as_ref().unwrap().published);
+    assert!(
+        paper
+            .iter()
+            .all(|light| matches!(light, Light::Directional { .. }))
+    );
+}
+
+#[test]
+fn listed_lights_come_before_a_probe() {
+    let (capture, given) = aligned(Lights::Given);
+    let report = &given.of(0).unwrap().alignment.report;
+    assert_eq!(
+        (report.lights.len(), &report.probe, report.discovered.len()),
+        (2, &None, 0)
+    );
+    let frame = capture.frame(0).unwrap();
+    let [paper, ours] = [Preset::Paper, Preset::Balanced].map(|preset| given.input(0, &frame, preset).lights);
+    assert_eq!(paper, ours);
+    let (_, found) = aligned(Lights::Found);
+    let report = &found.of(0).unwrap().alignment.report;
+    assert_eq!((&report.probe, report.discovered.len()), (&None, 2));
+}
+
+/// The frame shows no toy, so there is no shadow to look at.
+#[test]
+fn without_a_shadow_the_probes_lights_stand() {
+    let (_, shot) = &*SESSION;
+    let (mut scene, mut input) = (shot.scene.clone(), shot.input.clone());
+    scene.lights.clear();
+    input.image = Arc::clone(&scene.plates[0].image).into();
+    let found = Aligner::new(scene).align(&input).unwrap();
+    let told = found.report.probe.unwrap();
+    let lights: Vec<Light> = told.lights.iter().map(|light| light.light).collect();
+    assert_eq!(found.lights.as_deref(), Some(&lights[..]));
+    assert!(found.report.no_light.is_some());
+}
+
+#[test]
+fn check_tells_what_the_probe_shows() {
+    let (session, shot) = &*SESSION;
+    let unlisted = Path::new(env!("CARGO_TARGET_TMPDIR")).join("probe-session-unlisted");
+    let mut shot = shot.clone();
+    shot.scene.lights.clear();
+    let world = World::boxes().resized(SIZE_PX).lit_by(Vec::new());
+    folder::write(&unlisted, &world, &shot).unwrap();
+    let findings = check(&unlisted, &unlisted, (Asked::default(), Source::Given)).unwrap();
+    let told = findings
+        .facts
+        .iter()
+        .filter(|fact| fact.starts_with("probe: light"));
+    assert_eq!(told.count(), 2, "{findings:?}");
+    assert!(findings.wrong.is_empty(), "{findings:?}");
+    // Where lights are listed it is not looked at.
+    let listed = check(session, session, (Asked::default(), Source::Given)).unwrap();
+    assert!(
+        !listed.facts.iter().any(|fact| fact.starts_with("probe")),
+        "{listed:?}"
+    );
+}

@@ -1,0 +1,309 @@
+//! What the project stands on: licences, sources and versions of every package that is compiled for a desktop or one
+//! of the two phones, and what the core must not reach.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde::Deserialize;
+use spdx::{Expression, ParseMode};
+
+/// Desktop for replay and tests, and the two phones.
+const TARGETS: [&str; 3] = [
+    "x86_64-unknown-linux-gnu",
+    "aarch64-apple-ios",
+    "aarch64-linux-android",
+];
+/// Permissive licences: they ask for a notice and nothing else.
+const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
+const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
+/// Packages of which more than one version is compiled, and whose doing that is.
+const TWICE: [(&str, &str); 9] = [
+    ("hashbrown", "gpu-allocator is one behind wgpu"),
+    ("jni-sys", "jni-sys 0.3 is a shim over 0.4"),
+    ("linux-raw-sys", "follows rustix"),
+    ("miniz_oxide", "png is one behind flate2"),
+    ("rustc-hash", "naga is one behind egui-wgpu"),
+    ("rustix", "winit is one behind x11rb"),
+    ("syn", "derive macros move to 3 one by one"),
+    ("thiserror", "ndk is at 1"),
+    ("thiserror-impl", "follows thiserror"),
+];
+/// Windows, event loops, networks and file systems: the shells' and the harness's business.
+const NOT_IN_CORE: [&str; 14] = [
+    "android-activity",
+    "indicatif",
+    "memmap2",
+    "mio",
+    "ndk",
+    "notify",
+    "objc2-ui-kit",
+    "reqwest",
+    "rustls",
+    "socket2",
+    "tempfile",
+    "tokio",
+    "walkdir",
+    "winit",
+];
+/// The core's own packages, which `app-core` is the face of.
+const CORE: [&str; 6] = [
+    "app-alignment",
+    "app-core",
+    "app-live",
+    "app-pipeline",
+    "app-scene",
+    "app-session",
+];
+/// Packages of a phone that compile C or declare what C has, and why each may.
+const C_ON_PHONES: [(&str, &str); 5] = [
+    ("cc", "android-activity compiles the platform's own glue with it"),
+    ("jni-sys", "declares Java's interface alone"),
+    ("linux-raw-sys", "constants of the kernel"),
+    ("ndk-sys", "declares the platform's libraries alone"),
+    ("renderdoc-sys", "declares a header alone"),
+];
+/// What `cargo metadata` prints, as far as it is looked at.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Package>,
+    resolve: Resolve,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    id: String,
+    name: String,
+    version: String,
+    license: Option<String>,
+    /// None for a package of this workspace, or one beside it.
+    source: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Resolve {
+    nodes: Vec<Node>,
+}
+
+#[derive(Deserialize)]
+struct Node {
+    id: String,
+    deps: Vec<Dependency>,
+}
+
+#[derive(Deserialize)]
+struct Dependency {
+    pkg: String,
+    dep_kinds: Vec<DependencyKind>,
+}
+
+#[derive(Deserialize)]
+struct DependencyKind {
+    /// None for what is linked, else `build` or `dev`.
+    kind: Option<String>,
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// What a command of cargo prints of the workspace as it is locked.
+fn cargo(args: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO"))
+        .args(args)
+        .arg("--locked")
+        .current_dir(repository())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output.stdout
+}
+
+/// The packages of each target.
+fn all_metadata() -> Vec<Metadata> {
+    let of_target = |target| {
+        let metadata = ["metadata", "--format-version", "1", "--filter-platform", target];
+        serde_json::from_slice(&cargo(&metadata)).unwrap()
+    };
+    TARGETS.map(of_target).into()
+}
+
+#[test]
+fn licences_and_sources_are_known() {
+    let mut n_packages = 0;
+    for package in all_metadata().iter().flat_map(|metadata| &metadata.packages) {
+        let label = format!("{} {}", package.name, package.version);
+        let licence = package
+            .license
+            .as_deref()
+            .unwrap_or_else(|| panic!("{label} names no licence"));
+        assert!(is_allowed(licence), "{label} is under {licence}");
+        match package.source.as_deref() {
+            None | Some(CRATES_IO) => n_packages += 1,
+            Some(source) => panic!("{label} comes from {source}"),
+        }
+    }
+    assert!(n_packages > 100, "only {n_packages} packages were looked at");
+}
+
+fn is_allowed(licence: &str) -> bool {
+    // Some older packages write a slash for "or".
+    let expression = Expression::parse_mode(licence, ParseMode::LAX).unwrap();
+    expression.evaluate(|required| {
+        required.addition.is_none()
+            && required
+                .license
+                .id()
+                .is_some_and(|id| LICENCES.contains(&id.name))
+    })
+}
+
+#[test]
+fn licence_expressions_are_weighed() {
+    for allowed in [
+        "MIT",
+        "GPL-3.0-only OR MIT",
+        "Apache-2.0/GPL-2.0-only",
+        "(MIT OR 0BSD) AND Unicode-3.0",
+    ] {
+        assert!(is_allowed(allowed), "{allowed}");
+    }
+    for refused in [
+        "GPL-3.0-only",
+        "MIT AND GPL-3.0-only",
+        "LGPL-2.1-or-later",
+        "LicenseRef-Own",
+    ] {
+        assert!(!is_allowed(refused), "{refused}");
+    }
+}
+
+/// Name and version of every package that is compiled for a target, of `--workspace` or of one `--package=…`.
+///
+/// Metadata lists more: packages, too, that features name only for the case that something else asks for them.
+fn compiled(of: &str, target: &str) -> Vec<(String, String)> {
+    let tree = [
+        "tree", of, "--prefix", "none", "--format", "{p}", "--target", target,
+    ];
+    let packages = String::from_utf8(cargo(&tree)).unwrap();
+    let named = packages.lines().filter_map(|line| line.split_once(" v"));
+    let versions = named.map(|(name, rest)| (name, rest.split(' ').next().unwrap()));
+    versions
+        .map(|(name, version)| (name.to_owned(), version.to_owned()))
+        .collect()
+}
+
+#[test]
+fn no_package_is_compiled_twice_without_a_reason() {
+    let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (name, version) in TARGETS
+        .into_iter()
+        .flat_map(|target| compiled("--workspace", target))
+    {
+        versions.entry(name).or_default().insert(version);
+    }
+    assert!(
+        versions.len() > 100,
+        "only {} packages are compiled",
+        versions.len()
+    );
+    versions.retain(|_, versions| versions.len() > 1);
+    let known: BTreeSet<&str> = TWICE.iter().map(|(name, _)| *name).collect();
+    let found: BTreeSet<&str> = versions.keys().map(String::as_str).collect();
+    assert_eq!(found, known, "{versions:?}");
+    assert!(
+        versions.values().all(|versions| versions.len() == 2),
+        "{versions:?}"
+    );
+}
+
+/// The core has a feature for the harness, which must not come with an app that is built from the same workspace.
+#[test]
+fn apps_know_no_schema() {
+    let has_schema = |package: &str, target| {
+        let packages = compiled(&format!("--package={package}"), target);
+        assert!(packages.iter().any(|(name, _)| name == "app-core"));
+        packages.iter().any(|(name, _)| name == "schemars")
+    };
+    let [desktop, ios, android] = TARGETS;
+    assert!(has_schema("tests", desktop));
+    assert!(!has_schema("app-ios", ios));
+    assert!(!has_schema("app-android", android));
+}
+
+#[test]
+fn the_core_reaches_no_window_network_or_file() {
+    for metadata in all_metadata() {
+        let reached = linked_into(&metadata, "app-core");
+        assert!(reached.contains("wgpu"), "{reached:?}");
+        let wrong: Vec<&&str> = NOT_IN_CORE
+            .iter()
+            .filter(|name| reached.contains(**name))
+            .collect();
+        assert!(wrong.is_empty(), "app-core reaches {wrong:?}");
+        let of_workspace = metadata
+            .packages
+            .iter()
+            .filter(|package| package.source.is_none());
+        let others: Vec<&str> = of_workspace
+            .map(|package| package.name.as_str())
+            .filter(|name| !CORE.contains(name) && reached.contains(name))
+            .collect();
+        assert!(others.is_empty(), "app-core depends on {others:?}");
+    }
+}
+
+#[test]
+fn phones_compile_no_c_but_what_is_known() {
+    let [_, ios, android] = TARGETS;
+    let of_c = |package: &str, target| -> BTreeSet<String> {
+        let names = compiled(&format!("--package={package}"), target).into_iter();
+        let names = names.map(|(name, _)| name);
+        names.filter(|name| is_of_c(name)).collect()
+    };
+    let known: BTreeSet<String> = C_ON_PHONES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(of_c("app-android", android), known);
+    assert_eq!(of_c("app-ios", ios), BTreeSet::new());
+    assert!(["cmake", "zstd-sys", "cc"].into_iter().all(is_of_c) && !is_of_c("accesskit"));
+}
+
+/// Whether a package builds C, or is by its name of a library in C.
+fn is_of_c(name: &str) -> bool {
+    ["cc", "cmake", "pkg-config", "bindgen"].contains(&name) || name.ends_with("-sys")
+}
+
+/// Names of all that is linked into a package, itself included.
+fn linked_into<'a>(metadata: &'a Metadata, name: &str) -> BTreeSet<&'a str> {
+    let packages: BTreeMap<&str, &Package> = metadata
+        .packages
+        .iter()
+        .map(|package| (package.id.as_str(), package))
+        .collect();
+    let nodes: BTreeMap<&str, &Node> = metadata
+        .resolve
+        .nodes
+        .iter()
+        .map(|node| (node.id.as_str(), node))
+        .collect();
+    let mut open: Vec<&str> = metadata
+        .packages
+        .iter()
+        .filter(|package| package.name == name)
+        .map(|package| package.id.as_str())
+        .collect();
+    let mut reached = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if reached.insert(id) {
+            let linked = nodes[id]
+                .deps
+                .iter()
+                .filter(|dep| dep.dep_kinds.iter().any(|kind| kind.kind.is_none()));
+            open.extend(linked.map(|dep| dep.pkg.as_str()));
+        }
+    }
+    reached.into_iter().map(|id| packages[id].name.as_str()).collect()
+}

@@ -1,0 +1,19 @@
+//! What is read and written: toys, sessions, recordings, imports; the programs that do so; and the rules of the source tree.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod bench;
+mod card;
+mod check;
+mod dependencies;
+mod gizmo;
+mod imported;
+mod imports;
+mod metrics;
+mod mutated;
+mod photographer;
+mod recording;
+mod session;
+mod stability;
+mod tidy;
+mod toy;

@@ -1,0 +1,267 @@
+//! Rules of the source tree that no compiler checks.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use app_pipeline::shaders;
+
+/// Passes that draw meshes or copy rather than compute: they have no CPU reference.
+const DRAWING_PASSES: &[&str] = &[
+    "coverage",
+    "masks",
+    "moved_mask",
+    "gbuffer",
+    "present",
+    "screen",
+    "toy",
+    "warp",
+];
+/// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
+const BANNED_IN_CORE: &[&str] = &["std::time", "std::fs", "std::net", "target_os", "target_vendor"];
+/// The crates of the core; the app on top of it, too, knows no clock and opens nothing.
+const CORE: [&str; 5] = [
+    "app-core/scene/src",
+    "app-core/pipeline/src",
+    "app-core/alignment/src",
+    "app-core/session/src",
+    "app-core/live/src",
+];
+const MAX_RUST_LINES: usize = 500;
+const MAX_WGSL_LINES: usize = 300;
+
+struct Source {
+    /// Relative to the project's root.
+    path: PathBuf,
+    text: String,
+}
+
+impl Source {
+    fn stem(&self) -> &str {
+        self.path.file_stem().unwrap().to_str().unwrap()
+    }
+
+    fn n_lines(&self) -> usize {
+        self.text.lines().count()
+    }
+}
+
+/// All files in `folder` of the project, and in the folders in it, whose names end in `extension`.
+fn sources(folder: &str, extension: &str) -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut folders = vec![root.join(folder)];
+    let mut sources = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == extension) {
+                let text = fs::read_to_string(&path).unwrap();
+                sources.push(Source {
+                    path: path.strip_prefix(root).unwrap().to_owned(),
+                    text,
+                });
+            }
+        }
+    }
+    assert!(!sources.is_empty(), "{folder} has no .{extension}");
+    sources
+}
+
+fn rust_sources() -> Vec<Source> {
+    let folders = [
+        "app-core/src",
+        "app-core/shell/src",
+        "tests/desk/src",
+        "tests/measure/src",
+        "tests/reference/src",
+        "tests/view/src",
+        "app-ios/src",
+        "app-ios/arkit/src",
+        "app-ios/media/src",
+        "app-android/src",
+        "app-android/arcore/src",
+        "app-android/media/src",
+        "tests/src",
+        "tests/tests",
+        "xtask/src",
+    ];
+    folders
+        .into_iter()
+        .chain(CORE)
+        .flat_map(|folder| sources(folder, "rs"))
+        .collect()
+}
+
+fn core_sources() -> Vec<Source> {
+    CORE.into_iter()
+        .flat_map(|folder| sources(folder, "rs"))
+        .collect()
+}
+
+/// Fails with all that is wrong.
+fn assert_none(wrong: impl IntoIterator<Item = String>) {
+    let wrong: Vec<String> = wrong.into_iter().collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn wrong_files(sources: Vec<Source>, rule: &str, is_wrong: impl Fn(&Source) -> bool) -> Vec<String> {
+    let wrong = sources.into_iter().filter(|source| is_wrong(source));
+    wrong
+        .map(|source| format!("{}: {rule}", source.path.display()))
+        .collect()
+}
+
+/// The shaders that are passes, not the parts that several share.
+fn pass_files() -> Vec<Source> {
+    sources("shaders", "wgsl")
+        .into_iter()
+        .filter(|file| !file.path.starts_with("shaders/common"))
+        .collect()
+}
+
+#[test]
+fn a_pass_has_one_name_everywhere() {
+    let files = pass_files();
+    let mut stems: Vec<&str> = files.iter().map(Source::stem).collect();
+    let mut names: Vec<&str> = shaders().map(|shader| shader.name).collect();
+    stems.sort_unstable();
+    names.sort_unstable();
+    assert_eq!(stems, names, "files in shaders/ and the lists of passes");
+    let modules = sources("app-core/pipeline/src", "rs");
+    for name in names {
+        let n_modules = modules.iter().filter(|file| file.stem() == name).count();
+        assert_eq!(n_modules, 1, "modules named {name}");
+    }
+}
+
+#[test]
+fn only_the_gpu_layer_creates_on_the_device() {
+    let outside = sources("app-core/pipeline/src", "rs")
+        .into_iter()
+        .filter(|file| !file.path.starts_with("app-core/pipeline/src/gpu"))
+        .collect();
+    assert_none(wrong_files(
+        outside,
+        "creates past the count in gpu/device.rs",
+        |file| file.text.contains(".create_"),
+    ));
+}
+
+#[test]
+fn every_shader_file_is_joined_into_a_shader_and_its_own_under_its_name() {
+    assert_none(wrong_files(
+        sources("shaders", "wgsl"),
+        "is in no shader of the registry",
+        |file| !shaders().any(|shader| shader.source().contains(&file.text)),
+    ));
+    assert_none(wrong_files(
+        pass_files(),
+        "is not in the shader of its name",
+        |file| shaders().any(|shader| shader.name == file.stem() && !shader.source().contains(&file.text)),
+    ));
+}
+
+#[test]
+fn shaders_say_what_they_are_and_what_they_read_and_write() {
+    let header = |file: &Source| -> String {
+        file.text
+            .lines()
+            .map_while(|line| line.strip_prefix("//"))
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    assert_none(wrong_files(
+        sources("shaders", "wgsl"),
+        "does not begin with what it is",
+        |file| header(file).trim().is_empty(),
+    ));
+    assert_none(wrong_files(
+        pass_files(),
+        "header without Reads: and Writes:",
+        |file| {
+            let header = header(file).to_lowercase();
+            let has_both = header.contains("reads:") && header.contains("writes:");
+            !has_both && !header.contains("reads and writes:")
+        },
+    ));
+}
+
+#[test]
+fn every_cpu_reference_that_a_shader_names_exists() {
+    let references = |file: &Source| -> Vec<String> {
+        let heads = file.text.lines().filter(|line| line.starts_with("//"));
+        let named = heads.filter_map(|line| Some(line.split_once("CPU reference: ")?.1.to_owned()));
+        // "reference/….rs", whatever follows.
+        let named = named.filter_map(|path| Some(path.strip_prefix("reference/")?.to_owned()));
+        named
+            .map(|reference| {
+                reference
+                    .split_inclusive(".rs")
+                    .next()
+                    .unwrap_or_default()
+                    .to_owned()
+            })
+            .collect()
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/src");
+    assert_none(wrong_files(
+        pass_files(),
+        "names a CPU reference that is not there",
+        |file| {
+            references(file)
+                .iter()
+                .any(|reference| !folder.join(reference).is_file())
+        },
+    ));
+    assert_none(wrong_files(
+        pass_files(),
+        "computes and has no CPU reference",
+        |file| references(file).is_empty() != DRAWING_PASSES.contains(&file.stem()),
+    ));
+}
+
+#[test]
+fn every_module_begins_with_what_it_is() {
+    assert_none(wrong_files(rust_sources(), "does not begin with //!", |file| {
+        !file.text.starts_with("//! ")
+    }));
+}
+
+#[test]
+fn files_are_short() {
+    assert_none(wrong_files(rust_sources(), "is too long", |file| {
+        file.n_lines() > MAX_RUST_LINES
+    }));
+    assert_none(wrong_files(sources("shaders", "wgsl"), "is too long", |file| {
+        file.n_lines() > MAX_WGSL_LINES
+    }));
+}
+
+#[test]
+fn the_core_has_no_clock_no_files_no_platform_and_no_unsafe_code() {
+    for banned in BANNED_IN_CORE {
+        let rule = format!("has \"{banned}\"");
+        assert_none(wrong_files(core_sources(), &rule, |file| {
+            file.text.contains(banned)
+        }));
+    }
+    let root = wrong_files(core_sources(), "does not forbid unsafe code", |file| {
+        file.path.ends_with("src/lib.rs") && !file.text.contains("#![forbid(unsafe_code)]")
+    });
+    assert_none(root);
+}
+
+/// What decides belongs to the core, and what knows a platform's interfaces to the packages beside a shell.
+#[test]
+fn shells_are_thin() {
+    let n_lines = |shell: &str| -> usize {
+        let sources = sources(&format!("{shell}/src"), "rs").into_iter();
+        let counted = sources.filter(|source| !source.path.ends_with("tests.rs"));
+        counted.map(|source| source.n_lines()).sum()
+    };
+    for shell in ["app-ios", "app-android"] {
+        let n_lines = n_lines(shell);
+        assert!(n_lines <= 1200, "{shell}: {n_lines} lines");
+    }
+}

@@ -1,0 +1,13 @@
+//! The app's logic: its table of steps, every order of events, and a person's way to a toy that moves.
+
+mod lens;
+mod orders;
+mod phone_check;
+mod recorded;
+mod screens;
+mod starts;
+mod table;
+mod times;
+mod toys;
+mod way;
+mod world;

@@ -1,0 +1,495 @@
+//! Whatever happens in whatever order, what the shell is asked for makes sense.
+
+use app_core::app::{
+    AlignJob, AlignedJob, App, ArSession, Device, Notice, Permission, Saved, ShellCommand, ShellEvent, Show,
+    Step, Thermal, Wish,
+};
+use app_core::camera_frame::{Exposure, Tracking};
+use app_core::frame::FrameInput;
+use app_core::recording::{Ending, Take};
+use glam::DVec2;
+use proptest::prelude::*;
+use proptest::sample::select;
+
+use crate::app::world;
+
+/// Something that happens.
+#[derive(Clone, Debug)]
+pub(crate) enum Happening {
+    Permission(Permission),
+    Foreground(bool),
+    Surface(bool),
+    Device(Device),
+    ArSession(ArSession),
+    /// So many frames, 33 ms apart, 17 or 50.
+    Frames(u8, i64, Tracking),
+    /// The last one once more, or an older one.
+    StaleFrame(bool),
+    NewWorld,
+    Thermal(Thermal),
+    MemoryLow,
+    Restarted,
+    /// It finds the toy so far from where it is drawn, in pixels, or sees too little of it.
+    AlignmentEnds(Option<f64>),
+    /// It runs as it would, on a picture that shows no toy.
+    AlignmentRuns,
+    AlignmentDies,
+    OtherToy(bool),
+    Saved(Saved),
+    /// The first or the last recording ends, asked or not.
+    RecordingEnds(bool),
+    FreeSpace(u64),
+    Wish(Wish),
+}
+
+fn happening() -> impl Strategy<Value = Happening> {
+    let permission = select(vec![
+        Permission::Unknown,
+        Permission::Granted,
+        Permission::Denied,
+        Permission::Barred,
+    ]);
+    let device = select(vec![
+        Device::Starting,
+        Device::Ready,
+        Device::Lost,
+        Device::Unsupported,
+    ]);
+    let ar_session = select(vec![
+        ArSession::Able,
+        ArSession::Interrupted,
+        ArSession::Failed,
+        ArSession::Unsupported,
+    ]);
+    let tracking = prop_oneof![
+        4 => Just(Tracking::Normal),
+        1 => select(vec![Tracking::Starting, Tracking::TooFast, Tracking::Relocalising]),
+    ];
+    let thermal = select(vec![
+        Thermal::Nominal,
+        Thermal::Fair,
+        Thermal::Serious,
+        Thermal::Critical,
+    ]);
+    let saved = select(vec![Saved::Done, Saved::NoRoom, Saved::NotAllowed, Saved::Failed]);
+    prop_oneof![
+        1 => permission.prop_map(Happening::Permission),
+        1 => any::<bool>().prop_map(Happening::Foreground),
+        1 => any::<bool>().prop_map(Happening::Surface),
+        1 => device.prop_map(Happening::Device),
+        1 => ar_session.prop_map(Happening::ArSession),
+        8 => (1_u8..20, select(vec![17_i64, 33, 50]), tracking).prop_map(|(n, ms, tracking)| Happening::Frames(n, ms, tracking)),
+        1 => any::<bool>().prop_map(Happening::StaleFrame),
+        1 => Just(Happening::NewWorld),
+        1 => thermal.prop_map(Happening::Thermal),
+        1 => Just(Happening::MemoryLow),
+        1 => Just(Happening::Restarted),
+        4 => select(vec![Some(0.1), Some(0.1), Some(1.9), None]).prop_map(Happening::AlignmentEnds),
+        1 => Just(Happening::AlignmentRuns),
+        1 => Just(Happening::AlignmentDies),
+        1 => any::<bool>().prop_map(Happening::OtherToy),
+        1 => saved.prop_map(Happening::Saved),
+        1 => any::<bool>().prop_map(Happening::RecordingEnds),
+        1 => select(vec![0, u64::MAX]).prop_map(Happening::FreeSpace),
+        12 => wish().prop_map(Happening::Wish),
+    ]
+}
+
+fn wish() -> impl Strategy<Value = Wish> {
+    let pixel = || (-10.0..80.0, -10.0..60.0).prop_map(|(x, y)| DVec2::new(x, y));
+    let plain = vec![
+        Wish::Begin,
+        Wish::OpenSettings,
+        Wish::SkipPlate,
+        Wish::TakeLens,
+        Wish::Placed,
+        Wish::Placed,
+        Wish::Replace,
+        Wish::RetakePlate,
+        Wish::StartOver,
+        Wish::Choose(None),
+        Wish::Choose(world::toy().clip_ids().next()),
+        Wish::Play(false),
+        Wish::SavePhoto,
+        Wish::Video(true),
+        Wish::Video(false),
+        Wish::Record(true),
+        Wish::Record(false),
+        Wish::ShowProfile(true),
+        Wish::CheckPhone(true),
+        Wish::CheckPhone(false),
+        Wish::Answer(true),
+        Wish::Answer(true),
+        Wish::PickToy,
+        Wish::ChooseToy(Some(1)),
+        Wish::ChooseToy(None),
+        Wish::Share,
+        Wish::RestorePreset,
+    ];
+    prop_oneof![
+        8 => select(plain),
+        4 => Just(Wish::Tap(DVec2::new(32.0, 24.0))),
+        1 => pixel().prop_map(Wish::Tap),
+        1 => (pixel(), pixel()).prop_map(|(from_px, to_px)| Wish::Drag { from_px, to_px }),
+        1 => any::<f64>().prop_map(Wish::Twist),
+        1 => any::<f64>().prop_map(Wish::Scrub),
+    ]
+}
+
+/// A platform that does as it is told, and finds fault with what makes no sense.
+#[derive(Default)]
+struct Platform {
+    permission: Permission,
+    is_foreground: bool,
+    runs: bool,
+    is_locked: bool,
+    is_dark: bool,
+    is_awake: bool,
+    makes_video: bool,
+    records: bool,
+    n_frames: u64,
+    time_ns: i64,
+    world_epoch: u32,
+    jobs: Vec<AlignJob>,
+    takes: Vec<Take>,
+}
+
+impl Platform {
+    fn events(&mut self, happening: Happening) -> Vec<ShellEvent> {
+        match happening {
+            Happening::Permission(permission) => {
+                self.permission = permission;
+                vec![ShellEvent::Permission(permission)]
+            }
+            Happening::Foreground(is_foreground) => {
+                self.is_foreground = is_foreground;
+                vec![ShellEvent::Foreground(is_foreground)]
+            }
+            Happening::Surface(is_there) => vec![ShellEvent::Surface(is_there.then_some([640, 360]))],
+            Happening::Device(device) => vec![ShellEvent::Device(device)],
+            Happening::ArSession(ar_session) => vec![ShellEvent::ArSession(ar_session)],
+            Happening::Frames(n, elapsed_ms, tracking) => {
+                let frames = (0..n).map(|_| {
+                    self.n_frames += 1;
+                    self.time_ns += 1_000_000 * elapsed_ms;
+                    self.frame(tracking)
+                });
+                frames.collect()
+            }
+            Happening::StaleFrame(is_older) => {
+                let time_ns = self.time_ns - if is_older { 1_000_000_000 } else { 0 };
+                let frame = world::frame(self.n_frames, time_ns, self.world_epoch, Tracking::Normal);
+                vec![ShellEvent::Frame(Box::new(frame))]
+            }
+            Happening::NewWorld => {
+                self.world_epoch += 1;
+                Vec::new()
+            }
+            Happening::Thermal(thermal) => vec![ShellEvent::Thermal(thermal)],
+            Happening::MemoryLow => vec![ShellEvent::MemoryLow],
+            Happening::Restarted => vec![ShellEvent::Restarted],
+            Happening::AlignmentEnds(outline_px) => self.end(|job| {
+                let alignment = world::alignment(job.input(), outline_px);
+                Some(job.known(alignment))
+            }),
+            Happening::AlignmentRuns => self.end(|job| Some(job.run())),
+            Happening::AlignmentDies => self.end(|_| None),
+            Happening::OtherToy(is_toy) => {
+                let read = if is_toy {
+                    Ok(world::toy())
+                } else {
+                    Err("too many triangles".to_owned())
+                };
+                vec![ShellEvent::Toy(read)]
+            }
+            Happening::Saved(saved) => vec![ShellEvent::Saved(saved)],
+            Happening::RecordingEnds(is_last) => {
+                let place = if is_last {
+                    self.takes.len().checked_sub(1)
+                } else {
+                    Some(0)
+                };
+                let place = place.filter(|place| *place < self.takes.len());
+                let ended = place.map(|place| self.takes.remove(place));
+                ended
+                    .map(|take| ShellEvent::Recorded(world::full(take)))
+                    .into_iter()
+                    .collect()
+            }
+            Happening::FreeSpace(free_bytes) => vec![ShellEvent::FreeSpace(free_bytes)],
+            Happening::Wish(wish) => vec![ShellEvent::Wish(wish)],
+        }
+    }
+
+    /// The latest alignment comes to an end, if there is one.
+    fn end(&mut self, end: impl FnOnce(AlignJob) -> Option<AlignedJob>) -> Vec<ShellEvent> {
+        let ended = self.jobs.pop().map(end);
+        ended
+            .map(|done| ShellEvent::Aligned(done.map(Box::new)))
+            .into_iter()
+            .collect()
+    }
+
+    fn frame(&self, tracking: Tracking) -> ShellEvent {
+        let mut frame = world::frame(self.n_frames, self.time_ns, self.world_epoch, tracking);
+        // A camera takes some frames to darken, and may not.
+        let is_dark = self.is_dark && self.n_frames.is_multiple_of(7);
+        frame.exposure = Some(Exposure {
+            duration_s: if is_dark { 0.01 / 64.0 } else { 0.01 },
+            iso: 100.0,
+        });
+        ShellEvent::Frame(Box::new(frame))
+    }
+
+    /// Obeys, and says what makes no sense.
+    fn obey(&mut self, command: ShellCommand) -> Result<(), String> {
+        let is_wrong = match &command {
+            ShellCommand::PauseTracking => !self.runs,
+            ShellCommand::LockExposure(_) => !self.runs,
+            // Only what is held can be darkened.
+            ShellCommand::Underexpose(is_on) => !self.runs || !self.is_locked || *is_on == self.is_dark,
+            ShellCommand::KeepAwake(is_on) => *is_on == self.is_awake,
+            ShellCommand::Video(is_on) => *is_on == self.makes_video,
+            ShellCommand::Record(take) => take.is_some() == self.records,
+            _ => false,
+        };
+        if is_wrong {
+            return Err(format!("{command:?}"));
+        }
+        match command {
+            ShellCommand::RunTracking { .. } => {
+                self.is_locked &= self.runs;
+                self.is_dark &= self.runs;
+                self.runs = true;
+            }
+            ShellCommand::PauseTracking => self.runs = false,
+            ShellCommand::LockExposure(is_on) => self.is_locked = is_on,
+            ShellCommand::Underexpose(is_on) => self.is_dark = is_on,
+            ShellCommand::KeepAwake(is_on) => self.is_awake = is_on,
+            ShellCommand::Video(is_on) => self.makes_video = is_on,
+            ShellCommand::Record(take) => {
+                self.records = take.is_some();
+                // One after the other, each with a number of its own.
+                if let Some(take) = take {
+                    if self
+                        .takes
+                        .last()
+                        .is_some_and(|last| last.number() >= take.number())
+                    {
+                        return Err("a recording's number comes again".to_owned());
+                    }
+                    self.takes.push(*take);
+                }
+            }
+            ShellCommand::Align(job) => self.jobs.push(*job),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What must hold between two events.
+    fn check(&self, app: &App) -> Result<(), String> {
+        let step = app.step();
+        let (effect, is_toy) = match app.show() {
+            Show::Toy { input, .. } => (input.effect, true),
+            _ => (0.0, false),
+        };
+        let rules = [
+            (
+                self.runs && !(self.is_foreground && self.permission == Permission::Granted),
+                "the camera runs where it may not",
+            ),
+            (
+                self.runs && step == Step::Welcome,
+                "the camera runs before it is needed",
+            ),
+            (
+                self.runs && self.is_locked != (step >= Step::PlaceToy),
+                "exposure is held or free at the wrong time",
+            ),
+            (
+                self.runs && self.is_dark != app.is_taking_lens(),
+                "the camera is dark at the wrong time",
+            ),
+            (
+                self.is_awake && step == Step::Welcome,
+                "the screen is kept on for nothing",
+            ),
+            (
+                self.makes_video && !(self.runs && step == Step::Play),
+                "a video of nothing",
+            ),
+            (
+                self.records && !(self.runs && step == Step::Play),
+                "a recording of nothing",
+            ),
+            (
+                self.records != app.is_recording(),
+                "the app is wrong about its recording",
+            ),
+            (
+                is_toy && step != Step::Play,
+                "the effect is shown before the toy was found",
+            ),
+            (!(0.0..=1.0).contains(&effect), "an effect that cannot be"),
+            (
+                self.makes_video != app.is_making_video(),
+                "the app is wrong about its video",
+            ),
+        ];
+        let broken = rules.into_iter().find(|(is_broken, _)| *is_broken);
+        broken.map_or(Ok(()), |(_, rule)| Err(format!("{rule}, in {step:?}")))
+    }
+}
+
+/// Lets all of it happen; the first thing that makes no sense is an error.
+fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
+    let (mut app, mut platform) = (world::app(), Platform::default());
+    for happening in happenings {
+        for event in platform.events(happening) {
+            let step = app.step();
+            let commands = app.event(event);
+            let said = commands.iter().find_map(|command| match command {
+                ShellCommand::Announce(step) => Some(*step),
+                _ => None,
+            });
+            if said != (app.step() != step).then_some(app.step()) {
+                return Err(format!(
+                    "from {step:?} to {:?}, but {said:?} is announced",
+                    app.step()
+                ));
+            }
+            for command in commands {
+                platform.obey(command)?;
+            }
+            platform.check(&app)?;
+        }
+    }
+    Ok((app, platform))
+}
+
+/// The app after all of it.
+pub(crate) fn happen(happenings: Vec<Happening>) -> App {
+    live_through(happenings).unwrap().0
+}
+
+/// What leads to a toy that moves.
+pub(crate) fn straight() -> Vec<Happening> {
+    vec![
+        Happening::Foreground(true),
+        Happening::Device(Device::Ready),
+        Happening::Permission(Permission::Granted),
+        Happening::Wish(Wish::Begin),
+        Happening::Frames(3, 33, Tracking::Normal),
+        Happening::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
+        Happening::Wish(Wish::SkipPlate),
+        Happening::Wish(Wish::Placed),
+        Happening::Frames(2, 33, Tracking::Normal),
+        Happening::AlignmentEnds(Some(0.1)),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 192, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_order_of_events_asks_for_nonsense(
+        is_straight in any::<bool>(),
+        rest in prop::collection::vec(happening(), 1..80),
+    ) {
+        let mut happenings = if is_straight { straight() } else { Vec::new() };
+        happenings.extend(rest);
+        prop_assert_eq!(live_through(happenings).err(), None);
+    }
+}
+
+#[test]
+fn a_platform_that_is_asked_for_nonsense_says_so() {
+    let mut platform = Platform::default();
+    assert!(platform.obey(ShellCommand::PauseTracking).is_err());
+    assert!(platform.obey(ShellCommand::Video(false)).is_err());
+    platform.runs = true;
+    assert_eq!(
+        platform.check(&world::app()).err().as_deref(),
+        Some("the camera runs where it may not, in Welcome")
+    );
+}
+
+fn effect(app: &App) -> f64 {
+    let input: Option<Box<FrameInput>> = match app.show() {
+        Show::Toy { input, .. } => Some(input),
+        _ => None,
+    };
+    input.map_or(0.0, |input| input.effect)
+}
+
+#[test]
+fn the_effect_comes_and_goes_with_the_pose() {
+    let (mut app, mut platform) = live_through(straight()).unwrap();
+    let mut frames = |app: &mut App, n, tracking| {
+        for event in platform.events(Happening::Frames(n, 33, tracking)) {
+            let _ = app.event(event);
+        }
+        effect(app)
+    };
+    assert_eq!(app.step(), Step::Play);
+    let coming = frames(&mut app, 4, Tracking::Normal);
+    assert!(coming > 0.0 && coming < 1.0, "{coming}");
+    assert!(frames(&mut app, 12, Tracking::Normal) == 1.0);
+    let going = frames(&mut app, 2, Tracking::TooFast);
+    assert!(going > 0.0 && going < 1.0, "{going}");
+    assert!(frames(&mut app, 4, Tracking::TooFast) == 0.0);
+    // Lost for a while, the toy is shown again without anything to be done.
+    assert!(frames(&mut app, 20, Tracking::Normal) == 1.0);
+}
+
+#[test]
+fn a_recording_that_ended_late_leaves_the_next_one_alone() {
+    let (mut app, mut platform) = live_through(straight()).unwrap();
+    let wish = |app: &mut App, platform: &mut Platform, is_on| {
+        for command in app.event(ShellEvent::Wish(Wish::Record(is_on))) {
+            platform.obey(command).unwrap();
+        }
+    };
+    for is_on in [true, false, true] {
+        wish(&mut app, &mut platform, is_on);
+    }
+    let mut takes = std::mem::take(&mut platform.takes);
+    assert_eq!(takes.len(), 2);
+    let first = ShellEvent::Recorded(world::full(takes.remove(0)));
+    assert!(app.event(first).is_empty() && app.is_recording());
+    let second = ShellEvent::Recorded(world::full(takes.remove(0)));
+    let names: Vec<String> = app
+        .event(second)
+        .iter()
+        .map(|command| format!("{command:?}"))
+        .collect();
+    assert_eq!(names, ["Record(None)"]);
+    assert!(!app.is_recording());
+    assert!(
+        matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.taken.ending == Ending::NoRoom)
+    );
+    // With hardly anything free none begins.
+    let _ = app.event(ShellEvent::FreeSpace(1 << 20));
+    wish(&mut app, &mut platform, true);
+    assert!(!app.is_recording() && app.notice() == Some(&Notice::NoRoomToRecord));
+}
+
+#[test]
+fn a_recording_and_a_video_are_saved_before_the_camera_goes() {
+    let (mut app, _) = live_through(straight()).unwrap();
+    for wish in [Wish::Video(true), Wish::Record(true)] {
+        let _ = app.event(ShellEvent::Wish(wish));
+    }
+    let commands = app.event(ShellEvent::Foreground(false));
+    let names: Vec<String> = commands.iter().map(|command| format!("{command:?}")).collect();
+    assert_eq!(
+        names,
+        [
+            "Video(false)",
+            "Record(None)",
+            "PauseTracking",
+            "KeepAwake(false)"
+        ]
+    );
+}

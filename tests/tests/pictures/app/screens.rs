@@ -1,0 +1,174 @@
+//! The interface without a device: what can be read out and touched, on every screen.
+
+use app_core::app::{App, Device, Permission, ShellEvent, Step, Wish};
+use app_core::camera_frame::Tracking;
+use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget};
+use glam::DVec2;
+
+use crate::app::world;
+
+/// Nothing to be touched is lower, in points.
+const TOUCH_POINTS: f64 = 44.0;
+
+const PORTRAIT: Screen = Screen {
+    size_px: [1080, 2340],
+    pixels_per_point: 3.0,
+    insets: Insets {
+        left_px: 0.0,
+        top_px: 140.0,
+        right_px: 0.0,
+        bottom_px: 100.0,
+    },
+    text_scale: 1.0,
+};
+
+fn screens() -> [(&'static str, Screen); 3] {
+    let landscape = Screen {
+        size_px: [2340, 1080],
+        insets: Insets {
+            left_px: 140.0,
+            right_px: 140.0,
+            top_px: 0.0,
+            bottom_px: 60.0,
+        },
+        ..PORTRAIT
+    };
+    let large = Screen {
+        text_scale: 1.5,
+        ..PORTRAIT
+    };
+    [
+        ("portrait", PORTRAIT),
+        ("landscape", landscape),
+        ("large text", large),
+    ]
+}
+
+fn widgets(app: &App, screen: &Screen) -> Vec<Widget> {
+    let mut interface = Interface::default();
+    // Sheets find their size with the first picture.
+    for _ in 0..3 {
+        interface.wishes(app, screen);
+    }
+    interface.widgets().to_vec()
+}
+
+/// The events that lead from one screen to the next.
+fn events() -> Vec<ShellEvent> {
+    vec![
+        ShellEvent::Foreground(true),
+        ShellEvent::Permission(Permission::Barred),
+        ShellEvent::Permission(Permission::Denied),
+        ShellEvent::Permission(Permission::Granted),
+        ShellEvent::Wish(Wish::Begin),
+        ShellEvent::Device(Device::Ready),
+        ShellEvent::Frame(Box::new(world::frame(1, 0, 0, Tracking::TooDark))),
+        ShellEvent::Frame(Box::new(world::frame(2, 33_000_000, 0, Tracking::Normal))),
+        ShellEvent::Wish(Wish::CheckPhone(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::Answer(true)),
+        ShellEvent::Wish(Wish::CheckPhone(false)),
+        // Beside the table.
+        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, -400.0))),
+        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
+        ShellEvent::Frame(Box::new(world::frame(3, 66_000_000, 0, Tracking::Normal))),
+        ShellEvent::Wish(Wish::SkipPlate),
+        ShellEvent::Wish(Wish::Placed),
+    ]
+}
+
+/// The app on each of its screens but that of the last step, which needs a toy that was found.
+fn apps() -> Vec<App> {
+    let apps = (1..=events().len()).map(|n| {
+        let mut app = world::app();
+        for event in events().into_iter().take(n) {
+            let _ = app.event(event);
+        }
+        app
+    });
+    apps.collect()
+}
+
+#[test]
+fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
+    let apps = apps();
+    assert_eq!(apps.last().unwrap().step(), Step::Align);
+    for app in &apps {
+        for (name, screen) in screens() {
+            let at = format!("{name}, {:?}, {:?}", app.step(), app.obstacle());
+            let widgets = widgets(app, &screen);
+            assert!(
+                widgets.iter().any(|widget| widget.role == "Label"),
+                "{at}: nothing is said"
+            );
+            for Widget {
+                role,
+                label,
+                bounds_px,
+            } in widgets
+            {
+                let [left, top, right, bottom] = bounds_px;
+                let Insets {
+                    left_px,
+                    top_px,
+                    right_px,
+                    bottom_px,
+                } = screen.insets;
+                let [width, height] = screen.size_px.map(f64::from);
+                let is_inside = left >= left_px
+                    && top >= top_px
+                    && right <= width - right_px
+                    && bottom <= height - bottom_px;
+                if role == "Button" {
+                    let low_points = (bottom - top) / screen.pixels_per_point;
+                    assert!(
+                        low_points > TOUCH_POINTS - 0.5,
+                        "{at}: «{label}» is {low_points} points high"
+                    );
+                }
+                assert!(is_inside, "{at}: «{label}» lies at {bounds_px:?}");
+                assert!(!label.trim().is_empty(), "{at}: a {role} without a word");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sheet_is_the_same_whichever_came_before() {
+    for (name, screen) in screens() {
+        let mut interface = Interface::default();
+        for app in &apps() {
+            for _ in 0..3 {
+                interface.wishes(app, &screen);
+            }
+            let at = format!("{name}, {:?}, {:?}", app.step(), app.obstacle());
+            assert_eq!(interface.widgets(), widgets(app, &screen), "{at}");
+        }
+    }
+}
+
+#[test]
+fn a_finger_presses_the_button_below_it() {
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Foreground(true));
+    let mut interface = Interface::default();
+    interface.wishes(&app, &PORTRAIT);
+    interface.wishes(&app, &PORTRAIT);
+    let begin = interface
+        .widgets()
+        .iter()
+        .find(|widget| widget.label == "Begin")
+        .unwrap();
+    let [left, top, right, bottom] = begin.bounds_px;
+    let mut press = |at_px| {
+        let mut wishes = Vec::new();
+        for phase in [TouchPhase::Began, TouchPhase::Ended] {
+            interface.touch(Touch { id: 4, phase, at_px });
+            wishes.extend(interface.wishes(&app, &PORTRAIT));
+        }
+        wishes
+    };
+    assert_eq!(press([0.5 * (left + right), 0.5 * (top + bottom)]), [Wish::Begin]);
+    assert_eq!(press([5.0, 5.0]), []);
+}

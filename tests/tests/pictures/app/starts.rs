@@ -1,0 +1,221 @@
+//! Starts that come to no end lead to the simplest preset, and back from there.
+
+use app_core::Core;
+use app_core::app::{
+    App, N_GOOD_FRAMES, N_UNFINISHED, Notice, Panics, ShellCommand, ShellEvent, Simplified, Starts, Wish,
+};
+use app_core::gpu::AdapterChoice;
+use app_core::interface::{Insets, Screen};
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::wgpu;
+
+use crate::app::world;
+
+/// What is kept, and the app of one start after another.
+#[derive(Default)]
+struct Phone {
+    kept: String,
+}
+
+impl Phone {
+    fn start(&mut self) -> App {
+        let mut starts = Starts::read(&self.kept);
+        starts.begin();
+        self.kept = starts.text();
+        let mut app = world::app();
+        self.tell(&mut app, ShellEvent::Started(starts));
+        self.tell(&mut app, ShellEvent::Foreground(true));
+        app
+    }
+
+    fn tell(&mut self, app: &mut App, event: ShellEvent) {
+        for command in app.event(event) {
+            if let ShellCommand::Remember(text) = command {
+                self.kept = text;
+            }
+        }
+    }
+
+    fn draw(&mut self, app: &mut App, n_frames: u32) {
+        for _ in 0..n_frames {
+            self.tell(app, ShellEvent::Drawn);
+        }
+    }
+}
+
+#[test]
+fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
+    let mut phone = Phone::default();
+    for n in 0..N_UNFINISHED {
+        let mut app = phone.start();
+        assert_eq!(app.preset(Preset::Best), Preset::Best, "start {n}");
+        assert_eq!(app.notice(), None);
+        // It ends there, short of what makes a good start.
+        phone.draw(&mut app, N_GOOD_FRAMES - 1);
+    }
+    let mut app = phone.start();
+    assert_eq!(app.preset(Preset::Best), Preset::Flat);
+    assert_eq!(app.notice(), Some(&Notice::Simplified(Simplified::Starts)));
+    // It stays so, however good it is, until the person wants it otherwise.
+    phone.draw(&mut app, N_GOOD_FRAMES);
+    let mut app = phone.start();
+    assert_eq!(app.preset(Preset::Best), Preset::Flat);
+    phone.tell(&mut app, ShellEvent::Wish(Wish::RestorePreset));
+    assert_eq!((app.preset(Preset::Best), app.simplified()), (Preset::Best, None));
+    // The start that brought it back is one of those that count.
+    for _ in 1..N_UNFINISHED {
+        assert_eq!(phone.start().simplified(), None);
+    }
+    assert_eq!(phone.start().simplified(), Some(Simplified::Starts));
+}
+
+#[test]
+fn a_good_start_clears_those_that_failed() {
+    let mut phone = Phone::default();
+    for _ in 0..5 {
+        for _ in 1..N_UNFINISHED {
+            let _ = phone.start();
+        }
+        let mut app = phone.start();
+        assert_eq!(app.simplified(), None);
+        phone.draw(&mut app, N_GOOD_FRAMES);
+    }
+    // A crash long after is the first of a row.
+    let _ = phone.start();
+    assert_eq!(phone.start().simplified(), None);
+}
+
+#[test]
+fn an_app_that_is_left_has_not_failed() {
+    let mut phone = Phone::default();
+    for _ in 0..10 {
+        let mut app = phone.start();
+        assert_eq!(app.simplified(), None);
+        // There and back, and away for good: the system may end it there.
+        for is_foreground in [false, false, true, true, false] {
+            phone.tell(&mut app, ShellEvent::Foreground(is_foreground));
+        }
+    }
+    // One that has come back to the front can fail as well.
+    for _ in 0..N_UNFINISHED {
+        let mut app = phone.start();
+        assert_eq!(app.simplified(), None);
+        phone.tell(&mut app, ShellEvent::Foreground(false));
+        phone.tell(&mut app, ShellEvent::Foreground(true));
+    }
+    assert_eq!(phone.start().simplified(), Some(Simplified::Starts));
+}
+
+#[test]
+fn a_device_is_tested_once_and_each_time_while_it_fails() {
+    let mut phone = Phone::default();
+    let tested = |device: &str, outcome: Result<(), String>| ShellEvent::SelfTested {
+        device: device.to_owned(),
+        outcome,
+    };
+    let fault = || Err("red is blue".to_owned());
+    for _ in 0..3 {
+        let mut app = phone.start();
+        assert!(app.wants_self_test("Adreno\n(1)"));
+        phone.tell(&mut app, tested("Adreno\n(1)", fault()));
+        assert_eq!(app.preset(Preset::Balanced), Preset::Flat);
+        let simplified = Simplified::SelfTest("red is blue".to_owned());
+        assert_eq!(app.notice(), Some(&Notice::Simplified(simplified)));
+        phone.draw(&mut app, N_GOOD_FRAMES);
+    }
+    let mut app = phone.start();
+    phone.tell(&mut app, tested("Adreno\n(1)", Ok(())));
+    assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
+    phone.draw(&mut app, N_GOOD_FRAMES);
+    let mut app = phone.start();
+    assert!(!app.wants_self_test("Adreno\n(1)"));
+    // Another driver, which the person trusts against the test.
+    assert!(app.wants_self_test("Adreno (2)"));
+    phone.tell(&mut app, tested("Adreno (2)", fault()));
+    phone.tell(&mut app, ShellEvent::Wish(Wish::RestorePreset));
+    assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
+    assert!(!phone.start().wants_self_test("Adreno (2)"));
+}
+
+#[test]
+fn whatever_is_kept_is_read() {
+    let mut starts = Starts::read("passed one (a b)\nunfinished 1\nsimple\n");
+    assert_eq!(starts, Starts::read(&starts.text()));
+    assert_eq!(starts.text(), "unfinished 1\nsimple\npassed one (a b)\n");
+    for text in [
+        "",
+        "unfinished -7",
+        "unfinished 99999999999999999999",
+        "\0\0",
+        "simple as that",
+    ] {
+        assert_eq!(Starts::read(text), Starts::default(), "{text:?}");
+    }
+    starts = Starts::read("unfinished 4294967295");
+    starts.begin();
+    assert_eq!(starts.text(), "unfinished 1\nsimple\n");
+}
+
+const SCREEN: Screen = Screen {
+    size_px: [320, 480],
+    pixels_per_point: 1.0,
+    insets: Insets {
+        left_px: 0.0,
+        top_px: 0.0,
+        right_px: 0.0,
+        bottom_px: 0.0,
+    },
+    text_scale: 1.0,
+};
+
+/// What is kept once an app has compiled its preset.
+fn kept_after_compiling(text: &str) -> (Live, Vec<String>) {
+    let instance = wgpu::Instance::default();
+    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
+    let mut live = Live::new(
+        pollster::block_on(opened).unwrap(),
+        world::toy(),
+        Preset::Balanced,
+    );
+    let mut commands = live.event(ShellEvent::Started(Starts::read(text)));
+    for n in 0..100 {
+        commands.extend(live.screenshot(&SCREEN, f64::from(n) / 30.0).unwrap().1);
+    }
+    let kept = commands.into_iter().filter_map(|command| match command {
+        ShellCommand::Remember(text) => Some(text),
+        _ => None,
+    });
+    (live, kept.collect())
+}
+
+#[test]
+fn a_device_that_passes_is_remembered_and_not_tested_again() {
+    let (live, kept) = kept_after_compiling("unfinished 1");
+    let [kept] = &kept[..] else {
+        panic!("kept: {kept:?}");
+    };
+    assert!(
+        kept.contains("\npassed ") && live.app().simplified().is_none(),
+        "{kept}"
+    );
+    let tested = live.app().log().text();
+    assert!(tested.contains("self-test"), "{tested}");
+    let (live, kept) = kept_after_compiling(kept);
+    assert_eq!(kept, [""; 0]);
+    assert!(!live.app().log().text().contains("self-test"));
+}
+
+#[test]
+fn after_a_panic_the_app_begins_anew_and_says_so_but_not_for_ever() {
+    let mut panics = Panics::default();
+    let anew: Vec<bool> = [0.0, 1.0, 2.0].map(|time_s| panics.begins_anew(time_s)).into();
+    // The last of them begins with the simplest preset.
+    assert_eq!(anew, [true, true, false]);
+    assert!(panics.begins_anew(3600.0), "the others are long past");
+
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Restarted);
+    assert_eq!(app.notice(), Some(&Notice::Restarted));
+    assert!(app.log().text().contains("Restarted"), "{}", app.log().text());
+}

@@ -1,0 +1,108 @@
+//! What an app's own profile tells of the camera.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use app_core::Core;
+use app_core::app::{Device, Permission, ShellCommand, ShellEvent, Step, Wish};
+use app_core::camera_frame::Tracking;
+use app_core::frame::Clock;
+use app_core::gpu::AdapterChoice;
+use app_core::interface::{Insets, Screen};
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::profile::{FRAME, PROCESSOR};
+use app_core::wgpu;
+use glam::DVec2;
+
+use crate::app::world;
+
+const SCREEN: Screen = Screen {
+    size_px: [160, 120],
+    pixels_per_point: 1.0,
+    insets: Insets {
+        left_px: 0.0,
+        top_px: 0.0,
+        right_px: 0.0,
+        bottom_px: 0.0,
+    },
+    text_scale: 1.0,
+};
+
+fn tell(live: &mut Live, event: ShellEvent) {
+    for command in live.event(event) {
+        if let ShellCommand::Align(job) = command {
+            let alignment = world::alignment(job.input(), Some(0.1));
+            tell(live, ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
+        }
+    }
+}
+
+/// A frame of the camera, so old when it comes.
+fn deliver(live: &mut Live, id: u64, age_ms: Option<f64>) {
+    let time_ns = i64::try_from(id).unwrap() * 33_000_000;
+    let mut frame = world::frame(id, time_ns, 0, Tracking::Normal);
+    frame.age_ms = age_ms;
+    tell(live, ShellEvent::Frame(Box::new(frame)));
+}
+
+/// An app whose toy moves, and the clock that it is timed by, in milliseconds.
+fn playing() -> (Live, Arc<AtomicU64>) {
+    let instance = wgpu::Instance::default();
+    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
+    let core = pollster::block_on(opened).unwrap();
+    let mut live = Live::new(core, world::toy(), Preset::Flat);
+    let now_ms = Arc::new(AtomicU64::new(0));
+    let clock = Arc::clone(&now_ms);
+    #[expect(clippy::cast_precision_loss, reason = "a few seconds")]
+    live.time_by(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
+    for event in [
+        ShellEvent::Foreground(true),
+        ShellEvent::Device(Device::Ready),
+        ShellEvent::Permission(Permission::Granted),
+        ShellEvent::Wish(Wish::Begin),
+    ] {
+        tell(&mut live, event);
+    }
+    place(&mut live, 1);
+    (live, now_ms)
+}
+
+/// Has the toy found by three frames, of which the first has that number.
+fn place(live: &mut Live, id: u64) {
+    deliver(live, id, None);
+    tell(live, ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
+    tell(live, ShellEvent::Wish(Wish::SkipPlate));
+    tell(live, ShellEvent::Wish(Wish::Placed));
+    deliver(live, id + 1, None);
+    deliver(live, id + 2, None);
+    assert_eq!(live.app().step(), Step::Play);
+}
+
+#[test]
+fn a_frame_tells_how_old_its_picture_is_and_how_many_nobody_saw() {
+    let (mut live, now_ms) = playing();
+    let draw = |live: &mut Live, at_ms: u64| {
+        now_ms.store(at_ms, Ordering::SeqCst);
+        live.screenshot(&SCREEN, 0.0).unwrap();
+        let frames = live.times().unwrap().scopes(PROCESSOR);
+        let args = &frames.filter(|event| event.name == FRAME).last().unwrap().args;
+        (args.camera_to_present_ms, args.dropped)
+    };
+    assert_eq!(draw(&mut live, 100), (None, Some(0)), "a camera without a clock");
+    deliver(&mut live, 4, Some(40.0));
+    assert_eq!(draw(&mut live, 105), (Some(45.0), Some(0)));
+    assert_eq!(draw(&mut live, 120), (Some(60.0), Some(0)), "the same picture");
+    deliver(&mut live, 5, Some(40.0));
+    deliver(&mut live, 7, Some(30.0));
+    assert_eq!(draw(&mut live, 121), (Some(31.0), Some(2)), "neither 5 nor 6");
+    tell(&mut live, ShellEvent::Wish(Wish::StartOver));
+    deliver(&mut live, 8, Some(40.0));
+    live.screenshot(&SCREEN, 0.0).unwrap();
+    place(&mut live, 40);
+    assert_eq!(
+        draw(&mut live, 130).1,
+        Some(0),
+        "while the toy did not move nothing was kept from it"
+    );
+}

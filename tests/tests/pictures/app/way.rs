@@ -1,0 +1,138 @@
+//! A person's way through the bundled session: a table, a plate, a ghost that is a little off, and a toy that moves.
+
+use std::sync::Arc;
+
+use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, Verdict, Wish};
+use app_core::app::{Device, Permission};
+use app_core::recording::Take;
+use app_core::scene::Camera;
+use desk::files::BUNDLED_SESSION;
+use desk::stored::Stored;
+use glam::{DMat4, DVec2, DVec3};
+use view::feed::Feed;
+
+/// How far off the ghost is left.
+pub(crate) const OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
+const OFF_RAD: f64 = 0.1;
+
+pub(crate) struct Person {
+    pub(crate) app: App,
+    pub(crate) feed: Feed,
+    /// Recordings that wait to be written.
+    pub(crate) takes: Vec<Take>,
+}
+
+impl Person {
+    pub(crate) fn tell(&mut self, event: ShellEvent) {
+        for command in self.app.event(event) {
+            match command {
+                ShellCommand::Align(job) => self.tell(ShellEvent::Aligned(Some(Box::new(job.run())))),
+                ShellCommand::Record(take) => self.takes.extend(take.map(|take| *take)),
+                _ => {}
+            }
+        }
+    }
+
+    pub(crate) fn wish(&mut self, wish: Wish) {
+        self.tell(ShellEvent::Wish(wish));
+    }
+
+    pub(crate) fn frames(&mut self, n: usize) {
+        for _ in 0..n {
+            let frame = self.feed.next(0.033);
+            self.tell(ShellEvent::Frame(Box::new(frame)));
+        }
+    }
+
+    fn pixel_of(&self, moved_m: DVec3) -> DVec2 {
+        let (world_from_object, camera) = self.feed.toy();
+        let at = world_from_object.w_axis.truncate() + moved_m;
+        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+        camera.intrinsics.pixel_of(in_camera).unwrap()
+    }
+}
+
+fn yaw_rad(pose: &DMat4) -> f64 {
+    pose.z_axis.x.atan2(pose.z_axis.z)
+}
+
+fn facing_rad(world_from_object: &DMat4, camera: &Camera) -> f64 {
+    let to_camera = camera.world_from_camera.w_axis - world_from_object.w_axis;
+    to_camera.x.atan2(to_camera.z)
+}
+
+/// A person who has placed the ghost, as far off as told, and waits.
+pub(crate) fn placed(off_m: DVec3) -> Person {
+    let feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let app = App::new(Arc::clone(&feed.scene().toy));
+    let mut person = Person {
+        app,
+        feed,
+        takes: Vec::new(),
+    };
+    for event in [
+        ShellEvent::Foreground(true),
+        ShellEvent::Device(Device::Ready),
+        ShellEvent::Permission(Permission::Granted),
+    ] {
+        person.tell(event);
+    }
+    person.wish(Wish::Begin);
+    person.frames(2);
+    let at = person.pixel_of(DVec3::ZERO);
+    person.wish(Wish::Tap(at));
+    assert_eq!(person.app.step(), Step::TakePlate);
+    for _ in 0..60 {
+        if person.app.step() == Step::TakePlate {
+            person.frames(1);
+        }
+    }
+    assert_eq!(person.app.step(), Step::PlaceToy);
+    assert!(person.app.has_plate());
+    person.feed.is_toy_there = true;
+    person.frames(1);
+    let (world_from_object, camera) = person.feed.toy();
+    let turn_rad = yaw_rad(world_from_object) - facing_rad(world_from_object, camera) + OFF_RAD;
+    let at = person.pixel_of(off_m);
+    person.wish(Wish::Twist(turn_rad));
+    person.wish(Wish::Tap(at));
+    assert!(person.app.ghost_contour_px().len() > 50);
+    person.wish(Wish::Placed);
+    assert_eq!(person.app.step(), Step::Align);
+    person
+}
+
+#[test]
+fn a_ghost_that_is_a_little_off_becomes_a_toy_that_moves() {
+    let mut person = placed(OFF_M);
+    person.frames(1);
+    assert_eq!(person.app.step(), Step::Play, "{:?}", person.app.verdict());
+    let Some(Verdict::Found {
+        outline_px: Some(outline_px),
+        no_light: None,
+    }) = person.app.verdict()
+    else {
+        panic!("{:?}", person.app.verdict());
+    };
+    assert!(*outline_px < 0.5, "{outline_px}");
+    person.frames(20);
+    let Show::Toy { scene, input, .. } = person.app.show() else {
+        panic!("{:?}", person.app.step());
+    };
+    assert!(input.effect == 1.0);
+    assert_eq!(scene.plates.len(), 1);
+    let (truth, _) = person.feed.toy();
+    let off = input.world_from_object.w_axis.truncate() - truth.w_axis.truncate();
+    assert!(off.length() < 5e-4, "{off} m");
+    let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
+    assert!(turned_rad < 0.01, "{turned_rad}");
+    assert_eq!(input.lights.as_ref().map(|lights| lights.len()), Some(1));
+}
+
+#[test]
+fn a_ghost_that_is_nowhere_near_is_said_to_be() {
+    let mut person = placed(DVec3::new(0.25, 0.0, 0.1));
+    person.frames(1);
+    assert_eq!(person.app.step(), Step::PlaceToy, "{:?}", person.app.verdict());
+    assert!(person.app.notice().is_some());
+}

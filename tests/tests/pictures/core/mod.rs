@@ -1,0 +1,14 @@
+//! The core as a shell uses it, on the bundled session.
+
+mod bundled;
+mod camera;
+mod coplanar;
+mod file;
+mod lent;
+mod normals;
+mod quirks;
+mod refused;
+mod reuse;
+mod scale;
+mod still;
+mod warnings;

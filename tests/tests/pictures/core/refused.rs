@@ -1,0 +1,132 @@
+//! What a shell may hand over by mistake: it is refused by name, and nothing that was learned is lost.
+
+use app_core::CoreError;
+use app_core::frame::{FrameInput, Path};
+use app_core::preset::Preset;
+use app_core::scene::{Light, Pose, Scene};
+use glam::{DMat4, DVec3};
+
+use crate::core::bundled::{core, first_input, open_core, picture_of, scene};
+
+#[test]
+fn pictures_that_do_not_fit_are_refused() {
+    let mut core = core();
+    let input = first_input();
+    assert!(matches!(open_core().frame(&input), Err(CoreError::NoScene)));
+
+    let wide = Scene {
+        width_px: 9000,
+        height_px: 100,
+        plates: Vec::new(),
+        ..scene()
+    };
+    let refused = core.set_scene(wide, Preset::Balanced);
+    assert!(matches!(
+        refused,
+        Err(CoreError::SizeOutOfRange {
+            size_px: [9000, 100],
+            ..
+        })
+    ));
+
+    let large = Scene {
+        width_px: 8000,
+        height_px: 2000,
+        plates: Vec::new(),
+        ..scene()
+    };
+    let refused = core.set_scene(large, Preset::Balanced).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("width_px, height_px: 8000 x 2000 px are more than the 12582912"),
+        "{refused}"
+    );
+
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let mut cut = input.image.rgba().as_ref().clone();
+    cut.rgba8.pop();
+    let refused = core.frame(&FrameInput {
+        image: cut.into(),
+        ..input.clone()
+    });
+    assert!(matches!(
+        refused,
+        Err(CoreError::SizeDiffers {
+            what: "camera frame",
+            ..
+        })
+    ));
+    assert!(core.frame(&input).unwrap().region.is_some());
+}
+
+/// What a tracker or an app may hand over by mistake is refused by name, and costs nothing that was learned.
+#[test]
+fn values_that_cannot_be_are_refused_by_name() {
+    let mut core = core();
+    let scene = scene();
+    let good = first_input();
+    let spoiled = |field: &str, spoil: &dyn Fn(&mut FrameInput)| {
+        let mut input = good.clone();
+        spoil(&mut input);
+        (field.to_owned(), input)
+    };
+    let dark = Light::Sphere {
+        position_in_world: DVec3::ONE,
+        radius_m: -1.0,
+    };
+    let cases = [
+        spoiled("camera.world_from_camera", &|input| {
+            input.camera.world_from_camera.w_axis.x = f64::NAN;
+        }),
+        spoiled("camera.world_from_camera", &|input| {
+            input.camera.world_from_camera *= DMat4::from_scale(DVec3::splat(2.0));
+        }),
+        spoiled("camera.intrinsics.fx_px", &|input| {
+            input.camera.intrinsics.fx_px = 0.0
+        }),
+        spoiled("world_from_object", &|input| {
+            input.world_from_object = DMat4::ZERO
+        }),
+        spoiled("exposure", &|input| input.exposure = f64::INFINITY),
+        spoiled("lights[0].radius_m", &|input| input.lights = Some([dark].into())),
+    ];
+    core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    let expected = picture_of(&mut core, &good);
+    for (field, input) in cases {
+        let refused = core.frame(&input).unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("{field}: ")), "{field}: {refused}");
+    }
+    let report = core.frame(&good).unwrap();
+    assert!(report.ran.iter().all(|run| run.path == Path::Frame), "{report:?}");
+    assert!(core.read_picture().unwrap().rgba8 == expected);
+
+    let mut tilted = scene;
+    tilted.receivers[0].world_from_plane.x_axis.y = 0.5;
+    let refused = core.set_scene(tilted, Preset::Balanced).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("receivers[0].world_from_plane: "),
+        "{refused}"
+    );
+    assert!(core.frame(&good).is_ok(), "the scene before is gone");
+}
+
+#[test]
+fn a_failed_pose_leaves_nothing_half_learned() {
+    let mut core = core();
+    let input = first_input();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let expected = picture_of(&mut core, &input);
+
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let shown_pose = Pose::Clip {
+        clip: input.shown_pose.clip().unwrap(),
+        time_secs: f64::NAN,
+    };
+    assert!(matches!(
+        core.frame(&FrameInput {
+            shown_pose,
+            ..input.clone()
+        }),
+        Err(CoreError::Toy(_))
+    ));
+    assert!(picture_of(&mut core, &input) == expected);
+}

@@ -1,0 +1,237 @@
+//! What broken input is told in words: each case with all of its warnings, and no others.
+
+use std::sync::Arc;
+
+use app_core::Core;
+use app_core::frame::{FrameInput, Warning};
+use app_core::preset::Preset;
+use app_core::scene::{FieldError, Image, Light, Receiver, Scene};
+use app_core::toy::ToyError;
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::Map;
+use glam::{DMat4, DVec3};
+
+use crate::core::bundled::{core, first_input, scene};
+
+/// Longest message, in characters: three lines on a phone.
+const MOST_CHARACTERS: usize = 240;
+
+/// A scene, a frame of it, and the names of the warnings of both.
+struct Case {
+    what: &'static str,
+    scene: Scene,
+    input: FrameInput,
+    expected: &'static [&'static str],
+}
+
+impl Case {
+    fn new(what: &'static str, expected: &'static [&'static str]) -> Self {
+        Self {
+            what,
+            scene: scene(),
+            input: first_input(),
+            expected,
+        }
+    }
+
+    fn with_plate(mut self, change: impl Fn([u8; 4]) -> [u8; 4]) -> Self {
+        for plate in &mut self.scene.plates {
+            plate.image = changed(&plate.image, |_, pixel| change(pixel));
+        }
+        self
+    }
+
+    fn with_picture(mut self, image: Arc<Image>) -> Self {
+        self.input.image = image.into();
+        self
+    }
+
+    fn lit_by(mut self, lights: Vec<Light>) -> Self {
+        self.scene.lights = lights;
+        self
+    }
+
+    /// The real toy somewhere else.
+    fn standing_at(mut self, in_world: DVec3) -> Self {
+        let by = in_world - self.scene.world_from_object.w_axis.truncate();
+        self.input.world_from_object = DMat4::from_translation(by) * self.scene.world_from_object;
+        self
+    }
+
+    fn check(self, core: &mut Core) {
+        core.set_scene(self.scene, Preset::Balanced).unwrap();
+        let report = core.frame(&self.input).unwrap();
+        let warnings = [report.warnings, core.read_fit_warnings().unwrap()].concat();
+        let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        eprintln!("{}: {messages:?}", self.what);
+        let names: Vec<String> = warnings.iter().map(name).collect();
+        assert_eq!(names, self.expected, "{}: {messages:?}", self.what);
+        for message in messages {
+            assert!(message.chars().count() <= MOST_CHARACTERS, "{message}");
+        }
+    }
+}
+
+/// The name of a warning, and of an outlier.
+fn name(warning: &Warning) -> String {
+    let text = format!("{warning:?}");
+    let text = text.trim_start_matches("Mismatch(");
+    let end = text.find([' ', '{']).unwrap_or(text.len());
+    text[..end].to_owned()
+}
+
+fn changed(image: &Image, change: impl Fn(usize, [u8; 4]) -> [u8; 4]) -> Arc<Image> {
+    let pixels = image.rgba8.chunks_exact(4).enumerate();
+    let rgba8 = pixels.flat_map(|(k, p)| change(k, [p[0], p[1], p[2], p[3]]));
+    Arc::new(Image {
+        rgba8: rgba8.collect(),
+        ..image.clone()
+    })
+}
+
+fn swapped([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    [b, g, r, a]
+}
+
+fn brighter([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    [
+        r.saturating_add(25),
+        g.saturating_add(20),
+        b.saturating_add(12),
+        a,
+    ]
+}
+
+const fn bulb(position_in_world: DVec3) -> Light {
+    Light::Sphere {
+        position_in_world,
+        radius_m: 0.005,
+    }
+}
+
+fn toy_middle() -> DVec3 {
+    let scene = scene();
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
+    let middle = (0.5 * (bounds.min + bounds.max)).as_dvec3();
+    scene.world_from_object.transform_point3(middle)
+}
+
+/// The first picture with all of the real shadow in one code.
+fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
+    let (scene, input) = (scene(), first_input());
+    let width = scene.width_px as usize;
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let rect = core.frame(&input).unwrap().region.unwrap();
+    let visibility = core.read_map(Map::PhysicalVisibility).unwrap().unwrap();
+    let validity = core.read_map(Map::Validity).unwrap().unwrap();
+    let [left, top] = rect.origin_px.to_array().map(|px| px as usize);
+    let [n_columns, n_rows] = rect.size_px.to_array().map(|px| px as usize);
+    changed(input.image.rgba(), |k, pixel| {
+        let (x, y) = (k % width, k / width);
+        if x < left || y < top || x >= left + n_columns || y >= top + n_rows {
+            return pixel;
+        }
+        let texel = (y - top) * n_columns + (x - left);
+        let is_shadow = validity.texels[texel][0] > 0.0 && visibility.texels[texel][0] < 0.99;
+        if is_shadow { [code, code, code, 255] } else { pixel }
+    })
+}
+
+/// What is wrong with a picture or with where things stand.
+#[test]
+fn broken_input_is_told_by_its_cause() {
+    let mut core = core();
+    let plate = Arc::clone(&scene().plates[0].image);
+    let picture = Arc::clone(first_input().image.rgba());
+    let [black_shadow, white_shadow] = [0, 255].map(|code| picture_with_shadow_of(&mut core, code));
+    let bundled = scene().lights[0];
+    let camera = first_input().camera.world_from_camera;
+    let behind = camera.transform_point3(DVec3::new(0.0, 0.0, 0.4));
+    let cases = [
+        Case::new("as it was taken", &[]),
+        Case::new("a plate with no toy as picture", &["ToyNotSeen"]).with_picture(plate),
+        Case::new("plate with red and blue swapped", &["RedAndBlueSwapped"]).with_plate(swapped),
+        Case::new("picture with red and blue swapped", &["RedAndBlueSwapped"])
+            .with_picture(changed(&picture, |_, pixel| swapped(pixel))),
+        Case::new("another white balance", &[]).with_picture(changed(&picture, |_, pixel| brighter(pixel))),
+        Case::new("black plate", &["PlateUnreadable"]).with_plate(|_| [0, 0, 0, 255]),
+        Case::new("white plate", &["PlateUnreadable"]).with_plate(|_| [255; 4]),
+        Case::new("black shadow", &["ShadowUnreadable"]).with_picture(black_shadow),
+        Case::new("white shadow", &["ShadowUnreadable"]).with_picture(white_shadow),
+        // The shadow in the picture is then that of a light that is not listed.
+        Case::new("light inside the toy", &["LightsInsideToy", "Outlier(Shadow)"])
+            .lit_by(vec![bulb(toy_middle())]),
+        Case::new("a second light inside the toy", &["LightsInsideToy"])
+            .lit_by(vec![bundled, bulb(toy_middle())]),
+        Case::new("light where there is none", &["NoShadow", "Outlier(Shadow)"])
+            .lit_by(vec![bulb(toy_middle() + DVec3::new(0.0, 0.2, 0.0))]),
+        Case::new("toy behind the camera", &["ToyOutOfPicture"]).standing_at(behind),
+        Case::new("toy far behind the camera", &["OutOfPicture"]).standing_at(behind.with_y(0.0)),
+        Case::new(
+            "toy aside from where it stands",
+            &["ToyNotSeen", "Outlier(Object)", "Outlier(Shadow)"],
+        )
+        .standing_at(DVec3::new(0.09, 0.0, 0.0)),
+    ];
+    for case in cases {
+        case.check(&mut core);
+    }
+}
+
+/// What there is too much of is counted, not listed.
+#[test]
+fn many_of_a_kind_are_one_short_warning() {
+    let mut core = core();
+    let (scene, lights) = (scene(), 1000);
+    let below = vec![bulb(-DVec3::Y); lights];
+    let many = Case::new("a thousand lights below", &["LightsBelowReceivers"]);
+    many.lit_by([scene.lights.clone(), below].concat())
+        .check(&mut core);
+
+    let aside = |index: u32| {
+        let at = DVec3::new(5.0 + f64::from(index), 0.0, 0.0);
+        Receiver {
+            name: format!("shelf {index}"),
+            world_from_plane: DMat4::from_translation(at),
+            ..scene.receivers[0].clone()
+        }
+    };
+    let mut many = Case::new("a thousand receivers", &["ReceiversLeftOut"]);
+    many.scene.receivers.extend((0..999).map(aside));
+    many.check(&mut core);
+}
+
+#[test]
+fn numbers_and_lists_in_messages_are_short() {
+    let known: Vec<String> = (0..1000).map(|k| format!("clip {k}")).collect();
+    let unknown = |known: &[String], name: &str| ToyError::UnknownClip {
+        file: "toy.glb".to_owned(),
+        name: name.to_owned(),
+        known: known.to_vec(),
+    };
+    let range = |value: f64| FieldError::Range {
+        value,
+        min: 1e-6,
+        max: 1e6,
+    };
+    #[rustfmt::skip] // One case a line.
+    let cases = [
+        (range(1e308).to_string(), "1e308 is not from 1e-6 to 1000000"),
+        (range(-f64::MAX).to_string(), "-1.79769e308 is not from 1e-6 to 1000000"),
+        (range(f64::MIN_POSITIVE).to_string(), "2.22507e-308 is not from 1e-6 to 1000000"),
+        (range(0.1 + 0.2).to_string(), "0.3 is not from 1e-6 to 1000000"),
+        (range(0.0).to_string(), "0 is not from 1e-6 to 1000000"),
+        (range(-16385.0).to_string(), "-16385 is not from 1e-6 to 1000000"),
+        (range(f64::NAN).to_string(), "NaN is not from 1e-6 to 1000000"),
+        (range(f64::INFINITY).to_string(), "inf is not from 1e-6 to 1000000"),
+        (unknown(&known[..2], "Wave").to_string(), "toy.glb: clip: none is called \"Wave\"; it has clip 0, clip 1"),
+        (unknown(&known[..6], "Wave").to_string(), "toy.glb: clip: none is called \"Wave\"; it has clip 0, clip 1, clip 2, clip 3, clip 4, clip 5"),
+        (unknown(&known, "Wave").to_string(), "toy.glb: clip: none is called \"Wave\"; it has clip 0, clip 1, clip 2, clip 3, clip 4 and 995 more"),
+        (unknown(&[], "Wave").to_string(), "toy.glb: clip: none is called \"Wave\"; it has none"),
+    ];
+    for (message, expected) in cases {
+        assert_eq!(message, expected);
+    }
+    let long = unknown(&known[..1], &"é".repeat(100_000)).to_string();
+    assert!(long.chars().count() <= MOST_CHARACTERS, "{} bytes", long.len());
+}

@@ -1,0 +1,205 @@
+//! The ledger against what a device is given, and the budgets that are held on it.
+
+mod budgets;
+mod leaving;
+mod scaling;
+mod trace;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use app_core::Core;
+use app_core::camera_frame::{CameraImage, Display};
+use app_core::frame::{self, FrameInput, FrameReport, PassRun};
+use app_core::preset::Preset;
+use app_core::session::{Capture, Session};
+use app_core::wgpu::{self, Instance, InstanceDescriptor};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::gpu::context::phone_limits;
+use desk::files::{BUNDLED_SESSION, Folder};
+use measure::bench::{FRAME_KINDS, with_new};
+use measure::planar::{BT601_FULL, planar};
+
+use trace::{Given, Objects};
+
+/// A device that writes down what it is given.
+struct Traced {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    trace: PathBuf,
+    n_read: usize,
+    objects: Objects,
+}
+
+impl Traced {
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        // What an earlier run left.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        let opened = pollster::block_on(adapter.unwrap().request_device(&wgpu::DeviceDescriptor {
+            required_limits: phone_limits(),
+            trace: wgpu::Trace::Directory(folder.clone()),
+            ..Default::default()
+        }));
+        let (device, queue) = opened.unwrap();
+        Self {
+            device,
+            queue,
+            trace: folder.join("trace.ron"),
+            n_read: 0,
+            objects: Objects::default(),
+        }
+    }
+
+    /// What the device was given since the last look.
+    fn given(&mut self) -> BTreeMap<String, Given> {
+        let text = fs::read_to_string(&self.trace).unwrap();
+        let given = self.objects.take(&text[self.n_read..]);
+        self.n_read = text.len();
+        given
+    }
+}
+
+/// A report in the words of a trace.
+fn counted(report: &FrameReport, given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
+    counted_runs(&report.ran, given)
+}
+
+fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
+    let mut passes: BTreeMap<String, Given> = BTreeMap::new();
+    for run in ran {
+        let pass = passes.entry(run.pass.to_owned()).or_default();
+        let work = run.work;
+        pass.n_runs += run.n_runs;
+        pass.n_draws += work.n_draws();
+        pass.triangles += work.triangles();
+        pass.vertices += work.vertices();
+        pass.bytes_written += work.bytes_written();
+        // Of compute passes the trace does not tell.
+        if given
+            .get(run.pass)
+            .is_some_and(|given| given.bytes_read.is_some())
+        {
+            *pass.bytes_read.get_or_insert(0) += work.bytes_read();
+        }
+    }
+    passes
+}
+
+fn session() -> Capture {
+    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
+}
+
+#[test]
+fn the_ledger_without_a_device_is_what_a_device_is_given() {
+    let session = session();
+    let first = FrameInput::from(&session.frame(0).unwrap());
+    let mut traced = Traced::new("ledger");
+    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
+    for preset in [Preset::Paper, Preset::Balanced, Preset::Best] {
+        let mut without = Core::counting();
+        for core in [&mut core, &mut without] {
+            core.set_scene(session.scene().clone(), preset).unwrap();
+        }
+        // The first frame learns all anew, the others what is new in them.
+        let mut steady = first.clone();
+        let others = FRAME_KINDS.map(|kind| {
+            steady = with_new(&steady, kind);
+            steady.clone()
+        });
+        for (index, input) in [&first].into_iter().chain(&others).enumerate() {
+            traced.given();
+            let report = core.frame(input).unwrap();
+            let given = traced.given();
+            let what = format!("{preset}, frame {index}");
+            let ledger = without.frame(input).unwrap();
+            assert_eq!(
+                counted(&ledger, &given),
+                given,
+                "{what}: by the ledger, and by the trace"
+            );
+            assert_eq!(ledger.ran, report.ran, "{what}");
+            assert_eq!(ledger.uploaded_bytes, report.uploaded_bytes, "{what}");
+        }
+        assert_eq!(core.memory().held_bytes, without.memory().held_bytes, "{preset}");
+        assert!(without.read_picture().is_err());
+    }
+}
+
+/// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all; pixels and planes.
+#[test]
+fn a_screen_costs_what_a_device_is_given() {
+    let session = session();
+    let mut input = FrameInput::from(&session.frame(0).unwrap());
+    let mut traced = Traced::new("ledger-screen");
+    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
+    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    let pixels = input.image.clone();
+    let planes = CameraImage::from(planar(pixels.rgba(), BT601_FULL).unwrap());
+    let large = [400, 300];
+    let (narrow, small) = ([90, 400], [8, 8]);
+    for ([width, height], effect, image) in [
+        (large, 1.0, &pixels),
+        (narrow, 0.4, &pixels),
+        (large, 0.0, &pixels),
+        (large, 1.0, &planes),
+        (narrow, 1.0, &planes),
+        (narrow, 0.4, &planes),
+        (small, 1.0, &planes),
+    ] {
+        input.image = image.clone();
+        input.effect = effect;
+        core.frame(&input).unwrap();
+        let screen = core.hidden_screen([width, height]).unwrap();
+        traced.given();
+        core.draw_on(&screen, Display::default()).unwrap();
+        let given = traced.given();
+        let work = core.count_present([width, height], Display::default()).unwrap();
+        let on_screen = PassRun {
+            path: frame::Path::Frame,
+            pass: "screen",
+            n_runs: 1,
+            work,
+        };
+        let expected = counted_runs(&[on_screen], &given);
+        assert_eq!(expected, given, "{width} x {height}, effect {effect}");
+    }
+}
+
+/// A draw, a store or a texel that the ledger does not know of is found.
+#[test]
+fn what_is_planted_in_a_trace_is_found() {
+    let session = session();
+    let first = FrameInput::from(&session.frame(0).unwrap());
+    let mut traced = Traced::new("ledger-planted");
+    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
+    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    let mut report = core.frame(&first).unwrap();
+    let text = fs::read_to_string(&traced.trace).unwrap();
+    let honest = Objects::default().take(&text);
+    assert_eq!(counted(&report, &honest), honest);
+    for (from, to) in [
+        ("instance_count: 32,", "instance_count: 31,"),
+        ("store_op: discard,", "store_op: store,"),
+        ("format: \"rgba16float\"", "format: \"rgba32float\""),
+        ("load_op: clear((", "load_op: load,("),
+        (
+            "label: Some(\"coverage\"),\n            commands",
+            "label: Some(\"cover\"),\n            commands",
+        ),
+    ] {
+        let planted = text
+            .replace(from, to)
+            .replace("load_op: load,(", "load_op: load,\n((");
+        assert_ne!(planted, text, "{from}");
+        let planted = Objects::default().take(&planted);
+        assert_ne!(counted(&report, &planted), planted, "{from}");
+    }
+    report.ran.pop();
+    assert_ne!(counted(&report, &honest), honest);
+    traced.given();
+}

@@ -1,0 +1,14 @@
+//! What is drawn, decided and counted: the core, its plans, its reports and the app on top of it.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod app;
+mod camera_frame;
+mod core;
+mod device;
+mod goldens;
+mod governor;
+mod ledger;
+mod plan;
+mod profile;
+mod self_test;

@@ -1,0 +1,199 @@
+//! A session in place of a camera: its plate while the place is empty, then its frames, over and over.
+
+use std::sync::Arc;
+
+use app_core::camera_frame::{
+    Anchor, CameraFrame, CameraImage, Display, Exposure, FoundPlane, Stamp, Tracking,
+};
+use app_core::card::card_from_lens;
+use app_core::scene::{Camera, ProbeShape, Scene};
+use app_core::session::{Capture, Files, Session, SessionError, SessionFrame};
+use glam::{DMat4, DVec2, DVec3};
+use serde::Deserialize;
+
+use desk::files::SESSION_FILE;
+use desk::stored::Stored;
+
+/// Receivers whose normals are nearer than this to straight up are level planes: cosine of 10 degrees.
+const LEVEL: f64 = 0.985;
+
+/// As the format has it.
+const MAX_INDEX_BYTES: u64 = 16 << 20;
+pub(super) const MAX_TOY_BYTES: u64 = 256 << 20;
+
+/// Of the index no more than the name of the toy's file.
+#[derive(Deserialize)]
+struct Index {
+    toy: ToyEntry,
+}
+
+#[derive(Deserialize)]
+struct ToyEntry {
+    file: String,
+}
+
+/// A session as a camera delivers it.
+pub struct Feed {
+    scene: Scene,
+    frames: Vec<SessionFrame>,
+    planes: Arc<[FoundPlane]>,
+    toy_file: Arc<[u8]>,
+    /// Whether the toy stands there.
+    pub is_toy_there: bool,
+    /// Whether the platform has found no plane yet.
+    pub hides_planes: bool,
+    /// Whether the camera is darkened: it then sees what a session has of a probe.
+    pub is_dark: bool,
+    /// How well the camera is followed; other than `Normal` it has no pose.
+    pub tracking: Tracking,
+    /// How the picture is shown.
+    pub display: Display,
+    /// Another number is another world.
+    pub world_epoch: u32,
+    next: usize,
+    n_delivered: u64,
+    time_ns: i64,
+}
+
+impl Feed {
+    /// All frames of a session.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn of(session: &impl Session) -> Result<Self, SessionError> {
+        let frames = (0..session.n_frames()).map(|index| session.frame(index));
+        let scene = session.scene().clone();
+        Ok(Self {
+            frames: frames.collect::<Result<_, _>>()?,
+            planes: level_planes(&scene),
+            toy_file: Arc::new([]),
+            scene,
+            is_toy_there: false,
+            hides_planes: false,
+            is_dark: false,
+            tracking: Tracking::Normal,
+            display: Display::default(),
+            world_epoch: 0,
+            next: 0,
+            n_delivered: 0,
+            time_ns: 0,
+        })
+    }
+
+    /// All frames of a session that is stored somewhere, and its toy's file.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn of_stored(stored: Stored) -> anyhow::Result<Self> {
+        let index: Index = serde_json::from_slice(&stored.read(SESSION_FILE, MAX_INDEX_BYTES)?)?;
+        let toy_file = stored.read(&index.toy.file, MAX_TOY_BYTES)?;
+        Ok(Self {
+            toy_file: toy_file.into(),
+            ..Self::of(&Capture::open(stored)?)?
+        })
+    }
+
+    /// The toy's file; empty where the session came without it.
+    #[must_use]
+    pub fn toy_file(&self) -> Arc<[u8]> {
+        Arc::clone(&self.toy_file)
+    }
+
+    /// Another toy, whose file this is.
+    pub fn set_toy_file(&mut self, file: Vec<u8>) {
+        self.toy_file = file.into();
+    }
+
+    /// The next frame, `elapsed_s` after the one before.
+    pub fn next(&mut self, elapsed_s: f64) -> CameraFrame {
+        #[allow(clippy::cast_possible_truncation, reason = "within a session")]
+        let elapsed_ns = (elapsed_s * 1e9) as i64;
+        self.time_ns += elapsed_ns;
+        self.n_delivered += 1;
+        let frame = &self.frames[self.next];
+        let plate = self.scene.plates.first().filter(|_| !self.is_toy_there);
+        let (image, camera) = plate.map_or((&frame.image, &frame.camera), |plate| {
+            (&plate.image, &plate.camera)
+        });
+        let probe = self.scene.probe.as_ref().filter(|_| self.is_dark);
+        let taken = match probe.and_then(|probe| probe.pictures.first()) {
+            Some(dark) => {
+                let exposure = frame.exposure * dark.exposure_ratio;
+                self.frame((Arc::clone(&dark.image).into(), exposure), &dark.camera, frame)
+            }
+            None => self.frame((Arc::clone(image).into(), frame.exposure), camera, frame),
+        };
+        if self.is_toy_there {
+            self.next = (self.next + 1) % self.frames.len();
+        }
+        taken
+    }
+
+    fn frame(
+        &self,
+        (image, exposure): (CameraImage, f64),
+        camera: &Camera,
+        of: &SessionFrame,
+    ) -> CameraFrame {
+        let is_known = self.tracking == Tracking::Normal;
+        CameraFrame {
+            stamp: Stamp {
+                id: self.n_delivered,
+                time_ns: self.time_ns,
+                world_epoch: self.world_epoch,
+            },
+            // It is handed over as it is made.
+            age_ms: Some(0.0),
+            image,
+            intrinsics: camera.intrinsics,
+            exposure: Some(Exposure {
+                duration_s: 0.01 * exposure,
+                iso: 100.0,
+            }),
+            tracking: self.tracking,
+            world_from_camera: is_known.then_some(camera.world_from_camera),
+            planes: if self.hides_planes {
+                Arc::new([])
+            } else {
+                Arc::clone(&self.planes)
+            },
+            anchors: Arc::from(Vec::<Anchor>::new()),
+            world_from_card: self.world_from_card().filter(|_| is_known && !self.is_dark),
+            light_estimate: of.light_estimate,
+            display: self.display,
+        }
+    }
+
+    /// The card that the lens of a session would lie on.
+    fn world_from_card(&self) -> Option<DMat4> {
+        let probe = self.scene.probe.as_ref()?;
+        let is_lens = matches!(probe.shape, ProbeShape::FresnelLens { .. });
+        let first = probe.pictures.first().filter(|_| is_lens)?;
+        Some(first.world_from_probe * card_from_lens().inverse())
+    }
+
+    /// Where the toy really stands, and the camera that sees it first.
+    #[must_use]
+    pub fn toy(&self) -> (&DMat4, &Camera) {
+        let frame = &self.frames[0];
+        (&frame.world_from_object, &frame.camera)
+    }
+
+    /// The session's scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+}
+
+/// The receivers that a platform would find: all where none is level.
+fn level_planes(scene: &Scene) -> Arc<[FoundPlane]> {
+    let planes = (0..).zip(&scene.receivers).map(|(id, receiver)| FoundPlane {
+        id,
+        world_from_plane: receiver.world_from_plane,
+        half_extent_m: DVec2::max(receiver.half_extent_m, DVec2::ZERO),
+    });
+    let (level, others): (Vec<_>, Vec<_>) =
+        planes.partition(|plane| plane.world_from_plane.y_axis.truncate().dot(DVec3::Y) > LEVEL);
+    if level.is_empty() { others } else { level }.into()
+}

@@ -1,0 +1,115 @@
+//! The moment that the app shows, as a session of one frame: replayed, it is a page with all presets side by side, the maps on the
+//! way and times, and a picture of the lights.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use app_core::Core;
+use app_core::app::{App, Show};
+use app_core::frame::FrameInput;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::scene::{Image, Scene};
+use app_core::session::{Session, SessionError, SessionFrame, SessionWarning};
+use app_core::wgpu;
+
+use desk::gizmo;
+use desk::gizmo::Gizmo;
+use desk::output::write_png;
+use desk::page::PAGE_FILE;
+use desk::progress::Quiet;
+use desk::replay::{Options, replay};
+
+/// Picture of the lights, beside the page.
+const LIGHTS_FILE: &str = "lights.png";
+
+/// A moment of the app.
+pub struct Moment {
+    scene: Scene,
+    frame: SessionFrame,
+}
+
+impl Moment {
+    /// What is shown now; none while the toy does not move.
+    #[must_use]
+    pub fn of(app: &App) -> Option<Self> {
+        let Show::Toy { scene, input, .. } = app.show() else {
+            return None;
+        };
+        let mut scene = scene.clone();
+        if let Some(lights) = &input.lights {
+            scene.lights = lights.to_vec();
+        }
+        // Lights are known by now; a probe would tell them again.
+        scene.probe = None;
+        let frame = SessionFrame {
+            time_secs: 0.0,
+            image: Arc::clone(input.image.rgba()),
+            camera: input.camera,
+            world_from_object: input.world_from_object,
+            exposure: input.exposure,
+            light_estimate: input.light_estimate,
+            shown_pose: input.shown_pose,
+            warnings: Vec::new(),
+        };
+        Some(Self { scene, frame })
+    }
+
+    /// Draws it with every preset on a device of its own, as it is, and writes the page into a folder; its place.
+    ///
+    /// # Errors
+    /// When there is no device, a preset refuses, or nothing can be written.
+    pub fn write(&self, folder: &Path) -> anyhow::Result<std::path::PathBuf> {
+        let instance = wgpu::Instance::default();
+        let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+        let options = Options {
+            presets: Preset::ALL.to_vec(),
+            out: Some(folder.to_owned()),
+            is_aligned: false,
+            ..Options::default()
+        };
+        replay(self, None, &mut core, &options, &mut Quiet)?;
+        self.draw_lights(&folder.join(LIGHTS_FILE))?;
+        Ok(folder.join(PAGE_FILE))
+    }
+
+    /// The lights that the picture was made with, as rays from the toy's middle.
+    fn draw_lights(&self, path: &Path) -> anyhow::Result<()> {
+        let mut picture = Image::clone(&self.frame.image);
+        let input = FrameInput::from(&self.frame);
+        let lights = Gizmo::listed(&self.scene, &input);
+        gizmo::rays(&mut picture, (&self.scene, &input), &lights, gizmo::FOUND);
+        write_png(path, &picture)?;
+        Ok(())
+    }
+}
+
+impl Session for Moment {
+    fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    fn warnings(&self) -> &[SessionWarning] {
+        &[]
+    }
+
+    fn n_frames(&self) -> usize {
+        1
+    }
+
+    fn frame(&self, _: usize) -> Result<SessionFrame, SessionError> {
+        Ok(self.frame.clone())
+    }
+
+    fn photograph(&self, _: usize) -> Result<Arc<Image>, SessionError> {
+        Ok(Arc::clone(&self.frame.image))
+    }
+
+    fn through_lens(&self, _: usize, made: Image) -> Result<Image, SessionError> {
+        Ok(made)
+    }
+
+    fn map_through_lens(&self, _: usize, map: Image) -> Result<Image, SessionError> {
+        Ok(map)
+    }
+}

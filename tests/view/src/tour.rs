@@ -1,0 +1,411 @@
+//! A tour through every screen of the app, by a person who is simulated: what they see is written as pictures.
+
+use std::path::{Path, PathBuf};
+
+use app_core::app::{Permission, PhoneQuestion, ShellEvent, Step};
+use app_core::core::CoreError;
+use app_core::interface::{Screen, Touch, TouchPhase};
+use glam::{DMat4, DVec2, DVec3};
+use thiserror::Error;
+
+use super::desk::Desk;
+use super::fault::Fault;
+use desk::output::{WriteError, make_folder, write_png};
+
+/// Time between two frames, in seconds.
+const FRAME_S: f64 = 1.0 / 30.0;
+/// Frames that a screen takes to settle: menus open, messages come.
+const N_SETTLE: usize = 4;
+/// Frames after which a step that did not come is not waited for.
+const N_PATIENCE: usize = 60;
+/// Frames that are recorded, and as many as screens take meanwhile.
+const N_RECORDED: usize = 24;
+/// Frames of a video.
+const N_VIDEO: usize = 15;
+/// How far off the simulated person leaves the ghost: in metres, and in radians.
+const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
+const GHOST_OFF_RAD: f64 = 0.1;
+/// Drags after which a button that is still out of sight is touched where it is.
+const N_SCROLLS: usize = 6;
+/// What a sheet leaves free below what can be touched in it, in points.
+const SHEET_MARGIN_POINTS: f64 = 28.0;
+/// What a step of the wheel turns, in radians, as the interface has it.
+const WHEEL_RAD: f64 = 0.05;
+
+/// A tour that did not come to its end.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TourError {
+    /// The core refused.
+    #[error(transparent)]
+    Core(#[from] CoreError),
+    /// A picture cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// There is no such button.
+    #[error("at {at}: no button «{label}»; there are {found:?}")]
+    NoButton {
+        /// The step.
+        at: String,
+        /// The label.
+        label: String,
+        /// Those that there are.
+        found: Vec<String>,
+    },
+    /// The app did not go where it should.
+    #[error("after {after}: the step is {is:?}, not {expected:?}")]
+    Astray {
+        /// What was done.
+        after: String,
+        /// Where it is.
+        is: Step,
+        /// Where it should be.
+        expected: Step,
+    },
+}
+
+/// A person on a tour, with a screen.
+pub struct Tour<'a> {
+    desk: &'a mut Desk,
+    screen: Screen,
+    out: PathBuf,
+    time_s: f64,
+    written: Vec<PathBuf>,
+}
+
+impl<'a> Tour<'a> {
+    /// A person who has just opened the app.
+    ///
+    /// # Errors
+    /// When `out` cannot be made.
+    pub fn new(desk: &'a mut Desk, screen: Screen, out: &Path) -> Result<Self, TourError> {
+        make_folder(out)?;
+        desk.tell(ShellEvent::Foreground(true));
+        desk.tell(ShellEvent::Surface(Some(screen.size_px)));
+        Ok(Self {
+            desk,
+            screen,
+            out: out.to_owned(),
+            time_s: 0.0,
+            written: Vec::new(),
+        })
+    }
+
+    /// Goes all the way, and returns the pictures in their order.
+    ///
+    /// # Errors
+    /// When the app does not go where it should.
+    pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
+        self.welcome()?;
+        self.find_table()?;
+        self.take_plate()?;
+        self.place_toy()?;
+        self.play()?;
+        self.faults()?;
+        Ok(self.written)
+    }
+
+    fn welcome(&mut self) -> Result<(), TourError> {
+        self.shoot("welcome")?;
+        self.desk.answer = Permission::Denied;
+        self.press("Begin")?;
+        self.shoot("camera_denied")?;
+        self.desk.tell(ShellEvent::Permission(Permission::Barred));
+        self.shoot("camera_barred")?;
+        self.desk.tell(ShellEvent::Permission(Permission::Denied));
+        self.desk.answer = Permission::Granted;
+        self.shoot_nothing()?;
+        self.press("Allow the camera")?;
+        self.wait_for(Step::FindTable, "the camera was allowed")
+    }
+
+    fn find_table(&mut self) -> Result<(), TourError> {
+        // A device compiles while the person looks around.
+        for _ in 0..N_PATIENCE {
+            self.frame()?;
+        }
+        for fault in [Fault::TooFast, Fault::TooPlain, Fault::TooDark] {
+            self.during(fault)?;
+        }
+        self.shoot("find_table")?;
+        self.check_phone()?;
+        let at = self.toy_px(DVec3::ZERO);
+        self.desk.feed.hides_planes = true;
+        self.frame()?;
+        self.tap(at)?;
+        self.shoot("no_table_there")?;
+        self.desk.feed.hides_planes = false;
+        self.frame()?;
+        self.tap(at)?;
+        self.frame()?;
+        self.expect(Step::TakePlate, "the table was tapped")
+    }
+
+    /// Each question of a new phone.
+    fn check_phone(&mut self) -> Result<(), TourError> {
+        self.press("Check this phone")?;
+        for number in 1..=PhoneQuestion::ALL.len() {
+            self.shoot(&format!("check_{number}"))?;
+            self.press(if number == 3 { "No" } else { "Yes" })?;
+        }
+        self.shoot("checked")
+    }
+
+    fn take_plate(&mut self) -> Result<(), TourError> {
+        self.shoot("take_plate")?;
+        self.wait_for(Step::PlaceToy, "the place was photographed")
+    }
+
+    fn place_toy(&mut self) -> Result<(), TourError> {
+        self.desk.feed.is_toy_there = true;
+        self.shoot("place_toy")?;
+        self.turn_ghost()?;
+        let at = self.toy_px(GHOST_OFF_M);
+        self.tap(at)?;
+        self.shoot("toy_placed")?;
+        if self.desk.live.app().sees_card() {
+            self.take_lens()?;
+        }
+        self.press("It fits")?;
+        self.frame()?;
+        self.expect(Step::Align, "the ghost was placed")?;
+        self.shoot("align")?;
+        self.desk.work();
+        self.wait_for(Step::Play, "the toy was found")
+    }
+
+    /// Of a session that has a picture of a lens.
+    fn take_lens(&mut self) -> Result<(), TourError> {
+        // A camera takes some frames to darken.
+        self.press("Light from the lens")?;
+        self.shoot_nothing()?;
+        self.shoot("lens_taken")
+    }
+
+    fn play(&mut self) -> Result<(), TourError> {
+        self.shoot("fade_in")?;
+        for _ in 0..12 {
+            self.frame()?;
+        }
+        self.shoot("play")?;
+        self.press("Photo")?;
+        self.shoot("photo_saved")?;
+        self.press("Pause")?;
+        self.shoot("paused")?;
+        if let Some(page) = self.desk.look_into() {
+            let _ = page.join();
+        }
+        self.press("More")?;
+        self.shoot("menu")?;
+        // Each of these changes what the sheet is made of, and with it where its buttons are.
+        for label in ["Show times", "Record the session", "Close", "Play"] {
+            self.press(label)?;
+            self.shoot_nothing()?;
+        }
+        self.shoot("times")?;
+        self.make_video()?;
+        self.record()
+    }
+
+    /// A video of half a second.
+    fn make_video(&mut self) -> Result<(), TourError> {
+        self.press("Video")?;
+        for _ in 0..N_VIDEO {
+            self.frame()?;
+        }
+        self.shoot("video")?;
+        self.press("End video")?;
+        self.shoot_nothing()
+    }
+
+    /// Ends the recording after a second, and shares it.
+    fn record(&mut self) -> Result<(), TourError> {
+        for _ in 0..N_RECORDED {
+            self.frame()?;
+        }
+        self.press("More")?;
+        self.shoot_nothing()?;
+        self.press("End the recording")?;
+        self.desk.wait_for_recording();
+        self.shoot("recorded")?;
+        self.press("Share log and recording")?;
+        self.shoot("shared")?;
+        if self.desk.toy_to_pick.as_ref().is_some_and(|path| path.is_dir()) {
+            self.press("Another toy")?;
+            self.shoot("choose_toy")?;
+            self.press("Back")?;
+            self.shoot_nothing()?;
+        }
+        // A picture is no toy.
+        self.desk.toy_to_pick = self.written.first().cloned();
+        self.press("Another toy")?;
+        self.shoot("toy_refused")?;
+        self.press("Close")?;
+        Ok(())
+    }
+
+    fn faults(&mut self) -> Result<(), TourError> {
+        for fault in [
+            Fault::Relocalising,
+            Fault::Interrupted,
+            Fault::Hot,
+            Fault::DeviceLost,
+            Fault::ArFailed,
+        ] {
+            self.during(fault)?;
+        }
+        let _ = Fault::NewWorld.strikes(&mut self.desk.feed);
+        self.wait_for(Step::FindTable, "the world was lost")?;
+        self.shoot("new_world")?;
+        self.during(Fault::NoAr)
+    }
+
+    /// The screen while something goes wrong, and on until it has passed.
+    fn during(&mut self, fault: Fault) -> Result<(), TourError> {
+        if let Some(event) = fault.strikes(&mut self.desk.feed) {
+            self.desk.tell(event);
+        }
+        self.shoot(&format!("fault_{fault:?}").to_lowercase())?;
+        if let Some(event) = fault.passes(&mut self.desk.feed) {
+            self.desk.tell(event);
+        }
+        for _ in 0..2 * N_SETTLE {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Pixels of the picture where the toy's origin is seen, moved in the world.
+    fn toy_px(&self, moved_m: DVec3) -> DVec2 {
+        let (world_from_object, camera) = self.desk.feed.toy();
+        let at = world_from_object.w_axis.truncate() + moved_m;
+        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+        camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
+    }
+
+    /// Turns the ghost with the wheel until it faces as the toy does, but for a little.
+    fn turn_ghost(&mut self) -> Result<(), TourError> {
+        let (world_from_object, camera) = self.desk.feed.toy();
+        let yaw = |pose: &DMat4| pose.z_axis.x.atan2(pose.z_axis.z);
+        let to_camera = camera.world_from_camera.w_axis - world_from_object.w_axis;
+        let angle_rad = yaw(world_from_object) - to_camera.x.atan2(to_camera.z) + GHOST_OFF_RAD;
+        self.desk.live.wheel(angle_rad / WHEEL_RAD);
+        self.frame()
+    }
+
+    /// Touches a pixel of the camera's picture.
+    fn tap(&mut self, pixel: DVec2) -> Result<(), TourError> {
+        let (picture_px, display) = self
+            .desk
+            .live
+            .app()
+            .picture()
+            .unwrap_or(([1, 1], self.desk.feed.display));
+        let picture_from_screen = display.image_from_screen(picture_px, self.screen.size_px);
+        self.touch(picture_from_screen.inverse().transform_point2(pixel).to_array())
+    }
+
+    fn touch(&mut self, at_px: [f64; 2]) -> Result<(), TourError> {
+        for phase in [TouchPhase::Began, TouchPhase::Ended] {
+            self.desk.live.touch(Touch { id: 1, phase, at_px });
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Touches a button by what a screen reader calls it, which may have to be scrolled to.
+    fn press(&mut self, label: &str) -> Result<(), TourError> {
+        for _ in 0..N_SCROLLS {
+            let [left, _, right, bottom] = self.button(label)?;
+            let height = f64::from(self.screen.size_px[1]);
+            let beyond_px = bottom - (height - SHEET_MARGIN_POINTS * self.screen.pixels_per_point);
+            if beyond_px <= 0.0 {
+                break;
+            }
+            self.drag_up([0.5 * (left + right), 0.7 * height], beyond_px.min(0.4 * height))?;
+        }
+        let [left, top, right, bottom] = self.button(label)?;
+        self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
+    }
+
+    /// Scrolls what is below a finger, which then rests for a while so that nothing rolls on.
+    fn drag_up(&mut self, [x, y]: [f64; 2], by_px: f64) -> Result<(), TourError> {
+        let phases = [
+            (TouchPhase::Began, 0.0),
+            (TouchPhase::Moved, 0.5),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Moved, 1.0),
+            (TouchPhase::Ended, 1.0),
+        ];
+        for (phase, part) in phases {
+            let at_px = [x, y - part * by_px];
+            self.desk.live.touch(Touch { id: 1, phase, at_px });
+            self.frame()?;
+        }
+        self.shoot_nothing()
+    }
+
+    /// Left, top, right and bottom of a button, in pixels.
+    fn button(&self, label: &str) -> Result<[f64; 4], TourError> {
+        let widgets = self.desk.live.widgets();
+        let button = widgets
+            .iter()
+            .find(|widget| widget.label == label && widget.role == "Button");
+        let Some(button) = button else {
+            let buttons = widgets.iter().filter(|widget| widget.role == "Button");
+            return Err(TourError::NoButton {
+                at: format!("{:?}", self.desk.live.app().step()),
+                label: label.to_owned(),
+                found: buttons.map(|widget| widget.label.clone()).collect(),
+            });
+        };
+        Ok(button.bounds_px)
+    }
+
+    fn wait_for(&mut self, step: Step, after: &str) -> Result<(), TourError> {
+        for _ in 0..N_PATIENCE {
+            if self.desk.live.app().step() == step {
+                return Ok(());
+            }
+            self.frame()?;
+            self.desk.work();
+        }
+        self.expect(step, after)
+    }
+
+    fn expect(&self, expected: Step, after: &str) -> Result<(), TourError> {
+        let is = self.desk.live.app().step();
+        let after = after.to_owned();
+        if is == expected {
+            Ok(())
+        } else {
+            Err(TourError::Astray { after, is, expected })
+        }
+    }
+
+    fn frame(&mut self) -> Result<(), TourError> {
+        self.time_s += FRAME_S;
+        self.desk.tick(FRAME_S);
+        self.desk.screenshot(&self.screen, self.time_s)?;
+        Ok(())
+    }
+
+    fn shoot_nothing(&mut self) -> Result<(), TourError> {
+        for _ in 0..N_SETTLE {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// Writes what the screen shows.
+    fn shoot(&mut self, name: &str) -> Result<(), TourError> {
+        self.shoot_nothing()?;
+        self.time_s += FRAME_S;
+        let image = self.desk.screenshot(&self.screen, self.time_s)?;
+        let path = self.out.join(format!("{:02}_{name}.png", self.written.len()));
+        write_png(&path, &image)?;
+        self.written.push(path);
+        Ok(())
+    }
+}
