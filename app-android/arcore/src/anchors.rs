@@ -3,8 +3,7 @@
 use app_core::camera_frame::Anchor;
 use glam::DMat4;
 
-use super::ffi::ArPose;
-use super::frame::TRACKING;
+use super::ffi::{ArPose, TRACKING};
 use super::owned::Owned;
 use super::session::{HeldAnchor, Session};
 use super::status::Failure;

@@ -2,20 +2,11 @@
 
 use std::ffi::CStr;
 
-use app_core::card::{PATTERN_M, reference};
-use glam::DMat4;
-
-use super::ffi::{ArAugmentedImage, ArAugmentedImageDatabase, ArSession, ArTrackable, Functions};
-use super::frame::{STOPPED, TRACKING};
+use super::ffi::{ArAugmentedImageDatabase, ArSession, Functions};
 use super::owned::Owned;
-use super::session::{NOTHING, Session};
-use super::status::Failure;
-use crate::convert;
+use super::status::{Failure, NOTHING};
+use app_core::card::{PATTERN_M, reference};
 
-/// `AR_TRACKABLE_AUGMENTED_IMAGE`.
-const IMAGES: i32 = 0x4152_0104;
-/// `AR_AUGMENTED_IMAGE_TRACKING_METHOD_FULL_TRACKING`: it is seen in this frame.
-const IS_SEEN: i32 = 1;
 const NAME: &CStr = c"card";
 
 /// Images to look for: the card alone.
@@ -54,28 +45,4 @@ pub(super) fn database(
         )
     })?;
     Ok(database)
-}
-
-impl Session {
-    /// Where the card is, while it is seen.
-    pub(super) fn card(&self) -> Option<DMat4> {
-        let mut found = self.trackables_of(IMAGES);
-        found.find_map(|trackable| self.pose_of_card(&trackable))
-    }
-
-    fn pose_of_card(&self, trackable: &Owned<ArTrackable>) -> Option<DMat4> {
-        let (api, raw) = (&self.api, self.raw());
-        // The list was asked for images alone, which are trackables in C by a cast.
-        let image: *const ArAugmentedImage = trackable.as_ptr().cast_const().cast();
-        let (mut state, mut method) = (STOPPED, 0);
-        // SAFETY: session, image and pose live, and the numbers are places of ours.
-        unsafe {
-            (api.ArTrackable_getTrackingState)(raw, trackable.as_ptr(), &raw mut state);
-            (api.ArAugmentedImage_getTrackingMethod)(raw, image, &raw mut method);
-            (api.ArAugmentedImage_getCenterPose)(raw, image, self.pose.as_ptr());
-        }
-        // A pose is one in the same numbers, whatever it is of.
-        let world_from_card = convert::world_from_camera(self.pose_raw(&self.pose));
-        world_from_card.filter(|_| state == TRACKING && method == IS_SEEN)
-    }
 }

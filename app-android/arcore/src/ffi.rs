@@ -23,6 +23,11 @@ opaque! {
     ArImageMetadata ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
 }
 
+/// `AR_TRACKING_STATE_TRACKING`.
+pub(super) const TRACKING: i32 = 0;
+/// `AR_TRACKING_STATE_STOPPED`: never to come back.
+pub(super) const STOPPED: i32 = 2;
+
 /// An entry of what a camera says of a picture.
 #[allow(non_camel_case_types, reason = "a name of the C interface")]
 #[repr(C)]

@@ -5,10 +5,10 @@ use app_core::camera_frame::{
     Stamp, Tracking, YcbcrEncoding,
 };
 use app_core::scene::{Intrinsics, LightEstimate};
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use rustix::time::{ClockId, clock_gettime};
 
-use super::ffi::{ArCamera, ArImage, ArPose};
+use super::ffi::{ArAugmentedImage, ArCamera, ArImage, ArPose, ArTrackable, STOPPED, TRACKING};
 use super::owned::Owned;
 use super::session::Session;
 use super::status::{
@@ -16,12 +16,12 @@ use super::status::{
 };
 use crate::convert;
 
-/// `AR_TRACKING_STATE_TRACKING`.
-pub(super) const TRACKING: i32 = 0;
-/// `AR_TRACKING_STATE_STOPPED`: never to come back.
-pub(super) const STOPPED: i32 = 2;
 /// `AR_IMAGE_FORMAT_YUV_420_888`.
 const YUV_420: i32 = 0x23;
+/// `AR_TRACKABLE_AUGMENTED_IMAGE`.
+const IMAGES: i32 = 0x4152_0104;
+/// `AR_AUGMENTED_IMAGE_TRACKING_METHOD_FULL_TRACKING`: it is seen in this frame.
+const IS_SEEN: i32 = 1;
 /// `AR_LIGHT_ESTIMATE_STATE_VALID`.
 const VALID: i32 = 1;
 /// What Android's pictures for the processor are by default; ARCore does not tell.
@@ -240,5 +240,29 @@ impl Session {
             spherical_harmonics: Some(harmonics.map(f64::from)),
             ..LightEstimate::default()
         })
+    }
+}
+
+impl Session {
+    /// Where the card is, while it is seen.
+    fn card(&self) -> Option<DMat4> {
+        let mut found = self.trackables_of(IMAGES);
+        found.find_map(|trackable| self.pose_of_card(&trackable))
+    }
+
+    fn pose_of_card(&self, trackable: &Owned<ArTrackable>) -> Option<DMat4> {
+        let (api, raw) = (&self.api, self.raw());
+        // The list was asked for images alone, which are trackables in C by a cast.
+        let image: *const ArAugmentedImage = trackable.as_ptr().cast_const().cast();
+        let (mut state, mut method) = (STOPPED, 0);
+        // SAFETY: session, image and pose live, and the numbers are places of ours.
+        unsafe {
+            (api.ArTrackable_getTrackingState)(raw, trackable.as_ptr(), &raw mut state);
+            (api.ArAugmentedImage_getTrackingMethod)(raw, image, &raw mut method);
+            (api.ArAugmentedImage_getCenterPose)(raw, image, self.pose.as_ptr());
+        }
+        // A pose is one in the same numbers, whatever it is of.
+        let world_from_card = convert::world_from_camera(self.pose_raw(&self.pose));
+        world_from_card.filter(|_| state == TRACKING && method == IS_SEEN)
     }
 }

@@ -2,8 +2,7 @@
 
 use app_core::camera_frame::FoundPlane;
 
-use super::ffi::{ArPlane, ArTrackable};
-use super::frame::{STOPPED, TRACKING};
+use super::ffi::{ArPlane, ArTrackable, STOPPED, TRACKING};
 use super::owned::Owned;
 use super::session::Session;
 use crate::convert;

@@ -7,7 +7,7 @@ use super::ffi::{
     ArTrackableList, Functions,
 };
 use super::owned::Owned;
-use super::status::{Failure, UNSUPPORTED_CONFIGURATION};
+use super::status::{Failure, NOTHING, UNSUPPORTED_CONFIGURATION};
 use crate::java::Java;
 
 /// `AR_UPDATE_MODE_LATEST_CAMERA_IMAGE`: an update never waits.
@@ -71,9 +71,6 @@ pub(super) struct Session {
     has_light: bool,
     finds_planes: bool,
 }
-
-/// The failure of a function that made nothing and says nothing.
-pub(super) const NOTHING: Failure = Failure(-2);
 
 impl Session {
     /// Creates and configures a session, which is then paused.

@@ -7,6 +7,8 @@ use super::ffi::{ArAvailability, ArStatus, ArTrackingFailureReason};
 
 /// `AR_SUCCESS`.
 pub const SUCCESS: ArStatus = 0;
+/// The failure of a function that made nothing and says nothing.
+pub(super) const NOTHING: Failure = Failure(-2);
 /// `AR_ERROR_UNSUPPORTED_CONFIGURATION`.
 pub const UNSUPPORTED_CONFIGURATION: ArStatus = -8;
 /// `AR_ERROR_CAMERA_PERMISSION_NOT_GRANTED`.

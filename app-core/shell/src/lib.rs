@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod avi;
+mod encoder;
 pub mod guard;
 mod motion_jpeg;
 pub mod record;

@@ -9,7 +9,7 @@ use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
 use crate::avi::Avi;
-use crate::video::{HZ, VideoEncoder};
+use crate::encoder::{HZ, VideoEncoder};
 
 /// Of the pictures, of 100: beyond it files grow faster than what is seen of them.
 const QUALITY: u8 = 92;

@@ -10,35 +10,15 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use app_core::app::Saved;
 use app_core::scene::Image;
 
+pub use crate::encoder::{BeginVideo, HZ, VideoEncoder};
 use crate::guard::guarded;
 use crate::motion_jpeg;
 use crate::save::outcome;
 
-/// Pictures a second, at most.
-pub const HZ: u32 = 30;
 /// Pictures that wait for the thread; what comes while as many do is left out.
 const N_WAITING: usize = 4;
 /// A picture stands no longer than this, in seconds, whatever its time says.
 const LONGEST_S: f64 = 2.0;
-
-/// Encodes pictures of one size into one file.
-pub trait VideoEncoder {
-    /// Adds the picture that is shown from `since_s` on, in seconds after the first, later than the one before; false where the
-    /// file has no more room.
-    ///
-    /// # Errors
-    /// As the encoder's and the file's.
-    fn add(&mut self, picture: &Image, since_s: f64) -> io::Result<bool>;
-
-    /// Makes the file whole; the last picture is shown until `until_s`.
-    ///
-    /// # Errors
-    /// As the encoder's and the file's.
-    fn finish(self: Box<Self>, until_s: f64) -> io::Result<()>;
-}
-
-/// Begins a file of pictures of so many pixels.
-pub type BeginVideo = fn(&Path, [u32; 2]) -> io::Result<Box<dyn VideoEncoder>>;
 
 /// A way to encode.
 #[derive(Clone, Copy, Debug)]

@@ -8,10 +8,13 @@ pub mod camera;
 #[cfg(target_os = "ios")]
 mod card;
 #[cfg(target_os = "ios")]
+mod pixels;
+#[cfg(target_os = "ios")]
+mod pixels;
+#[cfg(target_os = "ios")]
 pub mod read;
 #[cfg(target_os = "ios")]
 pub mod session;
 #[cfg(target_arch = "aarch64")]
 pub mod shim;
-#[cfg(target_os = "ios")]
 mod textures;

@@ -15,7 +15,7 @@ use objc2_core_video::{
 };
 use objc2_metal::{MTLPixelFormat, MTLTextureType};
 
-use super::{frame, read};
+use super::{frame, pixels};
 
 /// What keeps memory that Metal reads.
 struct Kept<T>(CFRetained<T>);
@@ -62,7 +62,7 @@ impl TextureCache {
             device: self.device.clone(),
             luma: self.texture((buffer, 0), size_px, luma)?,
             chroma: self.texture((buffer, 1), half_px, chroma)?,
-            read: Box::new(move || read::copied(kept.buffer())),
+            read: Box::new(move || pixels::copied(kept.buffer())),
         };
         planes.into_image(size_px, encoding).ok()
     }

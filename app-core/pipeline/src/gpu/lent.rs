@@ -4,7 +4,7 @@ use app_scene::camera_frame::{LentPlanes, PlanarImage, PlaneError, YcbcrEncoding
 use thiserror::Error;
 use wgpu::TextureFormat;
 
-use super::DeviceHandle;
+use super::handle::DeviceHandle;
 
 /// Planes that are textures of the platform's already: passes read them where they lie.
 ///

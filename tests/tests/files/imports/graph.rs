@@ -6,7 +6,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 use syn::{Item, ItemUse, UseTree};
 
-use crate::source::Module;
+use super::source::Module;
 
 /// One file names something of another.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -148,6 +148,9 @@ impl Visit<'_> for Paths {
     fn visit_item_use(&mut self, item: &ItemUse) {
         self.add_tree(&item.tree, &mut Vec::new());
     }
+
+    /// A module within a file is of its tests, which may name all of it.
+    fn visit_item_mod(&mut self, _: &syn::ItemMod) {}
 
     /// `pub(crate)` imports nothing.
     fn visit_visibility(&mut self, _: &syn::Visibility) {}

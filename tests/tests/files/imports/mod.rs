@@ -10,8 +10,8 @@ use rooms::out_of_order;
 use source::{Module, modules};
 
 const PIPELINE: &str = "app-core/pipeline";
-/// All others.
-const PACKAGES: [&str; 15] = [
+/// All others of what goes on a phone.
+const PACKAGES: [&str; 11] = [
     "app-core/scene",
     "app-core/alignment",
     "app-core/session",
@@ -23,10 +23,6 @@ const PACKAGES: [&str; 15] = [
     "app-android",
     "app-android/arcore",
     "app-android/media",
-    "tests/desk",
-    "tests/measure",
-    "tests/reference",
-    "tests/view",
 ];
 
 fn problems(modules: &[Module]) -> Vec<String> {
@@ -64,7 +60,10 @@ fn imports_go_one_way() {
 #[test]
 fn no_crate_imports_in_a_circle() {
     let of_package = |package: &str| -> Vec<String> {
-        let circles = in_circles(&imports(&modules(package)));
+        let mut modules = modules(package);
+        // In place of ARCore in tests: one thing in several files.
+        modules.retain(|module| !module.path.starts_with("fake"));
+        let circles = in_circles(&imports(&modules));
         circles.map(|circle| format!("{package}, {circle}")).collect()
     };
     let problems: Vec<String> = PACKAGES.into_iter().flat_map(of_package).collect();
@@ -101,11 +100,7 @@ use crate::model::state::tints::Tints;\nuse super::super::state::SceneState;",
             "planted! { crate::geometry::view::planted }",
             "circle: ",
         ),
-        (
-            "planted",
-            "use crate::scene::Scene;",
-            "planted is in no room",
-        ),
+        ("planted", "use crate::scene::Scene;", "planted is in no room"),
     ];
     for (path, line, words) in faults {
         let mut modules = modules(PIPELINE);
