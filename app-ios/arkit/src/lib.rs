@@ -10,11 +10,10 @@ mod card;
 #[cfg(target_os = "ios")]
 mod pixels;
 #[cfg(target_os = "ios")]
-mod pixels;
-#[cfg(target_os = "ios")]
 pub mod read;
 #[cfg(target_os = "ios")]
 pub mod session;
 #[cfg(target_arch = "aarch64")]
 pub mod shim;
+#[cfg(target_os = "ios")]
 mod textures;
