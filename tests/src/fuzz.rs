@@ -1,6 +1,6 @@
 //! Bytes from outside to whatever reads them: nothing may panic, and what is accepted is finite.
 //!
-//! Fuzzing (`tests/fuzz`) and property tests (`tests/tests/mutated.rs`) drive the same functions.
+//! Fuzzing (`tests/fuzz`) and property tests (`tests/tests/files/mutated.rs`) drive the same functions.
 
 use std::sync::Arc;
 

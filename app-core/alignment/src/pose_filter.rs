@@ -67,7 +67,7 @@ pub enum PoseStep {
 /// it is never drawn on the way between two places. The noise need not be known well: it is learned from differences
 /// between one frame and the next, within a tenth and ten times of what was stated.
 ///
-/// Measured by `tests/tests/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance, under white noise of 1 mm and .2
+/// Measured by `tests/tests/estimates/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance, under white noise of 1 mm and .2
 /// degrees along and about each axis. Lag is that behind a pose that goes 1 mm in a second; a jump of 10 mm and 1 degree has
 /// settled once the pose stays within 2 mm; the last row has a drift of 2 mm in half a minute, jumps every few seconds,
 /// dropouts of .1 to 2 s and one measurement in a hundred 20 mm astray:

@@ -75,7 +75,7 @@ fn bless_pictures(named: Vec<(Preset, String)>) -> anyhow::Result<()> {
 fn bless_self_test(core: &mut Core, preset: Preset) -> anyhow::Result<()> {
     let picture = self_test::render(core, preset).with_context(|| preset.name())?;
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let kept = top.join(format!("app-core/src/self_test/golden/{preset}.txt"));
+    let kept = top.join(format!("app-core/live/src/self_test/golden/{preset}.txt"));
     write_whole(&kept, self_test::kept(&picture).as_bytes())?;
     let looked_at = top.join("target/self_test");
     make_folder(&looked_at)?;

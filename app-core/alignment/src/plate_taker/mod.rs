@@ -97,7 +97,7 @@ pub enum PlateRefusal {
 ///
 /// What is judged is a picture of some 160 squares along its longer side, held against the shot before and against the
 /// first of the view.
-/// Measured by `tests/tests/plate_taker.rs` in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, what the
+/// Measured by `tests/tests/estimates/plate_taker.rs` in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, what the
 /// sixteenth part of its variance and the rounding to codes add up to; after a hand has crossed it with 0.80, no pixel more
 /// than 4.1 off.
 ///
