@@ -6,35 +6,22 @@
 //!
 //! A [`Core`] takes a scene, then frames, and makes a picture of each:
 //!
-//! ```
-//! use std::{error::Error, fs, path::Path, sync::Arc};
+#![cfg_attr(feature = "fs", doc = "```")]
+#![cfg_attr(not(feature = "fs"), doc = "```ignore")]
+//! use std::{error::Error, sync::Arc};
 //!
 //! use app_core::frame::FrameInput;
 //! use app_core::gpu::AdapterChoice;
 //! use app_core::preset::Preset;
 //! use app_core::scene::Pose;
-//! use app_core::session::{Capture, FileError, Files, Session, check_path};
+//! use app_core::session::{Capture, Folder, Session};
 //! use app_core::toy::NodePose;
 //! use app_core::{Core, wgpu};
 //! use glam::DQuat;
 //!
-//! /// The folder of a recorded session: the core opens no file itself.
-//! struct Folder;
-//!
-//! impl Files for Folder {
-//!     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
-//!         check_path(path)?;
-//!         let file = Path::new("../tests/sessions/llama").join(path);
-//!         let bytes = fs::read(file).map_err(|error| FileError::Io(error.to_string()))?;
-//!         if bytes.len() as u64 > max_bytes {
-//!             return Err(FileError::TooLarge { max_bytes });
-//!         }
-//!         Ok(bytes)
-//!     }
-//! }
-//!
 //! fn main() -> Result<(), Box<dyn Error>> {
-//!     let session = Capture::open(Folder)?;
+//!     // Of the feature `fs`: by itself the core opens no file, and reads through the trait `Files`.
+//!     let session = Capture::open(Folder::open("../tests/sessions/llama")?)?;
 //!     let instance = wgpu::Instance::default();
 //!     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
 //!     core.set_scene(session.scene().clone(), Preset::Balanced)?;

@@ -5,22 +5,23 @@ mod field;
 mod light_estimate;
 mod light_probe;
 mod place;
-mod record;
+pub mod record;
 #[cfg(feature = "schema")]
 mod rules;
 #[cfg(feature = "schema")]
 mod schema;
 mod uncertainty;
+mod written;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DMat4;
 use serde::Deserialize;
 
-use self::field::{INDEX_FILE, LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
+use self::field::{LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
-use super::files::Files;
+use super::files::{Files, INDEX_FILE, MAX_INDEX_BYTES};
 use super::picture::{PictureSize, decode_mask, decode_photo};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
@@ -29,8 +30,7 @@ use app_scene::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
 
 #[cfg(feature = "schema")]
 pub use schema::schema;
-
-const MAX_INDEX_BYTES: u64 = 16 << 20;
+pub use written::ScenePaths;
 
 /// A `shadow-capture` folder.
 ///

@@ -2,6 +2,11 @@
 
 use thiserror::Error;
 
+/// What a session's index is called, which makes a folder a session.
+pub const INDEX_FILE: &str = "capture.json";
+/// No longer index is read; bytes.
+pub const MAX_INDEX_BYTES: u64 = 16 << 20;
+
 /// Read access to the files of one session, and to nothing else.
 pub trait Files: Send + Sync {
     /// Reads a whole file.

@@ -1,7 +1,8 @@
 //! Sessions: a scene, and camera frames of it, however they are stored.
 //!
 //! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that is available at once
-//! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself.
+//! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself,
+//! but for the `Folder` of the feature `fs`.
 //!
 #![doc = include_str!("../../doc/session.md")]
 #![forbid(unsafe_code)]
@@ -9,6 +10,8 @@
 mod capture;
 mod error;
 mod files;
+#[cfg(feature = "fs")]
+mod folder;
 mod picture;
 pub mod recording;
 pub mod tags;
@@ -24,11 +27,13 @@ use app_scene::toy::ToyWarning;
 use app_scene::words::Number;
 
 pub use app_scene::scene::FieldError;
-pub use capture::Capture;
+pub use capture::{Capture, ScenePaths, record};
 #[cfg(feature = "schema")]
 pub use capture::schema;
 pub use error::{PictureError, SessionError, SessionErrorKind};
-pub use files::{FileError, Files, PathError, check_path};
+pub use files::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, PathError, check_path};
+#[cfg(feature = "fs")]
+pub use folder::{Folder, FolderError};
 
 /// A scene with frames of it.
 pub trait Session {

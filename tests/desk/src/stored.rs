@@ -60,7 +60,7 @@ impl Stored {
     /// When a folder of it cannot be read, or has a link in it.
     pub fn paths(&self) -> anyhow::Result<Vec<String>> {
         match self {
-            Self::Folder(folder) => folder.paths(),
+            Self::Folder(folder) => Ok(folder.paths()?),
             Self::Recording(recording) => Ok(recording.paths().into_iter().map(str::to_owned).collect()),
         }
     }

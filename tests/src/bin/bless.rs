@@ -1,5 +1,6 @@
 //! Makes the picture that each preset makes now the one that is expected of it, and the schema that the session reader
-//! has now the one that is kept; for the self-test the means of blocks. Never ends in success.
+//! has now the one that is kept, with the tables of its document; for the self-test the means of blocks. Never ends in
+//! success.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,9 +14,9 @@ use app_core::wgpu;
 use clap::Parser;
 use desk::output::{make_folder, write_png, write_whole};
 use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
-use harness::session_format::{SCHEMA_FILE, SCHEMA_NAME, schema_text};
+use harness::session_format::{DOCUMENT_FILE, SCHEMA_FILE, document_text, schema_text};
 
-/// Rewrite the golden pictures from what the presets make on the software adapter, and session.schema.json.
+/// Rewrite the golden pictures from what the presets make on the software adapter, session.schema.json, and the tables of session.md.
 #[derive(Parser)]
 #[command(name = "bless", bin_name = "cargo xtask bless")]
 struct Args {
@@ -34,20 +35,28 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let is_schema_named = SCHEMA_NAME.contains(&args.filter);
+    let of_sessions = [(SCHEMA_FILE, schema_text()), (DOCUMENT_FILE, document_text())];
+    let of_sessions = of_sessions.map(|(file, text)| (Path::new(file), text));
+    let of_sessions: Vec<_> = of_sessions
+        .into_iter()
+        .filter(|(file, _)| {
+            let name = file.file_name().unwrap_or_default();
+            name.to_string_lossy().contains(&args.filter)
+        })
+        .collect();
     let named: Vec<(Preset, String)> = Preset::ALL
         .iter()
         .map(|&preset| (preset, name_of(preset)))
         .filter(|(_, name)| name.contains(&args.filter))
         .collect();
     ensure!(
-        is_schema_named || !named.is_empty(),
-        "no golden's name contains \"{}\"",
+        !of_sessions.is_empty() || !named.is_empty(),
+        "no name contains \"{}\"",
         args.filter
     );
-    if is_schema_named {
-        write_whole(Path::new(SCHEMA_FILE), schema_text().as_bytes())?;
-        eprintln!("{SCHEMA_FILE}");
+    for (file, text) in of_sessions {
+        write_whole(file, text.as_bytes())?;
+        eprintln!("{}", file.display());
     }
     if named.is_empty() {
         return Ok(());

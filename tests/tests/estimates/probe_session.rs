@@ -27,7 +27,7 @@ fn lamps() -> [Lamp; 2] {
 }
 
 /// Boxes under two bulbs and a lens, in as many pictures as there are viewers.
-fn shot(viewers: &[DVec3]) -> (World, Shot) {
+fn shot(viewers: &[DVec3]) -> Shot {
     let mut world = World::boxes().resized(SIZE_PX).lit_by(lamps().to_vec());
     world.quality = Quality {
         n_across: 2,
@@ -51,14 +51,14 @@ fn shot(viewers: &[DVec3]) -> (World, Shot) {
         pictures: pictures.collect(),
         shape: lens.shape,
     });
-    (world, shot)
+    shot
 }
 
 /// With the lamps listed.
 static SESSION: LazyLock<(PathBuf, Shot)> = LazyLock::new(|| {
-    let (world, shot) = shot(&[DVec3::new(-0.3, 0.3, 0.2), DVec3::new(0.05, 0.3, 0.2)]);
+    let shot = shot(&[DVec3::new(-0.3, 0.3, 0.2), DVec3::new(0.05, 0.3, 0.2)]);
     let session = Path::new(env!("CARGO_TARGET_TMPDIR")).join("probe-session");
-    folder::write(&session, &world, &shot).unwrap();
+    folder::write(&session, &shot).unwrap();
     (session, shot)
 });
 
@@ -99,7 +99,7 @@ fn the_shadow_makes_exact_what_the_probe_tells() {
 /// One view tells no distance, and the same place in the sky of the lens is 10 degrees off over the toy.
 #[test]
 fn one_view_is_enough_for_the_shadow() {
-    let (_, mut shot) = shot(&[DVec3::new(-0.1, 0.3, 0.2)]);
+    let mut shot = shot(&[DVec3::new(-0.1, 0.3, 0.2)]);
     shot.scene.lights.clear();
     let found = Aligner::new(shot.scene.clone()).align(&shot.input).unwrap();
     let told = found.report.probe.as_ref().unwrap();
@@ -181,8 +181,7 @@ fn check_tells_what_the_probe_shows() {
     let unlisted = Path::new(env!("CARGO_TARGET_TMPDIR")).join("probe-session-unlisted");
     let mut shot = shot.clone();
     shot.scene.lights.clear();
-    let world = World::boxes().resized(SIZE_PX).lit_by(Vec::new());
-    folder::write(&unlisted, &world, &shot).unwrap();
+    folder::write(&unlisted, &shot).unwrap();
     let findings = check(&unlisted, &unlisted, (Asked::default(), Source::Given)).unwrap();
     let told = findings
         .facts

@@ -212,7 +212,7 @@ fn a_folder_is_read_back_as_it_was() {
     let world = World::boxes().resized([64, 36]);
     let shot = Shot::of(&world).unwrap();
     let path = std::env::temp_dir().join(format!("photographer-{}", std::process::id()));
-    folder::write(&path, &world, &shot).unwrap();
+    folder::write(&path, &shot).unwrap();
     let session = Capture::open(Folder::open(&path).unwrap()).unwrap();
     let frame = session.frame(0).unwrap();
     let truth = session.truth(0).unwrap().unwrap();

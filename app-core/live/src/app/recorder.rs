@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use app_scene::camera_frame::{CameraFrame, FoundPlane, Tracking};
 use app_scene::scene::{Light, Scene};
-use app_session::recording::entry::{light, light_estimate, matrix};
+use app_session::record::{LightEstimateRecord, LightRecord};
 use app_session::recording::{Inlet, Item, LiveFrame, Take, Topic};
 
 /// Time between what is told of free space, in nanoseconds: where no frame comes either, it is the only clock.
@@ -65,7 +65,7 @@ impl Recorder {
         }
         if !frame.anchors.is_empty() {
             let anchors = frame.anchors.iter().map(
-                |anchor| json!({ "id": anchor.id, "world_from_anchor": matrix(&anchor.world_from_anchor) }),
+                |anchor| json!({ "id": anchor.id, "world_from_anchor": anchor.world_from_anchor.to_cols_array() }),
             );
             self.note(Topic::Anchors, &json!({ "anchors": anchors.collect::<Vec<_>>() }));
         }
@@ -76,7 +76,7 @@ impl Recorder {
             );
         }
         if let Some(estimate) = &frame.light_estimate {
-            self.note(Topic::Light, &light_estimate(estimate));
+            self.note(Topic::Light, &json!(LightEstimateRecord::from(estimate)));
         }
         if let Some(live) = live {
             self.offer(Item::Live(Box::new(live)));
@@ -93,10 +93,10 @@ impl Recorder {
 
     /// What an alignment found.
     pub(super) fn aligned(&self, world_from_object: &glam::DMat4, lights: &[Light]) {
-        let lights: Vec<Value> = lights.iter().map(light).collect();
+        let lights: Vec<_> = lights.iter().map(LightRecord::from).collect();
         self.note(
             Topic::Events,
-            &json!({ "event": "aligned", "world_from_object": matrix(world_from_object), "lights": lights }),
+            &json!({ "event": "aligned", "world_from_object": world_from_object.to_cols_array(), "lights": lights }),
         );
     }
 
@@ -138,7 +138,7 @@ fn planes(planes: &[FoundPlane]) -> Value {
     let planes = planes.iter().map(|plane| {
         json!({
             "id": plane.id,
-            "world_from_plane": matrix(&plane.world_from_plane),
+            "world_from_plane": plane.world_from_plane.to_cols_array(),
             "half_extent_m": plane.half_extent_m.to_array(),
         })
     });

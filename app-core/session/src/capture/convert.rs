@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::field::{INDEX_FILE, at, check_named, each, in_index, non_empty, read_named};
+use super::field::{at, check_named, each, in_index, non_empty, read_named};
 use super::light_estimate::light_estimate;
 use super::light_probe::probe;
 use super::place::{self, camera, intrinsics, light, plates, receiver};
@@ -10,7 +10,7 @@ use super::record::{CaptureRecord, FrameRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles, uncertainty};
 use crate::SessionWarning;
 use crate::error::SessionError;
-use crate::files::Files;
+use crate::files::{Files, INDEX_FILE};
 use crate::picture::PictureSize;
 use app_scene::lens::Distortion;
 use app_scene::scene::{Intrinsics, Pose, Scene, check};

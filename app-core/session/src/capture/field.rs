@@ -1,10 +1,9 @@
 //! Paths of fields in `capture.json`, for the errors.
 
 use crate::error::{SessionError, SessionErrorKind};
-use crate::files::{FileError, Files, check_path};
+use crate::files::{FileError, Files, INDEX_FILE, check_path};
 use app_scene::scene::FieldError;
 
-pub(super) const INDEX_FILE: &str = "capture.json";
 /// The distortion, of which each camera makes a lens.
 pub(super) const LENS: &str = "lens";
 /// Path that is given when no single field is at fault.

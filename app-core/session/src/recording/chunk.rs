@@ -3,6 +3,8 @@
 use super::topics::Topic;
 use super::wire::{Body, CHUNK, MESSAGE, MESSAGE_INDEX, head};
 
+/// The largest chunk that is read; bytes. Pictures, which have at most half of it, are larger than what else is in one.
+pub(super) const MAX_CHUNK_BYTES: u64 = 256 << 20;
 /// Bytes of a chunk's body before its records: times, size, checksum, no compression, size again.
 pub(super) const CHUNK_HEAD_BYTES: u64 = 40;
 /// Bytes of a message's body before its data: channel, sequence number, two times.

@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::bounds::MAX_INDEX_BYTES;
 use super::error::Loss;
 use super::message::{FrameMessage, NamedPicture, SessionMessage};
 use super::topics::Topic;
 use super::viewer::image_file;
 use super::wire::{CHANNEL, MESSAGE, Rest};
+use crate::MAX_INDEX_BYTES;
 
 /// Texts of notes that are kept, bytes.
 const MAX_NOTE_BYTES: u64 = 64 << 20;

@@ -5,10 +5,9 @@
 //!
 #![doc = include_str!("../../../doc/recording.md")]
 
-mod bounds;
 mod chunk;
 mod codec;
-pub mod entry;
+mod entry;
 mod error;
 mod found;
 mod message;

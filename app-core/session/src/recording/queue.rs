@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
+use serde_json::json;
+
 use super::codec::PictureCodec;
 use super::entry::LiveFrame;
 use super::error::WriteError;
@@ -238,7 +240,7 @@ impl Outlet {
         let time_secs = 1e-9 * time_ns as f64;
         let before = encoder.latest.as_ref();
         if let Some((_, number, path)) = before.filter(|(image, ..)| image.is(&live.image)) {
-            let entry = live.entry(time_secs, path, &encoder.toy).to_string();
+            let entry = json!(live.entry(time_secs, path, &encoder.toy)).to_string();
             return writer.frame(time_ns, Picture::Again(*number), &entry).map(|_| ());
         }
         let file = encoder.codec.encode(&live.image)?;
@@ -249,7 +251,7 @@ impl Outlet {
             "png"
         };
         let path = format!("frames/{number:06}.{ending}");
-        let entry = live.entry(time_secs, &path, &encoder.toy).to_string();
+        let entry = json!(live.entry(time_secs, &path, &encoder.toy)).to_string();
         let number = writer.frame(time_ns, Picture::New(&file), &entry)?;
         encoder.latest = Some((live.image.clone(), number, path));
         Ok(())

@@ -4,12 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::value::RawValue;
 
-use super::bounds::{INDEX_PATH, MAX_INDEX_BYTES};
 use super::error::{Loss, RecordingError};
 use super::found::{Found, Note, Span};
 use super::scan::scan;
 use super::source::Source;
-use crate::{FileError, Files, check_path};
+use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
 
 /// A recording that is read: its files are those of a session's folder, `capture.json` made of its messages.
 ///
@@ -45,7 +44,7 @@ impl Recording {
         });
         let mut spans = found.files;
         spans.extend(pictures);
-        spans.remove(INDEX_PATH);
+        spans.remove(INDEX_FILE);
         Ok(Self {
             source: Box::new(source),
             index,
@@ -60,7 +59,7 @@ impl Recording {
     /// Paths of all files, relative to the session; those that a session may not use are left out.
     #[must_use]
     pub fn paths(&self) -> BTreeSet<&str> {
-        let named = self.spans.keys().map(String::as_str).chain([INDEX_PATH]);
+        let named = self.spans.keys().map(String::as_str).chain([INDEX_FILE]);
         named.filter(|path| check_path(path).is_ok()).collect()
     }
 
@@ -92,7 +91,7 @@ impl Recording {
 impl Files for Recording {
     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
         check_path(path)?;
-        if path == INDEX_PATH {
+        if path == INDEX_FILE {
             let is_allowed = self.index.len() as u64 <= max_bytes;
             return if is_allowed {
                 Ok(self.index.clone())

@@ -4,8 +4,7 @@
 //! byte by byte: it is one only if its own checksum holds. The summary at the end is not looked at, since a recording that
 //! was cut has none.
 
-use super::bounds::MAX_CHUNK_BYTES;
-use super::chunk::CHUNK_HEAD_BYTES;
+use super::chunk::{CHUNK_HEAD_BYTES, MAX_CHUNK_BYTES};
 use super::error::{Damage, Loss, RecordingError};
 use super::found::{Found, Span};
 use super::source::Source;

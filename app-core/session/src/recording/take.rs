@@ -4,11 +4,14 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::Arc;
 
+use serde_json::json;
+
 use super::codec::{PictureCodec, png};
-use super::entry;
 use super::error::{Stop, WriteError};
 use super::queue::{Inlet, Outlet, queue};
 use super::writer::{Limits, Writer};
+use crate::ScenePaths;
+use crate::record::{CaptureRecord, Index};
 use app_scene::scene::{Intrinsics, Scene};
 
 /// Items that may wait: a second of frames with what is said of them.
@@ -103,7 +106,17 @@ impl Take {
         let paths: Vec<_> = (0..self.scene.plates.len())
             .map(|place| format!("plates/{place:03}.png"))
             .collect();
-        let index = entry::index(&self.scene, &self.intrinsics, TOY, &paths).to_string();
+        let index = Index::from(CaptureRecord::new(
+            &self.scene,
+            &self.intrinsics,
+            ScenePaths {
+                toy: TOY,
+                plates: &paths,
+                // Its pictures are not kept; the lights that it told are listed.
+                probe: &[],
+            },
+        ));
+        let index = json!(index).to_string();
         let begun = Writer::new(sink, &index, options.device, options.limits).and_then(|mut writer| {
             writer.file(0, TOY, options.toy)?;
             for (plate, path) in self.scene.plates.iter().zip(&paths) {

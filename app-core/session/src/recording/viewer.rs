@@ -6,6 +6,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 
 use super::protobuf::{Fields, counted_field, timestamp};
+use crate::record::IntrinsicsRecord;
 
 /// Names of coordinate frames. The camera's is the one of its lens: x right, y down, z forward.
 const WORLD: &str = "world";
@@ -19,16 +20,8 @@ const DATA: u64 = 2;
 pub(super) struct SessionShape {
     width: Option<u32>,
     height: Option<u32>,
-    intrinsics: Option<Pinhole>,
+    intrinsics: Option<IntrinsicsRecord>,
     toy: Option<ToyShape>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-struct Pinhole {
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -39,7 +32,7 @@ struct ToyShape {
 /// As much of a frame's entry as viewers are told.
 #[derive(Clone, Copy, Default, Deserialize)]
 pub(super) struct EntryShape {
-    intrinsics: Option<Pinhole>,
+    intrinsics: Option<IntrinsicsRecord>,
     world_from_camera: Option<[f64; 16]>,
     world_from_object: Option<[f64; 16]>,
 }
@@ -65,7 +58,7 @@ pub(super) fn image_file(message: &[u8]) -> Option<std::ops::Range<usize>> {
 /// 0.5.
 pub(super) fn calibration(time_ns: u64, session: &SessionShape, entry: &EntryShape) -> Option<Vec<u8>> {
     let (width, height) = (session.width?, session.height?);
-    let Pinhole { fx, fy, cx, cy } = entry.intrinsics.or(session.intrinsics)?;
+    let IntrinsicsRecord { fx, fy, cx, cy } = entry.intrinsics.or(session.intrinsics)?;
     let message = Fields::new().message(1, &timestamp(time_ns)).text(9, CAMERA);
     let message = message.fixed32(2, width).fixed32(3, height);
     let message = message.doubles(6, &[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]);

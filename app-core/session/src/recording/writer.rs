@@ -5,14 +5,14 @@ use std::io::{ErrorKind, Write};
 
 use serde_json::value::RawValue;
 
-use super::bounds::{INDEX_PATH, MAX_CHUNK_BYTES, MAX_INDEX_BYTES};
-use super::chunk::OpenChunk;
+use super::chunk::{MAX_CHUNK_BYTES, OpenChunk};
 use super::error::{Stop, WriteError};
 use super::message::{FrameMessage, SessionMessage};
 use super::summary::{FileEntry, Written};
 use super::topics::Topic;
 use super::viewer::{self, EntryShape, SessionShape};
 use super::wire::{ATTACHMENT, Body, HEADER, MAGIC, METADATA, head};
+use crate::{INDEX_FILE, MAX_INDEX_BYTES};
 
 /// A chunk is closed after that.
 const CHUNK_NS: u64 = 1_000_000_000;
@@ -450,7 +450,7 @@ fn media_type(path: &str) -> &'static str {
         Some((_, "jpg" | "jpeg")) => "image/jpeg",
         Some((_, "glb")) => "model/gltf-binary",
         Some((_, "json")) => "application/json",
-        _ if path == INDEX_PATH => "application/json",
+        _ if path == INDEX_FILE => "application/json",
         _ => "application/octet-stream",
     }
 }

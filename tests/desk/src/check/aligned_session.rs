@@ -4,18 +4,15 @@ use std::path::Path;
 
 use anyhow::Context;
 use app_core::alignment::{LensAlignment, RatioOutcome};
-use app_core::scene::Light;
-use app_core::session::Files;
-use glam::DMat4;
+use app_core::session::record::{LensRecord, LightRecord};
+use app_core::session::{Files, MAX_INDEX_BYTES};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::alignment::Alignments;
 use crate::convert;
 use crate::files::SESSION_FILE;
 use crate::stored::Stored;
-
-/// No longer index is read.
-const MAX_INDEX_BYTES: u64 = 16 << 20;
 
 /// Writes a session anew, as a folder or as a recording, its index with what was found. Returns the number of corrected
 /// frames.
@@ -36,7 +33,7 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
     let focal_ratio = alignments.focal_ratio();
     lengthen(index, focal_ratio);
     for (plate, camera) in alignments.moved_plates() {
-        index["backgrounds"][plate]["world_from_camera"] = matrix(&camera.world_from_camera);
+        index["backgrounds"][plate]["world_from_camera"] = json!(camera.world_from_camera.to_cols_array());
     }
     let n_frames = index["frames"].as_array().map_or(0, Vec::len);
     for frame in 0..n_frames {
@@ -47,11 +44,11 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
         let is_moved = alignment.report.pose.is_some_and(|pose| pose.is_applied);
         let is_scaled = alignments.world_scale() != 1.0;
         if is_moved || is_scaled {
-            index["frames"][frame]["world_from_object"] = matrix(&alignment.world_from_object);
+            index["frames"][frame]["world_from_object"] = json!(alignment.world_from_object.to_cols_array());
         }
         let is_camera_moved = alignment.report.camera.is_some_and(|camera| camera.is_applied);
         if is_camera_moved {
-            index["frames"][frame]["world_from_camera"] = matrix(&alignment.camera.world_from_camera);
+            index["frames"][frame]["world_from_camera"] = json!(alignment.camera.world_from_camera.to_cols_array());
         }
         // Where none was found in place of the list, it stays.
         if let Some(lights) = alignment.lights.as_ref().filter(|lights| !lights.is_empty()) {
@@ -63,7 +60,7 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             };
             entries.resize(lights.len(), json!({}));
             for (entry, light) in entries.iter_mut().zip(lights.iter()) {
-                merge(entry, light);
+                overwrite(entry, &LightRecord::from(light));
             }
             index["lights"] = entries.into();
         }
@@ -78,9 +75,7 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
 /// Writes the lens that was found, or that there is none. Whether that is another than before.
 fn set_lens(index: &mut Value, found: Option<&LensAlignment>) -> bool {
     let lens = match found {
-        Some(found) if found.is_applied() => {
-            json!({ "k1": found.distortion.k1, "k2": found.distortion.k2 })
-        }
+        Some(found) if found.is_applied() => json!(LensRecord::from(&found.distortion)),
         Some(found) if found.outcome == RatioOutcome::AsGiven => Value::Null,
         _ => return false,
     };
@@ -116,28 +111,11 @@ fn lengthen_intrinsics(entry: &mut Value, ratio: f64) {
     }
 }
 
-fn matrix(matrix: &DMat4) -> Value {
-    json!(matrix.to_cols_array())
-}
-
-/// Writes a light over the numbers of an entry; keys that are not its own stay.
-fn merge(entry: &mut Value, light: &Light) {
-    match light {
-        Light::Sphere {
-            position_in_world,
-            radius_m,
-        } => {
-            entry["kind"] = json!("sphere");
-            entry["position"] = json!(position_in_world.to_array());
-            entry["radius"] = json!(radius_m);
-        }
-        Light::Directional {
-            direction_to_light_in_world,
-            angular_radius_rad,
-        } => {
-            entry["kind"] = json!("directional");
-            entry["direction_to_light"] = json!(direction_to_light_in_world.to_array());
-            entry["angular_radius_deg"] = json!(angular_radius_rad.to_degrees());
+/// Writes what a record has over an entry; keys that are not its own stay.
+fn overwrite(entry: &mut Value, record: &impl Serialize) {
+    if let Value::Object(keys) = json!(record) {
+        for (key, value) in keys {
+            entry[key] = value;
         }
     }
 }

@@ -1,18 +1,16 @@
 //! Keys of `capture.json` that no reader knows, which are mostly misspelt.
 
-use app_core::session::Files;
+use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde_json::Value;
 
 use crate::files::SESSION_FILE;
 
 /// The format's schema, as a test holds it to the types that read it.
 const SCHEMA: &str = include_str!("../../../../app-core/doc/session.schema.json");
-/// No longer index is read.
-const MOST_BYTES: u64 = 16 << 20;
 
 /// Those of a session's index; none where it cannot be read, which the reader tells.
 pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
-    let bytes = session.read(SESSION_FILE, MOST_BYTES).unwrap_or_default();
+    let bytes = session.read(SESSION_FILE, MAX_INDEX_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
     let mut unknown = Vec::new();
     let schema = serde_json::from_str(SCHEMA).unwrap_or_default();

@@ -5,10 +5,14 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
+use app_core::session::record::{
+    BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, IntrinsicsRecord, LensRecord, PoseRecord,
+    ToyRecord,
+};
 use app_core::session::{Capture, Files};
 use glam::{DMat4, DQuat, DVec3};
 use image::ImageReader;
-use serde_json::{Value, json};
+use serde::de::DeserializeOwned;
 
 use super::error::{ImportError, ImportReason};
 use super::{Imported, ImportedFrame};
@@ -121,7 +125,8 @@ fn numbers<const N: usize>(argument: &str, text: &str) -> anyhow::Result<[f64; N
         .with_context(|| format!("{argument}: {n} numbers, {N} are needed"))
 }
 
-fn values(argument: &str, texts: &[String]) -> anyhow::Result<Vec<Value>> {
+/// Entries of a list of the index.
+fn entries<T: DeserializeOwned>(argument: &str, texts: &[String]) -> anyhow::Result<Vec<T>> {
     let texts = texts.iter().filter(|text| *text != "none");
     texts
         .map(|text| serde_json::from_str(text).with_context(|| argument.to_owned()))
@@ -163,12 +168,12 @@ pub fn write(
             .with_context(|| frame.image.clone())?;
         write_whole(&file, &picture)?;
     }
-    write_whole(&out.join(SESSION_FILE), &serde_json::to_vec_pretty(&index)?)?;
+    write_whole(&out.join(SESSION_FILE), &serde_json::to_vec_pretty(&Index::from(index))?)?;
     Ok(Capture::open(Folder::open(out)?)?)
 }
 
 /// `capture.json`.
-fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> anyhow::Result<Value> {
+fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> anyhow::Result<CaptureRecord> {
     let first = imported.frames.first().context("no frame")?;
     let [width, height] = size_px(files, &first.image)?;
     let (rotation, metres) = lacking.world_from_recorded(imported)?;
@@ -180,14 +185,21 @@ fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> 
         let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();
         let world_from_camera =
             DMat4::from_rotation_translation(rotation * of_camera, rotation * (metres * position));
-        json!({
-            "time": time_s, "image": frame.image, "intrinsics": projection(frame.intrinsics),
-            "world_from_camera": world_from_camera.to_cols_array(),
-            "animation": { "clip": null, "time": 0 },
-        })
+        FrameRecord {
+            time: time_s,
+            image: frame.image.clone(),
+            intrinsics: Some(projection(frame.intrinsics)),
+            world_from_object: None,
+            exposure: None,
+            light_estimate: None,
+            world_from_camera: world_from_camera.to_cols_array(),
+            animation: PoseRecord::AUTHORED,
+            truth: None,
+            mask: None,
+        }
     };
-    let mut frames: Vec<Value> = imported.frames.iter().enumerate().map(entry).collect();
-    let plates: Vec<Value> = match lacking.plate_frames()? {
+    let mut frames: Vec<_> = imported.frames.iter().enumerate().map(entry).collect();
+    let plates: Vec<FrameRecord> = match lacking.plate_frames()? {
         PlateFrames::None => Vec::new(),
         PlateFrames::Frames(first, last) => {
             let n = frames.len();
@@ -196,32 +208,38 @@ fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> 
         }
     };
     ensure!(!frames.is_empty(), "--plates: no frame is left");
-    let plate = |mut plate: Value| {
-        if let Some(plate) = plate.as_object_mut() {
-            plate.remove("time");
-            plate.remove("animation");
-        }
-        plate
+    let plate = |frame: FrameRecord| BackgroundRecord {
+        image: frame.image,
+        intrinsics: frame.intrinsics,
+        world_from_camera: frame.world_from_camera,
     };
     let place: [f64; 16] = numbers(
         "--world-from-object",
         lacking.world_from_object.as_deref().unwrap_or_default(),
     )?;
-    Ok(json!({
-        "format": "shadow-capture", "version": 1, "name": name,
-        "width": width, "height": height, "encoding": "srgb",
-        "intrinsics": projection(first.intrinsics),
-        "lens": imported.lens.map(|[k1, k2]| json!({ "k1": k1, "k2": k2 })),
-        "toy": { "file": "toy.glb", "world_from_object": place, "physical_pose": { "clip": null, "time": 0 } },
-        "receivers": values("--receiver", &lacking.receiver)?,
-        "lights": values("--light", &lacking.light)?,
-        "backgrounds": plates.into_iter().map(plate).collect::<Vec<_>>(),
-        "frames": frames,
-    }))
+    Ok(CaptureRecord {
+        name: name.to_owned(),
+        width,
+        height,
+        encoding: Encoding::Srgb,
+        intrinsics: projection(first.intrinsics),
+        lens: imported.lens.map(|[k1, k2]| LensRecord { k1, k2: Some(k2) }),
+        toy: ToyRecord {
+            file: "toy.glb".to_owned(),
+            world_from_object: place,
+            physical_pose: PoseRecord::AUTHORED,
+        },
+        receivers: entries("--receiver", &lacking.receiver)?,
+        lights: entries("--light", &lacking.light)?,
+        backgrounds: plates.into_iter().map(plate).collect(),
+        frames,
+        probe: None,
+        uncertainty: None,
+    })
 }
 
-fn projection([fx, fy, cx, cy]: [f64; 4]) -> Value {
-    json!({ "fx": fx, "fy": fy, "cx": cx, "cy": cy })
+fn projection([fx, fy, cx, cy]: [f64; 4]) -> IntrinsicsRecord {
+    IntrinsicsRecord { fx, fy, cx, cy }
 }
 
 /// By the picture's header.

@@ -64,7 +64,7 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> anyhow::Result<()> {
     if let Some(out) = &args.photograph {
         let world = World::boxes();
-        return Ok(folder::write(out, &world, &Shot::of(&world)?)?);
+        return Ok(folder::write(out, &Shot::of(&world)?)?);
     }
     measure(args)
 }

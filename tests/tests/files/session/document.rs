@@ -1,66 +1,21 @@
-//! The document of the format names each key of the schema and no other, with its type, its range and its need.
+//! The document of the format has the tables of the schema, one for each object, and an example with every key.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use app_core::session::schema;
-use harness::session_format::{DOCUMENT, example};
+use harness::session_format::{DOCUMENT, WHOLE, document_text, example, quoted};
 use image::{DynamicImage, ImageFormat};
-use serde_json::{Value, json};
+use serde_json::Value;
 
-use crate::session::follows::follows;
 use crate::session::parts::{Parts, encode, toy_glb};
 
-/// Path of the index itself, as the document's headings have it.
-const WHOLE: &str = "capture.json";
-
-/// A line of a table.
-#[derive(Clone)]
-struct Row {
-    of_type: String,
-    range: String,
-    without: String,
-    example: String,
-}
-
-/// The rows of the document by their keys' paths; those of an object that occurs in several places are in all of them.
-fn documented() -> BTreeMap<String, Row> {
-    let mut rows = BTreeMap::new();
-    let mut objects = Vec::new();
-    for line in DOCUMENT.lines() {
-        if line.starts_with('#') {
-            objects = if line.starts_with("### ") {
-                quoted(line)
-            } else {
-                Vec::new()
-            };
-        }
-        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let &[_, key, of_type, _, range, without, _, example, _] = cells.as_slice() else {
-            continue;
-        };
-        let row = [of_type, range, without, example].map(str::to_owned);
-        let [of_type, range, without, example] = row;
-        let row = Row {
-            of_type,
-            range,
-            without,
-            example,
-        };
-        for (object, key) in objects
-            .iter()
-            .flat_map(|object| quoted(key).into_iter().map(move |key| (object, key)))
-        {
-            let is_new = rows.insert(joined(object, key), row.clone()).is_none();
-            assert!(is_new, "{object}, {key}: twice");
-        }
-    }
-    rows
-}
-
-/// What stands between backticks.
-fn quoted(text: &str) -> Vec<&str> {
-    text.split('`').skip(1).step_by(2).collect()
+#[test]
+fn the_tables_are_those_of_the_schema() {
+    assert!(
+        DOCUMENT == document_text(),
+        "the tables of session.md are not those of the reader: `cargo xtask bless session`, and look at what has changed"
+    );
 }
 
 fn joined(object: &str, key: &str) -> String {
@@ -71,57 +26,39 @@ fn joined(object: &str, key: &str) -> String {
     }
 }
 
-/// A key of the schema.
-struct Key {
-    schema: Value,
-    /// What the object says of it as a whole.
-    object: Value,
-}
-
-impl Key {
-    fn is_needed(&self, name: &str) -> bool {
-        requires(&self.object, name)
+/// Properties of the schema's objects by their paths, as `frames[].animation`.
+fn objects(object: &Value, path: &str, found: &mut BTreeMap<String, Value>) {
+    let Some(properties) = object["properties"].as_object() else {
+        return;
+    };
+    for (key, schema) in properties {
+        let path = joined(path, key);
+        objects(schema, &path, found);
+        objects(&schema["items"], &format!("{path}[]"), found);
     }
-
-    /// Kinds of light that need it.
-    fn kinds(&self, name: &str) -> Vec<&str> {
-        let shapes = self.object["anyOf"].as_array().into_iter().flatten();
-        let needing = shapes.filter(|shape| requires(shape, name));
-        needing
-            .map(|shape| shape["properties"]["kind"]["const"].as_str().unwrap())
-            .collect()
-    }
+    found.insert(path.to_owned(), object["properties"].clone());
 }
 
-fn requires(schema: &Value, name: &str) -> bool {
-    let required = schema["required"].as_array();
-    required.is_some_and(|required| required.contains(&json!(name)))
-}
-
-/// The keys of the schema by their paths, as `frames[].animation.time`.
-fn keys(object: &Value, path: &str) -> BTreeMap<String, Key> {
+fn all_objects() -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
-    for (name, schema) in object["properties"].as_object().into_iter().flatten() {
-        let path = joined(path, name);
-        found.extend(keys(schema, &path));
-        found.extend(keys(&schema["items"], &format!("{path}[]")));
-        let key = Key {
-            schema: schema.clone(),
-            object: object.clone(),
-        };
-        found.insert(path, key);
-    }
+    objects(&schema(), WHOLE, &mut found);
     found
 }
 
 #[test]
-fn each_key_is_documented_and_no_other() {
-    let schema = keys(&schema(), WHOLE);
-    let known: BTreeSet<&String> = schema.keys().collect();
-    let documented = documented();
-    let named: BTreeSet<&String> = documented.keys().collect();
-    assert!(known.len() > 50, "{known:?}");
-    assert_same(&named, &known);
+fn each_object_has_a_table() {
+    let objects = all_objects();
+    let mut named = BTreeSet::new();
+    for section in DOCUMENT.split("\n### ").skip(1) {
+        let paths = quoted(section.lines().next().unwrap());
+        assert_eq!(section.matches("<!-- keys -->").count(), 1, "{paths:?}");
+        let is_alike = paths
+            .iter()
+            .all(|path| objects.get(*path) == objects.get(paths[0]));
+        assert!(is_alike, "{paths:?}: different objects");
+        named.extend(paths);
+    }
+    assert_same(&named, &objects.keys().map(String::as_str).collect());
 }
 
 fn assert_same<T: Ord + Debug>(found: &BTreeSet<T>, known: &BTreeSet<T>) {
@@ -134,86 +71,18 @@ fn assert_same<T: Ord + Debug>(found: &BTreeSet<T>, known: &BTreeSet<T>) {
 }
 
 #[test]
-fn types_ranges_needs_and_examples_are_those_of_the_schema() {
-    let documented = documented();
-    for (path, key) in keys(&schema(), WHOLE) {
-        let name = path.rsplit('.').next().unwrap();
-        let row = &documented[&path];
-        assert_eq!(row.of_type, type_of(&key.schema), "{path}");
-        check_range(&path, &row.range, &key.schema);
-        let kinds = key.kinds(name);
-        let need = match (key.is_needed(name), kinds.is_empty()) {
-            (true, _) => "needed".to_owned(),
-            (false, false) => format!("{}: needed", kinds.join(", ")),
-            (false, true) => row.without.replace("needed", "?"),
-        };
-        assert_eq!(row.without, need, "{path}");
-        assert!(!row.without.is_empty(), "{path}");
-        check_example(&path, &row.example, &key.schema);
-    }
-}
-
-fn type_of(schema: &Value) -> String {
-    if let Some(values) = schema["oneOf"].as_array() {
-        let names = values
-            .iter()
-            .map(|value| format!("`{}`", value["const"].as_str().unwrap()));
-        return names.collect::<Vec<_>>().join(" or ");
-    }
-    // One that may be missing is null besides.
-    let of_type = match &schema["type"] {
-        Value::Array(types) => types.iter().find(|of_type| *of_type != "null").unwrap(),
-        of_type => of_type,
-    };
-    match of_type.as_str().unwrap() {
-        "string" => "text".to_owned(),
-        "integer" => "whole number".to_owned(),
-        "array" if schema["items"]["type"] == "object" => "list of objects".to_owned(),
-        "array" => {
-            assert_eq!(schema["minItems"], schema["maxItems"]);
-            format!("{} numbers", schema["minItems"])
-        }
-        of_type => of_type.to_owned(),
-    }
-}
-
-fn check_range(path: &str, range: &str, schema: &Value) {
-    let of_numbers = if schema["items"]["minimum"].is_number() {
-        &schema["items"]
-    } else {
-        schema
-    };
-    if let (Some(min), Some(max)) = (of_numbers["minimum"].as_f64(), of_numbers["maximum"].as_f64()) {
-        let ends: Vec<f64> = range.split(" to ").map(|end| end.parse().unwrap()).collect();
-        assert_eq!(ends, [min, max], "{path}");
-        return;
-    }
-    let is_fixed = schema["minItems"] == schema["maxItems"];
-    let expected = match (&schema["minItems"], &schema["maxItems"], &schema["minLength"]) {
-        (Value::Number(min), ..) if !is_fixed => format!("{min} or more entries"),
-        (_, Value::Number(max), _) if !is_fixed => format!("at most {max} entries"),
-        (.., Value::Number(_)) => "not empty".to_owned(),
-        _ => String::new(),
-    };
-    assert_eq!(range, expected, "{path}");
-}
-
-/// Objects have theirs in a table of their own.
-fn check_example(path: &str, example: &str, schema: &Value) {
-    if ["below", "above"].contains(&example) {
-        assert!(type_of(schema).contains("object"), "{path}");
-        return;
-    }
-    let value = serde_json::from_str(quoted(example)[0]).unwrap();
-    assert!(follows(&value, schema), "{path}: {example}");
-}
-
-#[test]
 fn the_example_has_every_key_and_the_reader_takes_it() {
     let index: Value = serde_json::from_str(example().unwrap()).unwrap();
     let mut found = BTreeSet::new();
     collect_keys(&index, "", &mut found);
-    let known: BTreeSet<String> = keys(&schema(), WHOLE).into_keys().collect();
+    let objects = all_objects();
+    let known: BTreeSet<String> = objects
+        .iter()
+        .flat_map(|(object, keys)| {
+            let keys = keys.as_object().unwrap().keys();
+            keys.map(|key| joined(object, key))
+        })
+        .collect();
     assert_same(&found, &known);
 
     let size_px = ["width", "height"].map(|key| u32::try_from(index[key].as_u64().unwrap()).unwrap());

@@ -5,6 +5,7 @@ mod folder;
 mod follows;
 mod lens;
 mod parts;
+mod records;
 mod schema;
 mod turned;
 

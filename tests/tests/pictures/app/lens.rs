@@ -54,7 +54,7 @@ fn session(name: &str, is_lit: bool) -> Capture {
         shape: lens.shape,
     });
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    folder::write(&path, &world, &shot).unwrap();
+    folder::write(&path, &shot).unwrap();
     Capture::open(Folder::open(&path).unwrap()).unwrap()
 }
 

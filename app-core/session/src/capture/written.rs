@@ -1,0 +1,234 @@
+//! From a scene to the records of `capture.json`: the way back of the checks.
+
+use super::record::{
+    BackgroundRecord, CaptureRecord, Encoding, FacetRecord, IntrinsicsRecord, LensRecord, LightEstimateRecord,
+    LightKind, LightRecord, LightUncertaintyRecord, PoseRecord, PoseUncertaintyRecord, ProbeKind,
+    ProbePictureRecord, ProbeRecord, ReceiverRecord, SurfaceRecord, ToyRecord, UncertaintyRecord,
+};
+use app_scene::lens::Distortion;
+use app_scene::scene::{
+    Facet, FacetSlope, Intrinsics, Light, LightEstimate, Pose, PoseUncertainty, Probe, ProbeShape, Receiver,
+    Scene, Surface, Uncertainty,
+};
+use app_scene::toy::Toy;
+
+/// Paths of the files that a scene's record names, relative to the session.
+#[derive(Clone, Copy, Debug)]
+pub struct ScenePaths<'a> {
+    /// The toy's file.
+    pub toy: &'a str,
+    /// Pictures of the plates, in their order.
+    pub plates: &'a [String],
+    /// Pictures of the probe, in their order.
+    pub probe: &'a [String],
+}
+
+impl CaptureRecord {
+    /// A scene without frames, whose cameras have these `intrinsics` unless they bring their own. Plates and pictures of
+    /// the probe that no path is given for are left out.
+    #[must_use]
+    pub fn new(scene: &Scene, intrinsics: &Intrinsics, paths: ScenePaths) -> Self {
+        let plates = scene.plates.iter().zip(paths.plates);
+        let uncertainty = Some(&scene.uncertainty).filter(|uncertainty| **uncertainty != Uncertainty::default());
+        Self {
+            name: scene.name.clone(),
+            width: scene.width_px,
+            height: scene.height_px,
+            encoding: Encoding::Srgb,
+            intrinsics: intrinsics.into(),
+            lens: None,
+            toy: ToyRecord {
+                file: paths.toy.to_owned(),
+                world_from_object: scene.world_from_object.to_cols_array(),
+                physical_pose: PoseRecord::new(&scene.physical_pose, &scene.toy),
+            },
+            receivers: scene.receivers.iter().map(ReceiverRecord::from).collect(),
+            lights: scene.lights.iter().map(LightRecord::from).collect(),
+            backgrounds: plates
+                .map(|(plate, path)| BackgroundRecord {
+                    image: path.clone(),
+                    intrinsics: Some((&plate.camera.intrinsics).into()),
+                    world_from_camera: plate.camera.world_from_camera.to_cols_array(),
+                })
+                .collect(),
+            frames: Vec::new(),
+            probe: scene
+                .probe
+                .as_ref()
+                .and_then(|probe| ProbeRecord::new(probe, paths.probe)),
+            uncertainty: uncertainty.map(UncertaintyRecord::from),
+        }
+    }
+}
+
+impl PoseRecord {
+    /// Nodes as authored.
+    pub const AUTHORED: Self = Self {
+        clip: None,
+        time: 0.0,
+    };
+
+    /// A clip by its name, or by its number where another clip of that name comes before it. Poses of single nodes cannot
+    /// be told: they become the authored one.
+    #[must_use]
+    pub fn new(pose: &Pose, toy: &Toy) -> Self {
+        let Pose::Clip { clip, time_secs } = pose else {
+            return Self::AUTHORED;
+        };
+        let name = toy.clip_names().into_iter().nth(clip.index());
+        let name = name.filter(|name| toy.find_clip(name).ok() == Some(*clip));
+        Self {
+            clip: Some(name.unwrap_or_else(|| format!("#{}", clip.index()))),
+            time: *time_secs,
+        }
+    }
+}
+
+impl ProbeRecord {
+    /// A probe whose pictures are at `paths`, in their order; none without any.
+    #[must_use]
+    pub fn new(probe: &Probe, paths: &[String]) -> Option<Self> {
+        let mut pictures = probe
+            .pictures
+            .iter()
+            .zip(paths)
+            .map(|(picture, path)| ProbePictureRecord {
+                image: path.clone(),
+                exposure_ratio: Some(picture.exposure_ratio),
+                intrinsics: Some((&picture.camera.intrinsics).into()),
+                world_from_camera: picture.camera.world_from_camera.to_cols_array(),
+                world_from_lens: Some(picture.world_from_probe.to_cols_array()),
+            });
+        let (first, path) = probe.pictures.first().zip(paths.first())?;
+        pictures.next();
+        let slope = match &probe.shape {
+            ProbeShape::FresnelLens { slope, .. } => Some(slope),
+            ProbeShape::MirrorBall { .. } => None,
+        };
+        Some(Self {
+            kind: match slope {
+                Some(_) => ProbeKind::FresnelLens,
+                None => ProbeKind::MirrorBall,
+            },
+            world_from_lens: first.world_from_probe.to_cols_array(),
+            radius: probe.shape.radius_m(),
+            focal_length: match slope {
+                Some(FacetSlope::Focal { focal_m }) => Some(*focal_m),
+                _ => None,
+            },
+            facets: match slope {
+                Some(FacetSlope::Table(facets)) => facets.iter().map(FacetRecord::from).collect(),
+                _ => Vec::new(),
+            },
+            image: path.clone(),
+            exposure_ratio: first.exposure_ratio,
+            intrinsics: Some((&first.camera.intrinsics).into()),
+            world_from_camera: Some(first.camera.world_from_camera.to_cols_array()),
+            pictures: pictures.collect(),
+        })
+    }
+}
+
+impl From<&Facet> for FacetRecord {
+    fn from(facet: &Facet) -> Self {
+        Self {
+            at: facet.at,
+            slope_deg: facet.slope_rad.to_degrees(),
+        }
+    }
+}
+
+impl From<&Intrinsics> for IntrinsicsRecord {
+    fn from(intrinsics: &Intrinsics) -> Self {
+        Self {
+            fx: intrinsics.fx_px,
+            fy: intrinsics.fy_px,
+            cx: intrinsics.cx_px,
+            cy: intrinsics.cy_px,
+        }
+    }
+}
+
+impl From<&Distortion> for LensRecord {
+    fn from(distortion: &Distortion) -> Self {
+        Self {
+            k1: distortion.k1,
+            k2: Some(distortion.k2),
+        }
+    }
+}
+
+impl From<&Receiver> for ReceiverRecord {
+    fn from(receiver: &Receiver) -> Self {
+        Self {
+            name: receiver.name.clone(),
+            world_from_plane: receiver.world_from_plane.to_cols_array(),
+            half_extent: receiver.half_extent_m.to_array(),
+            surface: match receiver.surface {
+                Surface::Uniform => SurfaceRecord::Uniform,
+                Surface::Textured => SurfaceRecord::Textured,
+            },
+        }
+    }
+}
+
+impl From<&Light> for LightRecord {
+    fn from(light: &Light) -> Self {
+        let of_kind = |kind| Self {
+            kind,
+            position: None,
+            radius: None,
+            direction_to_light: None,
+            angular_radius_deg: None,
+        };
+        match *light {
+            Light::Sphere {
+                position_in_world,
+                radius_m,
+            } => Self {
+                position: Some(position_in_world.to_array()),
+                radius: Some(radius_m),
+                ..of_kind(LightKind::Sphere)
+            },
+            Light::Directional {
+                direction_to_light_in_world,
+                angular_radius_rad,
+            } => Self {
+                direction_to_light: Some(direction_to_light_in_world.to_array()),
+                angular_radius_deg: Some(angular_radius_rad.to_degrees()),
+                ..of_kind(LightKind::Directional)
+            },
+        }
+    }
+}
+
+impl From<&LightEstimate> for LightEstimateRecord {
+    fn from(estimate: &LightEstimate) -> Self {
+        let direction = estimate.direction_to_light_in_world;
+        Self {
+            direction_to_light: direction.map(|direction| direction.to_array()),
+            intensity: estimate.intensity,
+            ambient_intensity: estimate.ambient_intensity,
+            color_temperature: estimate.color_temperature_k,
+            spherical_harmonics: estimate.spherical_harmonics,
+        }
+    }
+}
+
+impl From<&Uncertainty> for UncertaintyRecord {
+    fn from(uncertainty: &Uncertainty) -> Self {
+        let pose = |pose: &PoseUncertainty| PoseUncertaintyRecord {
+            position: pose.position_m,
+            rotation_deg: pose.rotation_rad.map(f64::to_degrees),
+        };
+        Self {
+            toy: Some(pose(&uncertainty.toy)),
+            camera: Some(pose(&uncertainty.camera)),
+            lights: Some(LightUncertaintyRecord {
+                direction_deg: uncertainty.lights.direction_rad.map(f64::to_degrees),
+                distance_ratio: uncertainty.lights.distance_ratio,
+                size_ratio: uncertainty.lights.size_ratio,
+            }),
+        }
+    }
+}
