@@ -141,18 +141,6 @@ impl Session for Fed {
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
         Ok(self.frames[index].clone())
     }
-
-    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
-        Ok(Arc::clone(&self.frames[index].image))
-    }
-
-    fn through_lens(&self, _: usize, made: Image) -> Result<Image, SessionError> {
-        Ok(made)
-    }
-
-    fn map_through_lens(&self, _: usize, map: Image) -> Result<Image, SessionError> {
-        Ok(map)
-    }
 }
 
 /// The photographs of the toy that really took those poses.
