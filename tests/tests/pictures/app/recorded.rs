@@ -11,7 +11,7 @@ use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, Wish
 use app_core::camera_frame::Tracking;
 use app_core::gpu::AdapterChoice;
 use app_core::recording::{Ending, Limits, PictureCodec, Recording, Take, TakeOptions, Taken, Topic};
-use app_core::scene::{Image, Pose, Scene};
+use app_core::scene::{Pose, Scene};
 use app_core::session::{
     Capture, Files, GroundTruth, Session, SessionError, SessionFrame, SessionWarning, Truth,
 };
