@@ -1,4 +1,4 @@
-//! What alignment found, and what it did with it. In JSON a number without end is none, and reasons are words.
+//! What alignment found, and what it did with it. In JSON a number that is not finite is null, and an outcome or a reason is a sentence.
 
 use std::fmt;
 

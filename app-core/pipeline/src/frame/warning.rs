@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::frame::mismatch::Mismatch;
 use app_scene::words::Listed;
 
-/// A degraded mode: the picture is the best that can be had, for a reason. Reports have its words.
+/// A degraded mode: the picture is the best that can be had, for a reason. JSON has the sentence that it displays.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
