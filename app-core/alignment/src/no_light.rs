@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 /// Why no light was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -21,5 +23,11 @@ impl fmt::Display for NoLight {
             Self::ReceiversUnseen => "too little of the receivers is seen beside the toy",
             Self::NoneDominant => "none stands out of the surroundings, or too little of its shadow is seen",
         })
+    }
+}
+
+impl Serialize for NoLight {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }

@@ -1,8 +1,9 @@
-//! What alignment found, and what it did with it.
+//! What alignment found, and what it did with it. In JSON a number that is not finite is null, and an outcome or a reason is a sentence.
 
 use std::fmt;
 
 use glam::DVec3;
+use serde::{Serialize, Serializer};
 
 use crate::no_light::NoLight;
 use crate::probe::ProbeReport;
@@ -10,7 +11,7 @@ use app_scene::lens::Distortion;
 use app_scene::scene::Light;
 
 /// What was aligned in a frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AlignmentReport {
     /// The focal length; none where nobody asked for it.
     pub focal_length: Option<RatioAlignment>,
@@ -39,7 +40,7 @@ pub struct AlignmentReport {
 }
 
 /// The camera, by what the receivers look like in the plates.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CameraAlignment {
     /// Whether the camera was moved: only where that explains the picture better by more than noise does.
     pub is_applied: bool,
@@ -54,7 +55,7 @@ pub struct CameraAlignment {
 }
 
 /// The toy's pose, by its outline.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseAlignment {
     /// Whether the toy is shown elsewhere than it was given: where it was found, which brings the outline nearer by more than noise
     /// explains, or where it was found before.
@@ -87,7 +88,7 @@ impl PoseAlignment {
 }
 
 /// One deviation of a pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseDeviation {
     /// Across the camera's axis, in metres.
     pub lateral_m: f64,
@@ -98,7 +99,7 @@ pub struct PoseDeviation {
 }
 
 /// A light, by its shadow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LightAlignment {
     /// Whether the lights were moved, all or none.
     pub is_applied: bool,
@@ -116,7 +117,7 @@ pub struct LightAlignment {
 }
 
 /// A light that nobody listed, by its shadow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DiscoveredLight {
     /// As a scene lists it.
     pub light: Light,
@@ -133,7 +134,7 @@ pub struct DiscoveredLight {
 }
 
 /// One deviation of a light that was found: what residuals and the pose's deviation leave open, and a receiver that is not flat.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LightDeviation {
     /// Of the direction, in radians.
     pub direction_rad: f64,
@@ -144,7 +145,7 @@ pub struct LightDeviation {
 }
 
 /// A focal length, or the scale of a world, by toy and shadow together.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RatioAlignment {
     /// What was done with it.
     pub outcome: RatioOutcome,
@@ -174,7 +175,7 @@ impl RatioAlignment {
 }
 
 /// The distortion of a lens, by toy and shadow together.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LensAlignment {
     /// What was done with it.
     pub outcome: RatioOutcome,
@@ -222,5 +223,11 @@ impl fmt::Display for RatioOutcome {
             }
             Self::Unseen => "there is no plate, or too little of toy and shadows is seen",
         })
+    }
+}
+
+impl Serialize for RatioOutcome {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }

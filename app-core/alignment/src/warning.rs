@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 use crate::no_light::NoLight;
 
 /// A part of the frame that stays as it is given, for a reason.
@@ -49,5 +51,11 @@ impl fmt::Display for AlignmentWarning {
                 "the scale of the world was asked for, but toy and shadow do not tell it: that given is taken",
             ),
         }
+    }
+}
+
+impl Serialize for AlignmentWarning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }

@@ -168,25 +168,8 @@ impl Session for Capture {
         Ok(self.frame_picture(index)?.1.as_taken)
     }
 
-    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError> {
-        let (frame, photo) = self.frame_picture(index)?;
-        let lens = self.store.lens(&frame.camera.intrinsics)?;
-        Ok(match lens {
-            Some(lens) if made.is_of_size([photo.image.width_px, photo.image.height_px]) => {
-                lens.with_changes(&photo.as_taken, [&photo.image, &made])
-            }
-            _ => made,
-        })
-    }
-
-    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError> {
-        let frame = self.frame_at(index)?;
-        let lens = self.store.lens(&frame.camera.intrinsics)?;
-        let size_px = [self.store.size.width_px, self.store.size.height_px];
-        Ok(match lens {
-            Some(lens) if map.is_of_size(size_px) => lens.of_map(&map),
-            _ => map,
-        })
+    fn lens(&self, index: usize) -> Result<Option<Lens>, SessionError> {
+        self.store.lens(&self.frame_at(index)?.camera.intrinsics)
     }
 }
 

@@ -22,6 +22,7 @@ use glam::DMat4;
 use thiserror::Error;
 
 use app_scene::frame::FrameInput;
+use app_scene::lens::Lens;
 use app_scene::scene::{Camera, Image, LightEstimate, Pose, Scene};
 use app_scene::toy::ToyWarning;
 use app_scene::words::Number;
@@ -56,21 +57,18 @@ pub trait Session {
     ///
     /// # Errors
     /// As [`Session::frame`].
-    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError>;
+    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
+        Ok(self.frame(index)?.image)
+    }
 
-    /// The photograph of the frame `index` with what was changed in [`SessionFrame::image`] to make `made`, of the same size: `made`
-    /// itself where the session has no lens. Pixels whose surroundings did not change are the photograph's own.
+    /// The lens that [`Session::photograph`] of the frame `index` was taken with, and that [`SessionFrame::image`] is freed of; none
+    /// where the session has none.
     ///
     /// # Errors
-    /// As [`Session::frame`].
-    fn through_lens(&self, index: usize, made: Image) -> Result<Image, SessionError>;
-
-    /// A map over [`SessionFrame::image`] of the frame `index`, of the same size, as it lies over [`Session::photograph`]: `map` itself
-    /// where the session has no lens. What lies beside it is all zero.
-    ///
-    /// # Errors
-    /// As [`Session::frame`].
-    fn map_through_lens(&self, index: usize, map: Image) -> Result<Image, SessionError>;
+    /// When there is no such frame.
+    fn lens(&self, _index: usize) -> Result<Option<Lens>, SessionError> {
+        Ok(None)
+    }
 }
 
 /// One camera frame and the pose to show in it.

@@ -11,7 +11,9 @@ use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Light, Scene};
 use app_core::session::{Session, SessionFrame};
+use app_core::probe::TrackedLight;
 use glam::{DMat4, DVec3};
+use serde::Serialize;
 
 use crate::replay::ReplayError;
 
@@ -90,9 +92,11 @@ pub struct Asked {
     pub ratio: Ratio,
 }
 
-/// Corrections of frames, found once for all presets.
+/// Corrections of frames, found once for all presets, one frame after the other.
 pub struct Alignments {
     lights: Lights,
+    /// None where frames stay as they were recorded.
+    aligner: Option<Aligner>,
     first: usize,
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
@@ -109,8 +113,8 @@ pub struct Aligned {
     pub cpu_ms: f64,
     /// The lights that were put aside.
     pub put_aside: Vec<Light>,
-    /// The same as seen from the toy's middle.
-    pub listed: Vec<SeenLight>,
+    /// The toy's middle in the world.
+    middle: DVec3,
 }
 
 /// A light as it is seen from a place.
@@ -122,6 +126,39 @@ pub struct SeenLight {
     pub distance_m: Option<f64>,
     /// Half the angle that it fills.
     pub angular_radius_rad: f64,
+}
+
+/// Error of a light that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct LightError {
+    /// Index of the light of the list that it is compared with.
+    pub index: usize,
+    /// Angle between the directions, in radians.
+    pub direction_rad: f64,
+    /// Found distance over the listed; none where one of them has none.
+    pub distance_ratio: Option<f64>,
+    /// Found angular radius over the listed; none for a point light.
+    pub size_ratio: Option<f64>,
+}
+
+impl LightError {
+    /// Against the light in the nearest direction; none without a list.
+    fn nearest(found: &SeenLight, listed: impl Iterator<Item = SeenLight>) -> Option<Self> {
+        let error = |(index, listed): (usize, SeenLight)| Self {
+            index,
+            direction_rad: found
+                .direction_in_world
+                .angle_between(listed.direction_in_world),
+            distance_ratio: found
+                .distance_m
+                .zip(listed.distance_m)
+                .map(|(found, listed)| found / listed),
+            size_ratio: (listed.angular_radius_rad > 0.0)
+                .then(|| found.angular_radius_rad / listed.angular_radius_rad),
+        };
+        let errors = listed.enumerate().map(error);
+        errors.min_by(|a, b| a.direction_rad.total_cmp(&b.direction_rad))
+    }
 }
 
 impl SeenLight {
@@ -168,6 +205,7 @@ impl Alignments {
     pub fn none() -> Self {
         Self {
             lights: Lights::Given,
+            aligner: None,
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
@@ -188,18 +226,28 @@ impl Alignments {
         self.lens.as_ref()
     }
 
+    /// No frame is aligned yet.
+    #[must_use]
+    pub fn new(scene: &Scene, asked: Asked) -> Self {
+        let aligner = Aligner::new(asked.lights.known(scene));
+        let aligner = match asked.ratio {
+            Ratio::Given => aligner,
+            Ratio::FocalLength => aligner.with_unknown_focal_length(),
+            Ratio::WorldScale => aligner.with_unknown_world_scale(),
+        };
+        Self {
+            lights: asked.lights,
+            aligner: Some(aligner),
+            ..Self::none()
+        }
+    }
+
     /// Aligns frames one after the other.
     ///
     /// # Errors
     /// When a frame cannot be read or aligned.
     pub fn find(session: &dyn Session, frames: Range<usize>, asked: Asked) -> Result<Self, ReplayError> {
-        let known = asked.lights.known(session.scene());
-        let aligner = match asked.ratio {
-            Ratio::Given => Aligner::new(known),
-            Ratio::FocalLength => Aligner::new(known).with_unknown_focal_length(),
-            Ratio::WorldScale => Aligner::new(known).with_unknown_world_scale(),
-        };
-        Self::find_by(aligner, session, frames, asked.lights)
+        Self::new(session.scene(), asked).aligning(session, frames)
     }
 
     /// Aligns all frames, and reads no shadow but that of the first picture.
@@ -209,47 +257,51 @@ impl Alignments {
     pub fn find_without_shadows(session: &dyn Session) -> Result<Self, ReplayError> {
         let mut aligner = Aligner::new(session.scene().clone());
         aligner.withhold_shadows();
-        Self::find_by(aligner, session, 0..session.n_frames(), Lights::Given)
+        let found = Self {
+            aligner: Some(aligner),
+            ..Self::none()
+        };
+        found.aligning(session, 0..session.n_frames())
     }
 
-    fn find_by(
-        mut aligner: Aligner,
-        session: &dyn Session,
-        frames: Range<usize>,
-        lights: Lights,
-    ) -> Result<Self, ReplayError> {
-        let scene = session.scene();
-        let put_aside = match lights {
-            Lights::Given => &[],
-            Lights::Found | Lights::Probe => &scene.lights[..],
+    fn aligning(mut self, session: &dyn Session, frames: Range<usize>) -> Result<Self, ReplayError> {
+        for index in frames {
+            self.align(session.scene(), index, &session.frame(index)?)?;
+        }
+        Ok(self)
+    }
+
+    /// Aligns a frame of a session's scene: the first one, that after the last, or one that is aligned already, which costs nothing.
+    ///
+    /// # Errors
+    /// When it cannot be aligned.
+    pub fn align(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
+        let is_known = self.of(index).is_some();
+        let Some(aligner) = self.aligner.as_mut().filter(|_| !is_known) else {
+            return Ok(());
         };
-        let mut found = Vec::with_capacity(frames.len());
-        for index in frames.clone() {
-            let input = lights.input(&session.frame(index)?);
-            let start = Instant::now();
-            let alignment = aligner.align(&input).map_err(|reason| ReplayError::Align {
+        let start = Instant::now();
+        let alignment = aligner
+            .align(&self.lights.input(frame))
+            .map_err(|reason| ReplayError::Align {
                 index,
                 reason: Box::new(reason),
             })?;
-            let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
-            let middle = middle(scene, &alignment.world_from_object);
-            found.push(Aligned {
-                alignment,
-                cpu_ms,
-                put_aside: put_aside.to_vec(),
-                listed: put_aside
-                    .iter()
-                    .map(|light| SeenLight::from(middle, light))
-                    .collect(),
-            });
+        let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
+        self.moved_plates = moved_plates(scene, aligner.scene());
+        if self.found.is_empty() {
+            self.first = index;
         }
-        Ok(Self {
-            lights,
-            first: frames.start,
-            found,
-            moved_plates: moved_plates(session.scene(), aligner.scene()),
-            lens: None,
-        })
+        self.found.push(Aligned {
+            middle: middle(scene, &alignment.world_from_object),
+            alignment,
+            cpu_ms,
+            put_aside: match self.lights {
+                Lights::Given => Vec::new(),
+                Lights::Found | Lights::Probe => scene.lights.clone(),
+            },
+        });
+        Ok(())
     }
 
     /// What the core is given of a session's scene.
@@ -327,6 +379,24 @@ impl Alignments {
 }
 
 impl Aligned {
+    /// A light that a probe tells, against the lights that were put aside; none where there are none.
+    #[must_use]
+    pub fn error_of_told(&self, light: &TrackedLight) -> Option<LightError> {
+        let place = light.seen.origin_in_world;
+        LightError::nearest(&SeenLight::from(place, &light.light), self.put_aside_from(place))
+    }
+
+    /// The same of a light that was found by its shadow.
+    #[must_use]
+    pub fn error_of_discovered(&self, light: &DiscoveredLight) -> Option<LightError> {
+        LightError::nearest(&SeenLight::found(light), self.put_aside_from(self.middle))
+    }
+
+    fn put_aside_from(&self, place: DVec3) -> impl Iterator<Item = SeenLight> {
+        let put_aside = self.put_aside.iter();
+        put_aside.map(move |light| SeenLight::from(place, light))
+    }
+
     /// Lights that were found; none where those that were given stay. With preset `paper` those that a probe tells are the paper's own:
     /// the viewer on the axis, and no shadow looked at.
     fn lights(&self, preset: Preset) -> Option<Arc<[Light]>> {

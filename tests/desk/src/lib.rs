@@ -8,6 +8,7 @@ pub mod false_color;
 pub mod files;
 pub mod gizmo;
 pub mod import;
+pub mod lens;
 mod lights_drawn;
 pub mod metrics;
 pub mod opened;

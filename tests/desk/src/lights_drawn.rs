@@ -4,14 +4,13 @@ use app_core::alignment::LightSearch;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Image;
-use app_core::session::Session;
 
-use crate::alignment::Alignments;
 use crate::false_color::LIGHTS;
 use crate::gizmo;
 use crate::gizmo::Gizmo;
+use crate::lens::through_lens;
 use crate::page::pictures::Pictures;
-use crate::replay::ReplayError;
+use crate::replay::{ReplayError, Shot};
 use crate::report::MapEntry;
 
 /// Name of the picture of all directions that lights were looked for in.
@@ -21,22 +20,27 @@ pub(crate) const HEMISPHERE: &str = "hemisphere";
 /// explained.
 pub(crate) fn write_lights(
     pictures: &mut Pictures,
-    (session, alignments, index): (&dyn Session, &Alignments, usize),
+    shot: &Shot<'_>,
     preset: Preset,
 ) -> Result<Vec<MapEntry>, ReplayError> {
+    let Shot {
+        session,
+        alignments,
+        index,
+        ..
+    } = *shot;
     let Some(aligned) = alignments.of(index) else {
         return Ok(Vec::new());
     };
-    let frame = session.frame(index)?;
     let scene = session.scene();
-    let input = alignments.input(index, &frame, preset);
-    let given = Gizmo::listed(scene, &FrameInput::from(&frame));
+    let recorded = FrameInput::from(&shot.frame);
+    let input = shot.input(preset);
+    let given = Gizmo::listed(scene, &recorded);
     let found = Gizmo::aligned(scene, &input, &aligned.alignment.report);
-    let mut picture = Image::clone(&frame.image);
-    let recorded = FrameInput::from(&frame);
+    let mut picture = Image::clone(&shot.frame.image);
     gizmo::rays(&mut picture, (scene, &recorded), &given, gizmo::GIVEN);
     gizmo::rays(&mut picture, (scene, &input), &found, gizmo::FOUND);
-    let picture = session.through_lens(index, picture)?;
+    let picture = through_lens(session, index, picture)?;
     let mut entries = vec![MapEntry {
         name: LIGHTS.name,
         file: pictures.write(LIGHTS.name, index, picture.into())?,

@@ -7,6 +7,7 @@ mod ssim;
 
 use app_core::scene::Image;
 use app_core::session::Truth;
+use serde::Serialize;
 use thiserror::Error;
 
 /// Luma of encoded RGB, with the weights of ITU-R BT.709.
@@ -40,7 +41,7 @@ pub struct SizeError {
 }
 
 /// Error over one region.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Score {
     /// Root of the mean squared difference, in 8-bit sRGB units; 0 for an empty region.
     pub rmse: f64,
@@ -49,7 +50,7 @@ pub struct Score {
 }
 
 /// Error of one picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Scores {
     /// Where a shadow is or was and no toy covers it now.
     pub shadow: Score,

@@ -2,17 +2,17 @@
 
 pub(crate) mod pictures;
 
-use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use app_core::session::{GroundTruth, Session};
+use app_core::scene::{Image, Scene};
+use app_core::session::Truth;
 use app_pipeline::readback::Map;
 use serde::Serialize;
 
 use crate::false_color::{ERROR, LIGHTS, Shown, describe};
 use crate::output::{WriteError, write_whole};
 use crate::page::pictures::Pictures;
-use crate::replay::ReplayError;
 use crate::report::Report;
 
 /// File name of the page in the output folder.
@@ -57,62 +57,72 @@ struct PresetData<'a> {
     report: &'a Report,
 }
 
-/// Writes the page of `reports`, each of which lies in its folder below `out`, and the pictures it compares them with.
-///
-/// # Errors
-/// When a frame or a truth of `frames` cannot be read, or the page cannot be written.
-pub(crate) fn write(
-    out: &Path,
-    (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
-    frames: Range<usize>,
-    reports: &[(String, Report)],
-) -> Result<(), ReplayError> {
-    let mut pictures = Pictures::new(out, INPUTS_FOLDER);
-    let frames: Result<Vec<Inputs>, ReplayError> = frames
-        .map(|index| write_inputs(&mut pictures, session, truth, index))
-        .collect();
-    let scene = session.scene();
-    let data = Data {
-        session: &scene.name,
-        size_px: [scene.width_px, scene.height_px],
-        frames: frames?,
-        shown: [ERROR, LIGHTS]
-            .into_iter()
-            .chain(Map::ALL.iter().filter_map(|map| describe(*map)))
-            .collect(),
-        presets: reports
-            .iter()
-            .map(|(folder, report)| PresetData {
-                folder: folder.clone(),
-                report,
-            })
-            .collect(),
-    };
-    let path = out.join(PAGE_FILE);
-    let html = html(&data).map_err(|error| WriteError {
-        path: path.clone(),
-        reason: error.to_string(),
-    })?;
-    Ok(write_whole(&path, html.as_bytes())?)
+/// The page of a replay, while it runs.
+pub(crate) struct Page {
+    out: PathBuf,
+    pictures: Pictures,
+    frames: Vec<Inputs>,
 }
 
-fn write_inputs(
-    pictures: &mut Pictures,
-    session: &dyn Session,
-    truth: Option<&dyn GroundTruth>,
-    index: usize,
-) -> Result<Inputs, ReplayError> {
-    let before = pictures.write("before", index, session.photograph(index)?)?;
-    let truth = match truth {
-        Some(truth) => truth.truth(index)?,
-        None => None,
-    };
-    let truth = truth.map(|truth| pictures.write("truth", index, truth.image.into()));
-    Ok(Inputs {
-        index,
-        before,
-        truth: truth.transpose()?,
-    })
+impl Page {
+    pub(crate) fn new(out: &Path) -> Self {
+        Self {
+            out: out.to_owned(),
+            pictures: Pictures::new(out, INPUTS_FOLDER),
+            frames: Vec::new(),
+        }
+    }
+
+    /// Writes what all presets start from in a frame, and what they are compared with.
+    pub(crate) fn add(
+        &mut self,
+        index: usize,
+        photograph: Arc<Image>,
+        truth: Option<Truth>,
+    ) -> Result<(), WriteError> {
+        let before = self.pictures.write("before", index, photograph)?;
+        let truth = truth.map(|truth| self.pictures.write("truth", index, truth.image.into()));
+        self.frames.push(Inputs {
+            index,
+            before,
+            truth: truth.transpose()?,
+        });
+        Ok(())
+    }
+
+    /// Writes the page of the reports of all presets.
+    pub(crate) fn write(self, scene: &Scene, reports: &[Report]) -> Result<(), WriteError> {
+        let data = Data {
+            session: &scene.name,
+            size_px: [scene.width_px, scene.height_px],
+            frames: self.frames,
+            shown: [ERROR, LIGHTS]
+                .into_iter()
+                .chain(Map::ALL.iter().filter_map(|map| describe(*map)))
+                .collect(),
+            presets: reports
+                .iter()
+                .map(|report| PresetData {
+                    folder: folder_of(report.preset, reports.len()),
+                    report,
+                })
+                .collect(),
+        };
+        let path = self.out.join(PAGE_FILE);
+        let html = html(&data).map_err(|error| WriteError {
+            path: path.clone(),
+            reason: error.to_string(),
+        })?;
+        write_whole(&path, html.as_bytes())
+    }
+}
+
+/// Where the files of a preset lie below the output folder: right there, if it is the only one.
+pub(crate) fn folder_of(preset: &str, n_presets: usize) -> String {
+    match n_presets {
+        1 => String::new(),
+        _ => format!("{preset}/"),
+    }
 }
 
 fn html(data: &Data<'_>) -> Result<String, serde_json::Error> {

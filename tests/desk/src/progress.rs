@@ -4,15 +4,17 @@ use std::io::{self, IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use app_core::preset::Preset;
+
 use crate::report::FrameEntry;
 
 /// Someone who wants to know how far a replay is.
 pub trait Progress {
-    /// A session begins, with this many frames to come.
-    fn start(&mut self, session: &str, n_frames: usize);
-    /// A frame is done.
-    fn frame(&mut self, entry: &FrameEntry);
-    /// All frames are done.
+    /// A session begins, with this many pictures to come.
+    fn start(&mut self, session: &str, n_pictures: usize);
+    /// A frame is done with a preset.
+    fn frame(&mut self, preset: Preset, entry: &FrameEntry);
+    /// All pictures are done.
     fn finish(&mut self);
 }
 
@@ -22,7 +24,7 @@ pub fn on_stderr() -> Box<dyn Progress> {
     if io::stderr().is_terminal() {
         Box::new(Bar(ProgressBar::hidden()))
     } else {
-        Box::new(Lines { n_frames: 0 })
+        Box::new(Lines)
     }
 }
 
@@ -31,24 +33,25 @@ pub struct Quiet;
 
 impl Progress for Quiet {
     fn start(&mut self, _: &str, _: usize) {}
-    fn frame(&mut self, _: &FrameEntry) {}
+    fn frame(&mut self, _: Preset, _: &FrameEntry) {}
     fn finish(&mut self) {}
 }
 
 struct Bar(ProgressBar);
 
 impl Progress for Bar {
-    fn start(&mut self, session: &str, n_frames: usize) {
-        let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} frames, {eta} left");
-        self.0 = ProgressBar::new(n_frames as u64)
+    fn start(&mut self, session: &str, n_pictures: usize) {
+        let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} pictures, {eta} left");
+        self.0 = ProgressBar::new(n_pictures as u64)
             .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
             .with_message(session.to_owned());
         self.0.tick();
     }
 
-    fn frame(&mut self, entry: &FrameEntry) {
-        for warning in &entry.warnings {
-            self.0.println(format!("frame {}: {warning}", entry.index));
+    fn frame(&mut self, preset: Preset, entry: &FrameEntry) {
+        for warning in entry.warnings() {
+            self.0
+                .println(format!("frame {} with {preset}: {warning}", entry.index));
         }
         self.0.inc(1);
     }
@@ -58,19 +61,16 @@ impl Progress for Bar {
     }
 }
 
-struct Lines {
-    n_frames: usize,
-}
+struct Lines;
 
 impl Progress for Lines {
-    fn start(&mut self, session: &str, n_frames: usize) {
-        self.n_frames = n_frames;
-        say(&format!("{session}: {n_frames} frames"));
+    fn start(&mut self, session: &str, n_pictures: usize) {
+        say(&format!("{session}: {n_pictures} pictures"));
     }
 
-    fn frame(&mut self, entry: &FrameEntry) {
-        for warning in &entry.warnings {
-            say(&format!("frame {}: {warning}", entry.index));
+    fn frame(&mut self, preset: Preset, entry: &FrameEntry) {
+        for warning in entry.warnings() {
+            say(&format!("frame {} with {preset}: {warning}", entry.index));
         }
         let error = entry.scores.map_or_else(String::new, |scores| {
             format!(
@@ -78,7 +78,10 @@ impl Progress for Lines {
                 scores.shadow.rmse, scores.shadow.ssim
             )
         });
-        say(&format!("frame {}: {:.0} ms{error}", entry.index, entry.wall_ms));
+        say(&format!(
+            "frame {} with {preset}: {:.0} ms{error}",
+            entry.index, entry.wall_ms
+        ));
     }
 
     fn finish(&mut self) {}

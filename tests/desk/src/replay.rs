@@ -1,5 +1,6 @@
 //! Replays a session: every camera frame through the core, each picture written and scored, the whole reported.
 
+use std::iter;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -7,10 +8,11 @@ use std::time::{Duration, Instant};
 use app_core::alignment::{AlignError, LensAlignment};
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
+use app_core::frame::FrameInput;
 use app_core::governor::Step;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
-use app_core::session::{GroundTruth, Session, SessionError};
+use app_core::session::{GroundTruth, Session, SessionError, SessionFrame, Truth};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
@@ -20,16 +22,15 @@ use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::false_color;
 use crate::false_color::{ERROR, describe};
 use crate::files::SESSION_FILE;
+use crate::lens::{map_through_lens, through_lens};
 use crate::lights_drawn::write_lights;
 use crate::metrics::flicker::Follower;
 use crate::metrics::{SizeError, score};
 use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
-use crate::page;
 use crate::page::pictures::Pictures;
-use crate::page::{MAPS_FOLDER, PAGE_FILE};
+use crate::page::{MAPS_FOLDER, PAGE_FILE, Page, folder_of};
 use crate::progress::Progress;
-use crate::report::alignment::{AlignmentEntry, LensEntry};
-use crate::report::{FitEntry, FrameEntry, MapEntry, Mean, Report, pass_entries};
+use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
@@ -69,6 +70,16 @@ impl Default for Options {
             ratio: Ratio::default(),
             lens: None,
         }
+    }
+}
+
+impl Options {
+    /// What alignment is asked for; none where frames stay as they were recorded.
+    fn asked(&self) -> Option<Asked> {
+        self.is_aligned.then_some(Asked {
+            lights: self.lights,
+            ratio: self.ratio,
+        })
     }
 }
 
@@ -139,19 +150,18 @@ pub fn picture_file(index: usize) -> String {
 /// # Errors
 /// When there are no such frames, or one cannot be read or aligned.
 pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments, ReplayError> {
-    if options.is_aligned {
-        let asked = Asked {
-            lights: options.lights,
-            ratio: options.ratio,
-        };
-        let found = Alignments::find(session, frames_of(session, options)?, asked)?;
-        Ok(found.with_lens(options.lens))
-    } else {
-        Ok(Alignments::none())
-    }
+    let frames = frames_of(session, options)?;
+    let found = match options.asked() {
+        Some(asked) => Alignments::find(session, frames, asked)?,
+        None => Alignments::none(),
+    };
+    Ok(found.with_lens(options.lens))
 }
 
-/// Replays `session` on `core` with each preset, scores it against `truth`, and tells `progress` about each frame.
+/// Replays `session` on the device of `core` with each preset, scores it against `truth`, and tells `progress` about each picture.
+///
+/// Each frame is read once, aligned, and made with one preset after the other. Only if a number is looked for that holds for the
+/// whole session, all frames are aligned before the first is made.
 ///
 /// Report and page left by an earlier run are removed first, so that one in the output folder means that all frames
 /// were written.
@@ -165,11 +175,17 @@ pub fn replay(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
-    let alignments = alignments(session, options)?;
-    replay_aligned((session, truth), core, options, &alignments, progress)
+    let mut alignments = match options.asked() {
+        Some(asked) if asked.ratio == Ratio::Given => {
+            Alignments::new(session.scene(), asked).with_lens(options.lens)
+        }
+        _ => alignments(session, options)?,
+    };
+    replay_aligned((session, truth), core, options, &mut alignments, progress)
 }
 
-/// The same with corrections that were found before.
+/// The same with corrections that were found before, and more of them as frames come that have none. `core` makes the first
+/// preset's pictures.
 ///
 /// # Errors
 /// As [`replay`].
@@ -177,41 +193,72 @@ pub fn replay_aligned(
     (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
     core: &mut Core,
     options: &Options,
-    alignments: &Alignments,
+    alignments: &mut Alignments,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
-    core.time_passes(true)?;
-    let frames = frames_of(session, options)?;
-    let out = options.out.as_deref();
-    let folders: Vec<String> = options
-        .presets
-        .iter()
-        .map(|preset| match options.presets.len() {
-            1 => String::new(),
-            _ => format!("{}/", preset.name()),
-        })
-        .collect();
-    for folder in folders.iter().map(String::as_str).chain([""]) {
-        out.map(|out| prepare(&out.join(folder))).transpose()?;
+    let indices = frames_of(session, options)?;
+    let others = options.presets.iter().skip(1);
+    let mut others: Vec<Core> = others.map(|_| core.beside()).collect();
+    let runs = options.presets.iter().zip(iter::once(core).chain(&mut others));
+    let mut runs = runs
+        .map(|(preset, core)| Run::new(*preset, core, options))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut page = options.out.as_deref().map(Page::new);
+    if let Some(out) = &options.out {
+        prepare(out)?;
     }
-    let mut reports = Vec::with_capacity(folders.len());
-    for (preset, folder) in options.presets.iter().zip(folders) {
-        let mut run = Run {
+    let presets: Vec<&str> = options.presets.iter().map(|preset| preset.name()).collect();
+    let title = format!("{} with {}", session.scene().name, presets.join(", "));
+    progress.start(&title, indices.len() * runs.len());
+    for index in indices {
+        let frame = session.frame(index)?;
+        alignments.align(session.scene(), index, &frame)?;
+        let shot = Shot {
             session,
-            truth,
-            core,
             alignments,
-            out: out.map(|out| Out::new(out.join(&folder))),
-            follower: Follower::default(),
-            turned_down: options.turned_down,
+            index,
+            frame,
+            truth: truth.map(|truth| truth.truth(index)).transpose()?.flatten(),
         };
-        let report = run.replay(*preset, frames.clone(), progress)?;
-        reports.push((folder, report));
+        for run in &mut runs {
+            let entry = run.frame(&shot)?;
+            progress.frame(run.preset, &entry);
+            run.frames.push(entry);
+        }
+        if let Some(page) = &mut page {
+            page.add(index, session.photograph(index)?, shot.truth)?;
+        }
     }
-    if let Some(out) = out {
-        page::write(out, (session, truth), frames, &reports)?;
+    let reports = runs.into_iter().map(|run| run.report(session, alignments));
+    let reports = reports.collect::<Result<Vec<_>, _>>()?;
+    if let Some(page) = page {
+        page.write(session.scene(), &reports)?;
     }
-    Ok(reports.into_iter().map(|(_, report)| report).collect())
+    progress.finish();
+    Ok(reports)
+}
+
+/// A frame that all presets are shown.
+pub(crate) struct Shot<'a> {
+    pub(crate) session: &'a dyn Session,
+    pub(crate) alignments: &'a Alignments,
+    pub(crate) index: usize,
+    pub(crate) frame: SessionFrame,
+    pub(crate) truth: Option<Truth>,
+}
+
+impl Shot<'_> {
+    /// What the core is given.
+    pub(crate) fn input(&self, preset: Preset) -> FrameInput {
+        self.alignments.input(self.index, &self.frame, preset)
+    }
+
+    fn failed(&self, reason: CoreError) -> ReplayError {
+        ReplayError::Frame {
+            index: self.index,
+            reason,
+        }
+    }
 }
 
 /// Where one preset's pictures go.
@@ -221,117 +268,151 @@ struct Out {
 }
 
 impl Out {
-    fn new(folder: PathBuf) -> Self {
-        Self {
+    fn new(folder: PathBuf) -> Result<Self, ReplayError> {
+        prepare(&folder)?;
+        Ok(Self {
             maps: Pictures::new(&folder, MAPS_FOLDER),
             folder,
-        }
+        })
     }
 }
 
 /// The replay with one preset.
 struct Run<'a> {
-    session: &'a dyn Session,
-    truth: Option<&'a dyn GroundTruth>,
+    preset: Preset,
     core: &'a mut Core,
-    alignments: &'a Alignments,
+    turned_down: &'static [Step],
     out: Option<Out>,
     follower: Follower,
-    turned_down: &'static [Step],
+    frames: Vec<FrameEntry>,
 }
 
-impl Run<'_> {
-    fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
-        self.core.set_scene(scene, preset)?;
+impl<'a> Run<'a> {
+    fn new(preset: Preset, core: &'a mut Core, options: &Options) -> Result<Self, ReplayError> {
+        core.time_passes(true)?;
+        let folder = folder_of(preset.name(), options.presets.len());
+        let out = options.out.as_ref().map(|out| Out::new(out.join(folder)));
+        Ok(Self {
+            preset,
+            core,
+            turned_down: options.turned_down,
+            out: out.transpose()?,
+            follower: Follower::default(),
+            frames: Vec::new(),
+        })
+    }
+
+    fn set_scene(&mut self, scene: Scene) -> Result<(), CoreError> {
+        self.core.set_scene(scene, self.preset)?;
         self.core.turn_down(self.turned_down)
     }
 
-    fn replay(
-        &mut self,
-        preset: Preset,
-        indices: Range<usize>,
-        progress: &mut dyn Progress,
-    ) -> Result<Report, ReplayError> {
-        let scene = self.session.scene();
-        self.set_scene(self.alignments.scene(scene), preset)?;
-        progress.start(&format!("{} with {preset}", scene.name), indices.len());
-        let mut frames = Vec::with_capacity(indices.len());
-        for index in indices {
-            if let Some(relit) = self.alignments.relit_scene(scene, index) {
-                self.set_scene(relit, preset)?;
-            }
-            let entry = self.frame(index, preset)?;
-            progress.frame(&entry);
-            frames.push(entry);
+    fn frame(&mut self, shot: &Shot<'_>) -> Result<FrameEntry, ReplayError> {
+        let scene = shot.session.scene();
+        if self.frames.is_empty() {
+            self.set_scene(shot.alignments.scene(scene))?;
         }
-        let report = Report {
-            session: scene.name.clone(),
-            preset: preset.name(),
-            adapter: self.core.adapter_name(),
-            is_software: self.core.is_software(),
-            size_px: [scene.width_px, scene.height_px],
-            warnings: warnings_of(self.session, self.core)?,
-            lens: self.alignments.lens().map(LensEntry::from),
-            mean: Mean::of(&frames),
-            fit: self
-                .core
-                .read_fit()?
-                .map(|fit| FitEntry::new(&fit, self.alignments.n_lights(scene, preset))),
-            frames,
-        };
-        if let Some(out) = &self.out {
-            write_report(&out.folder, &report)?;
+        if let Some(relit) = shot.alignments.relit_scene(scene, shot.index) {
+            self.set_scene(relit)?;
         }
-        progress.finish();
-        Ok(report)
-    }
-
-    fn frame(&mut self, index: usize, preset: Preset) -> Result<FrameEntry, ReplayError> {
-        let (mut entry, region, picture) =
-            run_frame(self.session, self.alignments, self.core, (index, preset))?;
-        let truth = match self.truth {
-            Some(truth) => truth.truth(index)?,
-            None => None,
-        };
-        if let Some(truth) = &truth {
+        let (mut entry, picture) = self.make(shot)?;
+        if let Some(truth) = &shot.truth {
+            let index = shot.index;
             let failed = |reason| ReplayError::Score { index, reason };
             entry.scores = Some(score(&picture, truth).map_err(failed)?);
             entry.flicker = self.follower.next(index, &picture, truth).map_err(failed)?;
         }
-        if let Some(out) = &mut self.out {
-            let name = picture_file(index);
-            write_png(&out.folder.join(&name), &picture)?;
-            entry.picture = Some(name);
-            let error = truth.map(|truth| false_color::error(&picture, &truth.image));
-            entry.error = error
-                .map(|error| out.maps.write(ERROR.name, index, error.into()))
-                .transpose()?;
-            let drawn = (self.session, self.alignments, index);
-            entry.maps = write_lights(&mut out.maps, drawn, preset)?;
-            if let Some(region) = region {
-                let maps = write_maps(&mut out.maps, (self.session, self.core), (index, region))?;
-                entry.maps.extend(maps);
-            }
-        }
+        self.write(shot, &mut entry, &picture)?;
         Ok(entry)
+    }
+
+    /// Makes the picture and what can be told of it without a truth.
+    fn make(&mut self, shot: &Shot<'_>) -> Result<(FrameEntry, Image), ReplayError> {
+        let failed = |reason| shot.failed(reason);
+        let input = shot.input(self.preset);
+        let start = Instant::now();
+        let report = self.core.frame(&input).map_err(failed)?;
+        let cpu = start.elapsed();
+        let picture = self.core.read_picture().map_err(failed)?;
+        let wall = start.elapsed();
+        let times = self.core.read_pass_times().map_err(failed)?;
+        let warnings = shot.frame.warnings.iter();
+        let entry = FrameEntry {
+            index: shot.index,
+            time_secs: shot.frame.time_secs,
+            picture: None,
+            error: None,
+            maps: Vec::new(),
+            gpu_ms: (!times.is_empty()).then(|| times.iter().map(|time| time.gpu_ms).sum()),
+            cpu_ms: ms(cpu),
+            wall_ms: ms(wall),
+            pass_times: times,
+            session_warnings: warnings.map(ToString::to_string).collect(),
+            report,
+            alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
+            scores: None,
+            flicker: None,
+        };
+        Ok((entry, through_lens(shot.session, shot.index, picture)?))
+    }
+
+    /// Writes the picture, its error and the maps, where pictures are written.
+    fn write(&mut self, shot: &Shot<'_>, entry: &mut FrameEntry, picture: &Image) -> Result<(), ReplayError> {
+        let Some(out) = &mut self.out else {
+            return Ok(());
+        };
+        let name = picture_file(shot.index);
+        write_png(&out.folder.join(&name), picture)?;
+        entry.picture = Some(name);
+        if let Some(truth) = &shot.truth {
+            let error = false_color::error(picture, &truth.image);
+            entry.error = Some(out.maps.write(ERROR.name, shot.index, error.into())?);
+        }
+        entry.maps = write_lights(&mut out.maps, shot, self.preset)?;
+        if let Some(region) = entry.report.region {
+            entry
+                .maps
+                .extend(write_maps(&mut out.maps, shot, self.core, region)?);
+        }
+        Ok(())
+    }
+
+    fn report(self, session: &dyn Session, alignments: &Alignments) -> Result<Report, ReplayError> {
+        let scene = session.scene();
+        let fit = self.core.read_fit()?;
+        let report = Report {
+            session: scene.name.clone(),
+            preset: self.preset.name(),
+            adapter: self.core.adapter_name(),
+            is_software: self.core.is_software(),
+            size_px: [scene.width_px, scene.height_px],
+            warnings: warnings_of(session, self.core)?,
+            lens: alignments.lens().copied(),
+            mean: Mean::of(&self.frames),
+            fit: fit.map(|fit| FitEntry::new(&fit, alignments.n_lights(scene, self.preset))),
+            frames: self.frames,
+        };
+        if let Some(out) = &self.out {
+            write_report(&out.folder, &report)?;
+        }
+        Ok(report)
     }
 }
 
 fn write_maps(
     pictures: &mut Pictures,
-    (session, core): (&dyn Session, &Core),
-    (index, region): (usize, PixelRect),
+    shot: &Shot<'_>,
+    core: &Core,
+    region: PixelRect,
 ) -> Result<Vec<MapEntry>, ReplayError> {
     let mut entries = Vec::new();
-    let size_px = [session.scene().width_px, session.scene().height_px];
+    let scene = shot.session.scene();
     for map in Map::ALL {
-        let values = core
-            .read_map(*map)
-            .map_err(|reason| ReplayError::Frame { index, reason })?;
+        let values = core.read_map(*map).map_err(|reason| shot.failed(reason))?;
         if let (Some(shown), Some(values)) = (describe(*map), values) {
-            let picture = false_color::picture(*map, &values, region, size_px);
-            let picture = session.map_through_lens(index, picture)?;
-            let file = pictures.write(shown.name, index, picture.into())?;
+            let picture = false_color::picture(*map, &values, region, [scene.width_px, scene.height_px]);
+            let picture = map_through_lens(shot.session, shot.index, picture)?;
+            let file = pictures.write(shown.name, shot.index, picture.into())?;
             entries.push(MapEntry {
                 name: shown.name,
                 file,
@@ -366,53 +447,6 @@ fn prepare(folder: &Path) -> Result<(), ReplayError> {
     }
     remove_file(&folder.join(PAGE_FILE))?;
     Ok(remove_file(&folder.join(REPORT_FILE))?)
-}
-
-/// Makes one picture and what can be told of it without a truth.
-fn run_frame(
-    session: &dyn Session,
-    alignments: &Alignments,
-    core: &mut Core,
-    (index, preset): (usize, Preset),
-) -> Result<(FrameEntry, Option<PixelRect>, Image), ReplayError> {
-    let failed = |reason| ReplayError::Frame { index, reason };
-    let frame = session.frame(index)?;
-    let input = alignments.input(index, &frame, preset);
-    let aligned = alignments.of(index);
-    let start = Instant::now();
-    let report = core.frame(&input).map_err(failed)?;
-    let cpu = start.elapsed();
-    let picture = core.read_picture().map_err(failed)?;
-    let wall = start.elapsed();
-    let times = core.read_pass_times().map_err(failed)?;
-    let picture = session.through_lens(index, picture)?;
-    let warnings = frame.warnings.iter().map(ToString::to_string);
-    let entry = FrameEntry {
-        index,
-        time_secs: frame.time_secs,
-        picture: None,
-        error: None,
-        maps: Vec::new(),
-        region: report.region.map(Into::into),
-        gpu_ms: (!times.is_empty()).then(|| times.iter().map(|time| time.gpu_ms).sum()),
-        cpu_ms: ms(cpu),
-        wall_ms: ms(wall),
-        passes: pass_entries(&report, &times),
-        skipped: report.skipped.iter().map(Into::into).collect(),
-        warnings: warnings
-            .chain(
-                aligned
-                    .iter()
-                    .flat_map(|aligned| &aligned.alignment.warnings)
-                    .map(ToString::to_string),
-            )
-            .chain(report.warnings.iter().map(ToString::to_string))
-            .collect(),
-        alignment: aligned.map(AlignmentEntry::from),
-        scores: None,
-        flicker: None,
-    };
-    Ok((entry, report.region, picture))
 }
 
 fn write_report(folder: &Path, report: &Report) -> Result<(), WriteError> {

@@ -1,16 +1,15 @@
-//! What a replay found out, as it stands in `report.json`. The order of the fields is the order in the file.
+//! What a replay found out, as it stands in `report.json`: the core's own reports, in their units. The order of the fields is the
+//! order in the file, and a number that is not finite is null there.
 
-use app_core::frame::{FrameReport, LeftOut, PassRun, PassTime, Path, PixelRect};
+use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
+use app_core::frame::{FrameReport, PassTime, Path};
 use app_core::scene::MAX_LIGHTS;
 use app_pipeline::model::state::solution::Fit;
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
+use crate::alignment::{Aligned, LightError};
 use crate::metrics::flicker::{Flicker, mean_flicker};
 use crate::metrics::{Score, Scores};
-use crate::report::alignment::{AlignmentEntry, LensEntry};
-
-pub mod alignment;
 
 /// A replay of one session.
 #[derive(Clone, Debug, Serialize)]
@@ -28,7 +27,7 @@ pub struct Report {
     /// What was odd about the session as a whole.
     pub warnings: Vec<String>,
     /// The lens that photographs were freed of; none where nobody asked for it.
-    pub lens: Option<LensEntry>,
+    pub lens: Option<LensAlignment>,
     /// Means over frames.
     pub mean: Mean,
     /// What was learned from the real shadow, as of the last frame; none where nothing was learned.
@@ -71,20 +70,19 @@ pub struct FrameEntry {
     pub error: Option<String>,
     /// The maps between input and picture, where pictures are written and a region was worked on.
     pub maps: Vec<MapEntry>,
-    /// The rectangle that was worked on; none where the camera frame passed through.
-    pub region: Option<RectEntry>,
     /// Device time of all passes; none where the device cannot tell.
     pub gpu_ms: Option<f64>,
     /// Time that the core took on the processor to hand the frame to the device.
     pub cpu_ms: f64,
     /// Time until the picture was back in memory, waiting for the device and copying included.
     pub wall_ms: f64,
-    /// What ran, in order.
-    pub passes: Vec<PassEntry>,
-    /// What did not run, and why.
-    pub skipped: Vec<SkippedEntry>,
-    /// What was odd about the frame, and how it is degraded.
-    pub warnings: Vec<String>,
+    /// Device time of each pass; empty where the device cannot tell.
+    pub pass_times: Vec<PassTime>,
+    /// What was odd about the frame as it was recorded.
+    pub session_warnings: Vec<String>,
+    /// The core's report.
+    #[serde(flatten)]
+    pub report: FrameReport,
     /// What alignment found; none where the session is replayed as recorded.
     pub alignment: Option<AlignmentEntry>,
     /// Error against the truth, where there is one.
@@ -102,37 +100,6 @@ pub struct MapEntry {
     pub file: String,
 }
 
-/// A rectangle of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct RectEntry {
-    /// Top left corner.
-    pub origin_px: [u32; 2],
-    /// Width and height.
-    pub size_px: [u32; 2],
-}
-
-/// A pass that ran.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PassEntry {
-    /// `capture` or `frame`.
-    pub path: &'static str,
-    /// Its name.
-    pub name: &'static str,
-    /// How often it ran.
-    pub n_runs: u32,
-    /// Its device time over all its runs; none where the device cannot tell.
-    pub gpu_ms: Option<f64>,
-}
-
-/// Work that was not done.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SkippedEntry {
-    /// What.
-    pub what: &'static str,
-    /// Why.
-    pub why: &'static str,
-}
-
 /// What the fit learned, each as linear red, green and blue.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitEntry {
@@ -146,11 +113,59 @@ pub struct FitEntry {
     pub toy: Vec<[f32; 3]>,
 }
 
+/// What alignment found in one frame.
+#[derive(Clone, Debug, Serialize)]
+pub struct AlignmentEntry {
+    /// Time that it took on the processor.
+    pub cpu_ms: f64,
+    /// The core's report.
+    #[serde(flatten)]
+    pub report: AlignmentReport,
+    /// What could not be aligned.
+    pub warnings: Vec<AlignmentWarning>,
+    /// Whether the plates are taken in another light than they were photographed in.
+    pub is_relit: bool,
+    /// Lights on the session's list, where that was put aside.
+    pub n_listed: usize,
+    /// Each light that a probe tells, against the nearest light of that list, as seen from the probe.
+    pub probe_against_listed: Vec<Option<LightError>>,
+    /// The same of the lights that were found by their shadows, as seen from the toy's middle.
+    pub discovered_against_listed: Vec<Option<LightError>>,
+}
+
+impl From<&Aligned> for AlignmentEntry {
+    fn from(aligned: &Aligned) -> Self {
+        let report = &aligned.alignment.report;
+        let told = report.probe.iter().flat_map(|probe| &probe.lights);
+        let discovered = report.discovered.iter();
+        Self {
+            cpu_ms: aligned.cpu_ms,
+            warnings: aligned.alignment.warnings.clone(),
+            is_relit: aligned.alignment.relit_plates.is_some(),
+            n_listed: aligned.put_aside.len(),
+            probe_against_listed: told.map(|light| aligned.error_of_told(light)).collect(),
+            discovered_against_listed: discovered
+                .map(|light| aligned.error_of_discovered(light))
+                .collect(),
+            report: report.clone(),
+        }
+    }
+}
+
 impl FrameEntry {
+    /// Everything that was odd: of the session, of alignment and of the core.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let of_session = self.session_warnings.iter().cloned();
+        let of_alignment = self.alignment.iter().flat_map(|aligned| &aligned.warnings);
+        of_session
+            .chain(of_alignment.map(ToString::to_string))
+            .chain(self.report.warnings.iter().map(ToString::to_string))
+    }
+
     /// Whether nothing was learned anew, so that its times are those of a frame in the long run.
     #[must_use]
     pub fn is_steady(&self) -> bool {
-        self.region.is_some() && self.passes.iter().all(|pass| pass.path != Path::Capture.name())
+        self.report.region.is_some() && self.report.ran.iter().all(|run| run.path != Path::Capture)
     }
 }
 
@@ -199,22 +214,6 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
     (n_values > 0.0).then(|| values.sum::<f64>() / n_values)
 }
 
-/// The passes of a frame with the times that can be told to be theirs.
-pub(crate) fn pass_entries(report: &FrameReport, times: &[PassTime]) -> Vec<PassEntry> {
-    let entry = |run: &PassRun| {
-        let time = times
-            .iter()
-            .find(|time| (time.path, time.pass) == (run.path, run.pass));
-        PassEntry {
-            path: run.path.name(),
-            name: run.pass,
-            n_runs: run.n_runs,
-            gpu_ms: time.map(|time| time.gpu_ms),
-        }
-    };
-    report.ran.iter().map(entry).collect()
-}
-
 impl FitEntry {
     pub(crate) fn new(fit: &Fit, n_lights: usize) -> Self {
         let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
@@ -232,43 +231,5 @@ impl FitEntry {
                 .map(|light| rgb(*light))
                 .collect(),
         }
-    }
-}
-
-impl From<PixelRect> for RectEntry {
-    fn from(rect: PixelRect) -> Self {
-        Self {
-            origin_px: rect.origin_px.to_array(),
-            size_px: rect.size_px.to_array(),
-        }
-    }
-}
-
-impl From<&LeftOut> for SkippedEntry {
-    fn from(left_out: &LeftOut) -> Self {
-        Self {
-            what: left_out.what,
-            why: left_out.why,
-        }
-    }
-}
-
-impl Serialize for Score {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut score = serializer.serialize_struct("Score", 2)?;
-        score.serialize_field("rmse", &self.rmse)?;
-        score.serialize_field("ssim", &self.ssim)?;
-        score.end()
-    }
-}
-
-impl Serialize for Scores {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut scores = serializer.serialize_struct("Scores", 4)?;
-        scores.serialize_field("shadow", &self.shadow)?;
-        scores.serialize_field("toy", &self.toy)?;
-        scores.serialize_field("edge", &self.edge)?;
-        scores.serialize_field("frame", &self.frame)?;
-        scores.end()
     }
 }

@@ -62,8 +62,8 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
     let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join(REPORT_FILE)).unwrap()).unwrap();
     assert_eq!(json["session"], "llama");
     assert_eq!(json["frames"].as_array().unwrap().len(), session.n_frames());
-    assert_eq!(json["frames"][0]["passes"][0]["path"], "capture");
-    assert_eq!(json["frames"][1]["passes"][0]["path"], "frame");
+    assert_eq!(json["frames"][0]["ran"][0]["path"], "capture");
+    assert_eq!(json["frames"][1]["ran"][0]["path"], "frame");
     assert_eq!(json["frames"][IDENTITY_FRAME]["scores"]["frame"]["rmse"], 0.0);
     assert!(
         json["frames"][0]["flicker"].is_null() && json["frames"][1]["flicker"]["toy"].as_f64().unwrap() > 0.0
@@ -94,7 +94,12 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
     assert_eq!(
         out.names(),
-        [picture_file(3), picture_file(4), MAPS_FOLDER.to_owned()],
+        [
+            &picture_file(3),
+            &picture_file(4),
+            INPUTS_FOLDER,
+            MAPS_FOLDER
+        ],
         "what was whole stays, and no remnants"
     );
 

@@ -93,13 +93,13 @@ pub struct Row {
 /// When a frame cannot be read, made or scored.
 pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Vec<Row>, ReplayError> {
     let mut rows = Vec::new();
-    let alignments = replay::alignments(session, &replay_options(options))?;
+    let mut alignments = replay::alignments(session, &replay_options(options))?;
     for &preset in &options.presets {
-        rows.push(measure(session, core, (preset, &[]), (options, &alignments))?);
+        rows.push(measure(session, core, (preset, &[]), (options, &mut alignments))?);
     }
     for steps in front::turned_down().filter(|_| options.with_front) {
         let setting = (Preset::Balanced, steps);
-        rows.push(measure(session, core, setting, (options, &alignments))?);
+        rows.push(measure(session, core, setting, (options, &mut alignments))?);
     }
     compare_with_paper(&mut rows);
     if options.with_exact {
@@ -131,7 +131,7 @@ fn measure(
     session: &Capture,
     core: &mut Core,
     (preset, turned_down): (Preset, &'static [Step]),
-    (options, alignments): (&Options, &Alignments),
+    (options, alignments): (&Options, &mut Alignments),
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
         presets: vec![preset],
@@ -219,7 +219,7 @@ fn inputs(
     (report, preset): (&Report, Preset),
     alignments: &Alignments,
 ) -> Result<Vec<FrameInput>, ReplayError> {
-    let worked = report.frames.iter().filter(|frame| frame.region.is_some());
+    let worked = report.frames.iter().filter(|frame| frame.report.region.is_some());
     worked
         .map(|frame| Ok(alignments.input(frame.index, &session.frame(frame.index)?, preset)))
         .collect()

@@ -7,10 +7,10 @@ use app_core::alignment::{Aligner, DiscoveredLight};
 use app_core::preset::Preset;
 use app_core::scene::{Light, Probe};
 use app_core::session::{Capture, Session};
-use desk::alignment::{Alignments, Asked, Lights, SeenLight, Source};
+use desk::alignment::{Alignments, Asked, LightError, Lights, SeenLight, Source};
 use desk::check::check;
 use desk::files::Folder;
-use desk::report::alignment::{AlignmentEntry, ErrorEntry};
+use desk::report::AlignmentEntry;
 use glam::{DMat4, DVec3};
 use measure::photographer::world::{camera, toward};
 use measure::photographer::{Exposure, Lamp, Mirror, Quality, Shot, World, folder};
@@ -72,10 +72,10 @@ fn aligned(lights: Lights) -> (Capture, Alignments) {
     (capture, alignments)
 }
 
-fn of_each(errors: impl Iterator<Item = Option<ErrorEntry>>) -> [f64; 2] {
+fn of_each(errors: Vec<Option<LightError>>) -> [f64; 2] {
     let mut deg = [f64::INFINITY; 2];
-    for error in errors.flatten() {
-        deg[error.index] = deg[error.index].min(error.direction_deg);
+    for error in errors.into_iter().flatten() {
+        deg[error.index] = deg[error.index].min(error.direction_rad.to_degrees());
     }
     deg
 }
@@ -85,13 +85,13 @@ fn of_each(errors: impl Iterator<Item = Option<ErrorEntry>>) -> [f64; 2] {
 fn the_shadow_makes_exact_what_the_probe_tells() {
     let (_, alignments) = aligned(Lights::Probe);
     let entry = AlignmentEntry::from(alignments.of(0).unwrap());
-    let probe = entry.probe.unwrap();
+    let probe = entry.report.probe.unwrap();
     assert_eq!(
-        (probe.lights.len(), probe.rejected.len(), entry.discovered.len()),
+        (probe.lights.len(), probe.rejected.len(), entry.report.discovered.len()),
         (2, 0, 2)
     );
-    let before_deg = of_each(probe.lights.into_iter().map(|light| light.against_listed));
-    let after_deg = of_each(entry.discovered.into_iter().map(|light| light.against_listed));
+    let before_deg = of_each(entry.probe_against_listed);
+    let after_deg = of_each(entry.discovered_against_listed);
     assert!(before_deg.iter().all(|deg| *deg < 0.3), "{before_deg:?}");
     assert!(after_deg.iter().all(|deg| *deg < 0.1), "{after_deg:?}");
 }

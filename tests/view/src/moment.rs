@@ -100,16 +100,4 @@ impl Session for Moment {
     fn frame(&self, _: usize) -> Result<SessionFrame, SessionError> {
         Ok(self.frame.clone())
     }
-
-    fn photograph(&self, _: usize) -> Result<Arc<Image>, SessionError> {
-        Ok(Arc::clone(&self.frame.image))
-    }
-
-    fn through_lens(&self, _: usize, made: Image) -> Result<Image, SessionError> {
-        Ok(made)
-    }
-
-    fn map_through_lens(&self, _: usize, map: Image) -> Result<Image, SessionError> {
-        Ok(map)
-    }
 }

@@ -44,6 +44,7 @@ mod surface;
 mod track;
 
 use glam::{DVec2, DVec3};
+use serde::{Serialize, Serializer};
 
 use app_scene::scene::{ProbePicture, ProbeShape};
 
@@ -80,7 +81,7 @@ pub struct Sighting {
 }
 
 /// A light in one picture of a probe.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SeenLight {
     /// Where the probe shows it, in the world, metres.
     pub origin_in_world: DVec3,
@@ -97,7 +98,7 @@ pub struct SeenLight {
 }
 
 /// A bright region that is no light's.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rejected {
     /// Its middle, in pixels.
     pub at_px: DVec2,
@@ -139,5 +140,11 @@ impl std::fmt::Display for Reason {
                 2.0 * angular_radius_rad.to_degrees()
             ),
         }
+    }
+}
+
+impl Serialize for Reason {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }

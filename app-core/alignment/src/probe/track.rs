@@ -1,5 +1,7 @@
 //! The lights that a probe tells, picture by picture.
 
+use serde::Serialize;
+
 use super::error::ProbeError;
 use super::look::look;
 use super::near_light::{Meeting, Ray, agree, meet};
@@ -27,7 +29,7 @@ pub struct Track {
 }
 
 /// A light that a probe tells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TrackedLight {
     /// As a scene lists it: a sphere where views tell its distance, and else where the latest of them has it, since a mean of views from
     /// several places would be off for a light that is near after all.
@@ -137,7 +139,7 @@ fn ray(seen: &SeenLight) -> Ray {
 }
 
 /// What all pictures of a probe tell.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeReport {
     /// Lights, those that give most first.
     pub lights: Vec<TrackedLight>,

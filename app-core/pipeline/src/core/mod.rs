@@ -87,9 +87,16 @@ impl Core {
         Self::new(Gpu::default(), None)
     }
 
-    fn new(gpu: Gpu, window: Option<Window>) -> Self {
+    /// A core without a scene that draws into textures alone, on the same device: it shares all that is compiled, and nothing that is
+    /// learned.
+    #[must_use]
+    pub fn beside(&self) -> Self {
+        Self::new(Arc::clone(&self.gpu), None)
+    }
+
+    fn new(gpu: impl Into<Arc<Gpu>>, window: Option<Window>) -> Self {
         Self {
-            gpu: Arc::new(gpu),
+            gpu: gpu.into(),
             window,
             stage: None,
             preview: None,

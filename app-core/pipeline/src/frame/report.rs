@@ -1,5 +1,7 @@
 //! The report of one frame.
 
+use serde::Serialize;
+
 use crate::frame::warning::Warning;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::pass_run::PassRun;
@@ -7,7 +9,7 @@ use crate::gpu::stages::StageTime;
 use crate::plan::{Change, LeftOut};
 
 /// The report of one frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,

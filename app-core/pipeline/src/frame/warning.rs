@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 use crate::frame::mismatch::Mismatch;
 use app_scene::words::Listed;
 
-/// A degraded mode: the picture is the best that can be had, for a reason.
+/// A degraded mode: the picture is the best that can be had, for a reason. JSON has the sentence that it displays.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -196,6 +198,12 @@ impl fmt::Display for Warning {
             | Self::OutOfPicture
             | Self::ToyOutOfPicture => Ok(()),
         }
+    }
+}
+
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Rectangles: of the camera image, and of a receiver's plane.
 
 use glam::{DVec2, UVec2};
+use serde::Serialize;
 
 /// A rectangle of the camera image, in pixels from its top left corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PixelRect {
     /// Top left corner.
     pub origin_px: UVec2,

@@ -1,9 +1,12 @@
 //! Records of the passes that ran.
 
+use serde::Serialize;
+
 use super::work::Work;
 
 /// Which of the two paths a pass belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Path {
     /// Updates of scene state from a view.
     Capture,
@@ -23,7 +26,7 @@ impl Path {
 }
 
 /// A pass that ran.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct PassRun {
     /// The path it ran on.
     pub path: Path,
@@ -36,7 +39,7 @@ pub struct PassRun {
 }
 
 /// Device time of one pass.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassTime {
     /// The path it ran on.
     pub path: Path,

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 /// A caller's clock: milliseconds since whenever, never going back.
 #[derive(Clone)]
 pub struct Clock(Arc<dyn Fn() -> f64 + Send + Sync>);
@@ -26,7 +28,7 @@ impl fmt::Debug for Clock {
 }
 
 /// Time of one stage on the processor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StageTime {
     /// Its name.
     pub stage: &'static str,

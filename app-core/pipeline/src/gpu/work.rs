@@ -3,6 +3,8 @@
 use std::iter::Sum;
 use std::ops::AddAssign;
 
+use serde::Serialize;
+
 use super::shape::Shape;
 
 /// Work of a pass, over all of its runs. Only a recorder makes one that is not empty, from descriptors.
@@ -14,7 +16,7 @@ use super::shape::Shape;
 ///
 /// So a pass that looks elsewhere than where it draws, as `toy` does at the real toy's pixels, is counted as if it looked at
 /// as many.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct Work {
     n_draws: u32,
     triangles: u64,

@@ -3,6 +3,8 @@
 //!
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
 
+use serde::Serialize;
+
 use crate::geometry::rect::PixelRect;
 
 /// Facts of a scene that decide its plan.
@@ -47,7 +49,7 @@ impl SceneFacts {
 }
 
 /// Work that a scene does not need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
     /// What is left out.
     pub what: &'static str,
@@ -56,7 +58,8 @@ pub struct LeftOut {
 }
 
 /// What changed since the frame before; each includes those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Change {
     /// Only the pose that is shown.
     Pose,

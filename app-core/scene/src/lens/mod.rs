@@ -9,6 +9,7 @@ mod resample;
 use std::ops::RangeInclusive;
 
 use glam::DVec2;
+use serde::Serialize;
 
 use crate::scene::{FieldError, Image, Intrinsics};
 
@@ -24,7 +25,7 @@ const LAST_STEP: f64 = 1e-13;
 ///
 /// At the place `(x, y) = ((u - cx) / fx, (v - cy) / fy)` of a pinhole's picture, with `r2 = x x + y y`, is seen what the photograph
 /// has at `(1 + k1 r2 + k2 r2 r2) (x, y)`. Negative is a barrel, positive a cushion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distortion {
     /// Of `r2`.
     pub k1: f64,

@@ -12,6 +12,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3};
+use serde::Serialize;
 
 use crate::toy::Toy;
 
@@ -119,7 +120,8 @@ pub struct Receiver {
 }
 
 /// A light whose direct shadow is moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Light {
     /// A bulb. A radius of zero is a point.
     Sphere {

@@ -154,7 +154,7 @@ fn summary_of(report: &Report) -> Vec<String> {
     if let Some(lens) = &report.lens {
         lines.push(format!(
             "lens k1 {:.4}, k2 {:.4}: {}",
-            lens.k1, lens.k2, lens.outcome
+            lens.distortion.k1, lens.distortion.k2, lens.outcome
         ));
     }
     if let Some(scores) = report.mean.scores {

@@ -9,7 +9,7 @@ mod sense;
 
 use std::path::{Path, PathBuf};
 
-use app_core::alignment::{Alignment, DiscoveredLight, Outlines};
+use app_core::alignment::{Alignment, Outlines};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
@@ -17,13 +17,13 @@ use app_core::scene::{Camera, Image};
 use app_core::session::{Capture, Session, SessionWarning};
 use glam::{DVec2, DVec3};
 
-use crate::alignment::{Aligned, Alignments, Asked, Lights, SeenLight, Source};
+use crate::alignment::{Aligned, Alignments, Asked, LightError, Lights, Source};
 use crate::gizmo;
 use crate::gizmo::Gizmo;
+use crate::lens::through_lens;
 use crate::opened;
 use crate::opened::Opened;
 use crate::output::{remove_file, write_png};
-use crate::report::alignment::ErrorEntry;
 use crate::stored::Stored;
 
 pub use pictures::wrong_of_picture;
@@ -102,17 +102,14 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
     Ok(findings)
 }
 
-/// How far a light that was found is from the nearest one of the list that was put aside; nothing without a list.
-fn against_listed(found: &DiscoveredLight, listed: &[SeenLight]) -> String {
-    let Some(error) = ErrorEntry::nearest(&SeenLight::found(found), listed) else {
-        return String::new();
-    };
+/// How far a light that was found is from the nearest one of the list that was put aside.
+fn against_listed(error: &LightError) -> String {
     let times = |ratio: Option<f64>, what: &str| {
         ratio.map_or(String::new(), |ratio| format!(", {ratio:.2} times its {what}"))
     };
     format!(
         "; {:.2} degrees from lights[{}]{}{}",
-        error.direction_deg,
+        error.direction_rad.to_degrees(),
         error.index,
         times(error.distance_ratio, "distance"),
         times(error.size_ratio, "angular size"),
@@ -220,7 +217,8 @@ impl Findings {
             let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
                 format!("{distance_m:.2} m away")
             });
-            let against = against_listed(light, &aligned.listed);
+            let error = aligned.error_of_discovered(light);
+            let against = error.as_ref().map(against_listed).unwrap_or_default();
             self.facts.push(format!(
                 "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees{against}",
                 2.0 * light.angular_radius_rad.to_degrees(),
@@ -297,5 +295,5 @@ fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow
     );
     let found = Gizmo::aligned(scene, aligned, &alignment.report);
     gizmo::rays(&mut picture, (scene, aligned), &found, gizmo::FOUND);
-    Ok(capture.through_lens(0, picture)?)
+    Ok(through_lens(capture, 0, picture)?)
 }

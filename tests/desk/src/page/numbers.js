@@ -60,30 +60,39 @@ function showNumbers() {
 
 const hue = name => [...name].reduce((sum, letter) => (sum * 31 + letter.charCodeAt(0)) % 360, 7);
 
+/* The passes of this frame, each with the time that can be told to be its own. */
+function passesOf(preset) {
+  const { ran, pass_times } = entry(preset);
+  return ran.map(run => ({ ...run,
+    gpu_ms: pass_times.find(time => time.path === run.path && time.pass === run.pass)?.gpu_ms ?? null }));
+}
+
+function sumOf(passes) {
+  return passes.reduce((sum, { gpu_ms }) => sum + (gpu_ms ?? 0), 0);
+}
+
 function bar(preset, path, longest) {
-  const passes = entry(preset).passes.filter(pass => pass.path === path);
-  const total = passes.reduce((sum, pass) => sum + (pass.gpu_ms ?? 0), 0);
-  const parts = passes.map(pass => {
-    const label = `${pass.name} ${ms(pass.gpu_ms)}`;
-    const width = longest > 0 ? 100 * (pass.gpu_ms ?? 0) / longest : 0;
-    const style = `flex: 0 0 ${width}%; background: hsl(${hue(pass.name)} 55% 72%)`;
+  const passes = passesOf(preset).filter(pass => pass.path === path);
+  const parts = passes.map(({ pass, gpu_ms }) => {
+    const label = `${pass} ${ms(gpu_ms)}`;
+    const width = longest > 0 ? 100 * (gpu_ms ?? 0) / longest : 0;
+    const style = `flex: 0 0 ${width}%; background: hsl(${hue(pass)} 55% 72%)`;
     return el("span", { title: label, style, class: width < 2 && "thin" }, el("i", {}, label));
   });
-  const text = passes.length === 0 ? "did not run" : ms(total);
+  const text = passes.length === 0 ? "did not run" : ms(sumOf(passes));
   return el("div", { class: "bar-row" }, el("div", {}, el("b", {}, preset.report.preset), el("div", {}, text)),
     el("div", { class: "bar", role: "img", "aria-label": `${preset.report.preset}: ${text}` }, parts));
 }
 
 function showTimes() {
-  const tells = data.presets.some(preset => entry(preset).passes.some(pass => pass.gpu_ms !== null));
+  const tells = data.presets.some(preset => entry(preset).pass_times.length > 0);
   const groups = Object.entries(PATHS).map(([path, title]) => {
-    const sums = data.presets.map(preset => entry(preset).passes
-      .filter(pass => pass.path === path).reduce((sum, pass) => sum + (pass.gpu_ms ?? 0), 0));
+    const sums = data.presets.map(preset => sumOf(passesOf(preset).filter(pass => pass.path === path)));
     return el("div", {}, el("h2", {}, title), data.presets.map(preset => bar(preset, path, Math.max(...sums))));
   });
   const wasOpen = at("times").querySelector("details")?.open ?? false;
   const lists = data.presets.map(preset => table(preset.report.preset, ["pass", "path", "device time"], [
-    ...entry(preset).passes.map(pass => row(pass.n_runs > 1 ? `${pass.name} × ${pass.n_runs}` : pass.name, [pass.path, ms(pass.gpu_ms)])),
+    ...passesOf(preset).map(({ pass, n_runs, path, gpu_ms }) => row(n_runs > 1 ? `${pass} × ${n_runs}` : pass, [path, ms(gpu_ms)])),
     row("on the processor", ["", ms(entry(preset).cpu_ms)]),
     row("until read back", ["", ms(entry(preset).wall_ms)])]));
   at("times").replaceChildren(
@@ -94,36 +103,39 @@ function showTimes() {
 
 /* What alignment found: the same for all presets */
 
+const mm = metres => `${(1e3 * metres).toFixed(2)} mm`;
+const degrees = radians => `${radians === null ? "?" : (radians * 180 / Math.PI).toFixed(2)}\u00b0`;
+const times = ratio => `\u00d7 ${ratio.toFixed(2)}`;
+
 function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { focal_length, world_scale, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms } = alignment;
-  const verdict = found => found.is_held ? "as in a frame before" : found.is_applied ? "corrected" : "left as given";
+  const { focal_length, world_scale, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms,
+    probe_against_listed, discovered_against_listed } = alignment;
+  const verdict = found => found.is_held ? "as in a frame before" : found.is_applied || found.outcome === "corrected" ? "corrected" : "left as given";
   const rows = [];
   const { lens } = data.presets[0].report;
-  if (lens) rows.push(row("the lens", [verdict(lens), `k1 ${lens.k1.toFixed(4)}, k2 ${lens.k2.toFixed(4)}`, lens.outcome]));
-  if (focal_length) rows.push(row("the focal length", [verdict(focal_length), `\u00d7 ${focal_length.ratio.toFixed(4)} \u00b1 ${focal_length.deviation?.toFixed(4) ?? "?"}`,
-    focal_length.outcome]));
-  if (world_scale) rows.push(row("the world's scale", [verdict(world_scale), `\u00d7 ${world_scale.ratio.toFixed(4)} \u00b1 ${world_scale.deviation?.toFixed(4) ?? "?"}`,
-    world_scale.outcome]));
-  if (camera) rows.push(row("the camera", [verdict(camera), `${camera.moved_mm.toFixed(2)} mm, ${camera.turned_deg.toFixed(2)}\u00b0`,
+  if (lens) rows.push(row("the lens", [verdict(lens), `k1 ${lens.distortion.k1.toFixed(4)}, k2 ${lens.distortion.k2.toFixed(4)}`, lens.outcome]));
+  for (const [name, found] of [["the focal length", focal_length], ["the world's scale", world_scale]]) {
+    if (found) rows.push(row(name, [verdict(found), `\u00d7 ${found.ratio.toFixed(4)} \u00b1 ${found.deviation?.toFixed(4) ?? "?"}`, found.outcome]));
+  }
+  if (camera) rows.push(row("the camera", [verdict(camera), `${mm(camera.moved_m)}, ${degrees(camera.turned_rad)}`,
     `the table by ${camera.moved_px.toFixed(2)} px in the picture`]));
-  if (pose) rows.push(row("the toy's pose", [verdict(pose), `${pose.moved_mm.toFixed(2)} mm, ${pose.turned_deg.toFixed(2)}\u00b0`,
+  if (pose) rows.push(row("the toy's pose", [verdict(pose), `${mm(pose.moved_m)}, ${degrees(pose.turned_rad)}`,
     `outline ${pose.given_outline_px.toFixed(2)} px off ${pose.is_held ? "as held" : "as given"}, ${pose.outline_px.toFixed(2)} px as found`]));
-  lights.forEach((light, i) => rows.push(row(`light ${i}`, [verdict(light), `${light.turned_deg.toFixed(2)}\u00b0`,
-    `distance \u00d7 ${light.distance_ratio.toFixed(2)}` + (light.size_ratio ? `, angular size \u00d7 ${light.size_ratio.toFixed(2)}` : "")])));
-  const against = error => error ? `light ${error.index} of the list: ${error.direction_deg.toFixed(2)}\u00b0 off`
-    + (error.distance_ratio ? `, distance \u00d7 ${error.distance_ratio.toFixed(2)}` : "")
-    + (error.size_ratio ? `, angular size \u00d7 ${error.size_ratio.toFixed(2)}` : "") : "";
+  const ratios = ({ distance_ratio, size_ratio }) => [distance_ratio && `distance ${times(distance_ratio)}`,
+    size_ratio && `angular size ${times(size_ratio)}`].filter(Boolean);
+  lights.forEach((light, i) => rows.push(row(`light ${i}`, [verdict(light), degrees(light.turned_rad), ratios(light).join(", ")])));
+  const against = error => error ? [`light ${error.index} of the list: ${degrees(error.direction_rad)} off`, ...ratios(error)].join(", ") : "";
   (probe?.lights ?? []).forEach((light, i) => rows.push(row(`light ${i} of the probe`, [`told by ${light.n_views} of its pictures`,
-    `${light.distance_m ? `${light.distance_m.toFixed(2)} m away` : "distance not told"}, direction \u00b1 ${light.direction_deviation_deg.toFixed(2)}\u00b0`,
-    against(light.against_listed)])));
+    `${light.distance_m ? `${light.distance_m.toFixed(2)} m away` : "distance not told"}, direction \u00b1 ${degrees(light.seen.deviation_rad)}`,
+    against(probe_against_listed[i])])));
   (probe?.rejected ?? []).forEach(({ at_px, reason }) => rows.push(row("no light of the probe",
     ["left out", `at ${at_px.map(at => at.toFixed(0)).join(", ")} px: ${reason}`, ""])));
   discovered.forEach((light, i) => rows.push(row(`light ${i}`, ["found by its shadow",
-    `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${(2 * light.angular_radius_deg).toFixed(2)}\u00b0 wide, direction \u00b1 ${light.direction_deviation_deg?.toFixed(2) ?? "?"}\u00b0`,
-    against(light.against_listed)])));
+    `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${degrees(2 * light.angular_radius_rad)} wide, direction \u00b1 ${degrees(light.deviation.direction_rad)}`,
+    against(discovered_against_listed[i])])));
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe tells: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
@@ -158,7 +170,8 @@ function showSkipped() {
 
 function showWarnings() {
   const tell = warnings => data.presets.flatMap(preset => warnings(preset).map(text => [text, preset.report.preset]));
-  const all = [...tell(preset => preset.report.warnings), ...tell(preset => entry(preset).warnings)];
+  const ofFrame = preset => [...entry(preset).session_warnings, ...entry(preset).alignment?.warnings ?? [], ...entry(preset).warnings];
+  const all = [...tell(preset => preset.report.warnings), ...tell(ofFrame)];
   at("warnings").replaceChildren(...unique(all.map(([text]) => text)).map(text => {
     const presets = unique(all.filter(([other]) => other === text).map(([, preset]) => preset));
     const whose = presets.length < data.presets.length ? `${presets.join(", ")}: ` : "";

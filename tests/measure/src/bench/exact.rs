@@ -19,6 +19,7 @@ use app_pipeline::readback::inject::InjectedVisibility;
 use app_scene::geometry::light_points::light_in_plane;
 use glam::{DMat4, DVec3, UVec2};
 
+use desk::lens::through_lens;
 use desk::metrics::flicker::{Follower, mean_flicker};
 use desk::metrics::score;
 use desk::replay::ReplayError;
@@ -70,7 +71,7 @@ pub(super) fn measure(
             core.frame(&input).map_err(failed)?;
         }
         if let Some(truth) = session.truth(index)? {
-            let picture = session.through_lens(index, core.read_picture().map_err(failed)?)?;
+            let picture = through_lens(session, index, core.read_picture().map_err(failed)?)?;
             let failed = |reason| ReplayError::Score { index, reason };
             scores.push(score(&picture, &truth).map_err(failed)?);
             flicker.extend(follower.next(index, &picture, &truth).map_err(failed)?);

@@ -15,6 +15,7 @@ use glam::Vec4;
 
 use desk::alignment::Alignments;
 use desk::false_color::srgb_from_linear;
+use desk::lens::through_lens;
 use desk::replay::ReplayError;
 
 use super::table::aligned;
@@ -107,7 +108,7 @@ fn rebuild_with(
             frame,
             all,
             clear,
-            picture: session.through_lens(frame, picture)?,
+            picture: through_lens(session, frame, picture)?,
         });
         latest = Some(Arc::clone(input.image.rgba()));
     }

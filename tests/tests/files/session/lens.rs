@@ -2,6 +2,7 @@
 
 use app_core::scene::Image;
 use app_core::session::{Capture, Session, SessionError};
+use desk::lens::{map_through_lens, through_lens};
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use serde_json::json;
 
@@ -95,7 +96,7 @@ fn only_what_was_changed_is_put_back() {
     let taken = capture.photograph(0).unwrap();
     let seen = capture.frame(0).unwrap().image;
     assert!(seen.rgba8 != taken.rgba8, "the lens does something");
-    let same = capture.through_lens(0, Image::clone(&seen)).unwrap();
+    let same = through_lens(&capture, 0, Image::clone(&seen)).unwrap();
     assert!(same == *taken, "nothing was changed");
 
     let mut made = Image::clone(&seen);
@@ -108,7 +109,7 @@ fn only_what_was_changed_is_put_back() {
             }
         }
     }
-    let shown = capture.through_lens(0, made).unwrap();
+    let shown = through_lens(&capture, 0, made).unwrap();
     let (mut n_white, mut n_kept) = (0, 0);
     for y in 0..SIZE_PX[1] {
         for x in 0..SIZE_PX[0] {
@@ -140,8 +141,8 @@ fn a_map_lies_over_the_photograph() {
         }
     }
     let unbent = open(json!(null)).unwrap();
-    assert!(unbent.map_through_lens(0, map.clone()).unwrap() == map);
-    let bent = capture.map_through_lens(0, map.clone()).unwrap();
+    assert!(map_through_lens(&unbent, 0, map.clone()).unwrap() == map);
+    let bent = map_through_lens(&capture, 0, map.clone()).unwrap();
     let (mut n, mut n_moved) = (0, 0);
     for y in 0..SIZE_PX[1] {
         for x in 0..SIZE_PX[0] {

@@ -11,7 +11,7 @@ use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, Wish
 use app_core::camera_frame::Tracking;
 use app_core::gpu::AdapterChoice;
 use app_core::recording::{Ending, Limits, PictureCodec, Recording, Take, TakeOptions, Taken, Topic};
-use app_core::scene::{Image, Pose, Scene};
+use app_core::scene::{Pose, Scene};
 use app_core::session::{
     Capture, Files, GroundTruth, Session, SessionError, SessionFrame, SessionWarning, Truth,
 };
@@ -140,18 +140,6 @@ impl Session for Fed {
 
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError> {
         Ok(self.frames[index].clone())
-    }
-
-    fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
-        Ok(Arc::clone(&self.frames[index].image))
-    }
-
-    fn through_lens(&self, _: usize, made: Image) -> Result<Image, SessionError> {
-        Ok(made)
-    }
-
-    fn map_through_lens(&self, _: usize, map: Image) -> Result<Image, SessionError> {
-        Ok(map)
     }
 }
 
