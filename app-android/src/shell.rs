@@ -27,13 +27,6 @@ const LOOK: Duration = Duration::from_secs(1);
 const VIDEOS: &[VideoFormat] = &[android_media::video::H264, MOTION_JPEG];
 #[cfg(not(target_os = "android"))]
 const VIDEOS: &[VideoFormat] = &[MOTION_JPEG];
-const PLATFORM: Platform = Platform {
-    app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
-    videos: VIDEOS,
-    codec: || PictureCodec::PHONE,
-    // Android lets an activity that is left go on for minutes.
-    keep_running: || Box::new(()),
-};
 
 /// The toy that the app comes with: the bundled session's, this project's own.
 ///
@@ -58,15 +51,23 @@ impl<P: Phone> Shell<P> {
     /// A shell that has just been started.
     pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
         live.time_by(record::clock());
+        let platform = Platform {
+            app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
+            videos: VIDEOS,
+            codec: Arc::new(|| PictureCodec::PHONE),
+            // Android lets an activity that is left go on for minutes.
+            keep_running: || Box::new(()),
+        };
         let folders = Folders {
             shared: phone.folder(),
+            toys: phone.folder(),
             own: phone.own_folder(),
         };
         let mut shell = Self {
             live,
             phone,
             feed,
-            worker: Worker::new(PLATFORM, folders),
+            worker: Worker::new(platform, folders),
             wants_device: false,
             looked: None,
         };

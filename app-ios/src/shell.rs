@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
 use app_core::app::{ArSession, Device, Panics, Permission, ShellCommand, ShellEvent, Starts, Thermal};
@@ -22,13 +23,6 @@ use crate::convert;
 use crate::hand_on::{self, into_photos};
 use crate::inbox::{Inbox, Told};
 use crate::stage::{Fitted, Stage, StageError};
-
-const PLATFORM: Platform = Platform {
-    app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
-    videos: &[H264, MOTION_JPEG],
-    codec: jpeg::codec,
-    keep_running: hand_on::keep_running,
-};
 
 /// The app's hands.
 pub(crate) struct Shell {
@@ -285,13 +279,20 @@ fn told_to(inbox: &Rc<Inbox>) -> Rc<dyn Fn(ShellEvent)> {
 
 /// A worker for an app that begins.
 fn worker() -> Worker {
-    let home = PathBuf::from(NSHomeDirectory().to_string());
+    let platform = Platform {
+        app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
+        videos: &[H264, MOTION_JPEG],
+        codec: Arc::new(jpeg::codec),
+        keep_running: hand_on::keep_running,
+    };
+    // What Files shows.
+    let documents = PathBuf::from(NSHomeDirectory().to_string()).join("Documents");
     let folders = Folders {
-        // What Files shows.
-        shared: Some(home.join("Documents")),
+        shared: Some(documents.clone()),
+        toys: Some(documents),
         own: Some(own_folder()),
     };
-    Worker::new(PLATFORM, folders)
+    Worker::new(platform, folders)
 }
 
 /// The folder of what is the app's own; a system makes it with the app's home.

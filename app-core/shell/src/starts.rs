@@ -19,11 +19,12 @@ pub fn begin(folder: &Path) -> Starts {
     starts
 }
 
-/// Keeps it, whole or not at all.
+/// Keeps it, whole or not at all, in a folder that is made if it is missing.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn store(folder: &Path, text: &str) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
     let whole = folder.join("starts.new");
     fs::write(&whole, text)?;
     fs::rename(whole, folder.join(FILE))

@@ -12,10 +12,12 @@ use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::wgpu;
+use app_shell::record::clock;
+use app_shell::worker::Pace;
 use clap::{Parser, ValueEnum};
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, repository};
-use view::desk::{Desk, Jobs};
+use view::desk::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
 use view::tour::Tour;
@@ -76,6 +78,11 @@ fn run(args: Args) -> Result<()> {
     let feed = Feed::of_stored(open_session(&path)?).with_context(|| path.display().to_string())?;
     let results = || repository().join(RESULTS);
     let out = args.out.unwrap_or_else(results);
+    let keeping = Keeping {
+        out: out.clone(),
+        jpeg_quality: args.jpeg,
+        toy_to_pick: args.toy,
+    };
     if !args.tour {
         return window::open(
             feed,
@@ -85,10 +92,8 @@ fn run(args: Args) -> Result<()> {
                 faults: args.fault,
                 text_scale: args.text_scale,
                 hold: args.hold,
-                out,
+                keeping,
                 seconds: args.seconds,
-                jpeg_quality: args.jpeg,
-                toy_to_pick: args.toy,
             },
         );
     }
@@ -101,11 +106,9 @@ fn run(args: Args) -> Result<()> {
     ))?;
     let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
     args.hold.into_iter().for_each(|hold| live.hold(hold));
-    live.time_by(window::clock());
-    let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
+    live.time_by(clock());
+    let mut desk = Desk::new(live, feed, keeping, Pace::Repeatable);
     desk.tell(ShellEvent::Started(starts));
-    desk.jpeg_quality = args.jpeg;
-    desk.toy_to_pick = args.toy;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
