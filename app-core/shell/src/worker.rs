@@ -20,9 +20,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use app_core::app::{AlignJob, Recorded, Saved, ShellCommand, ShellEvent};
+use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, WorkCommand};
 use app_core::live::Live;
-use app_core::recording::{PictureCodec, Take, Taken};
+use app_core::recording::{PictureCodec, RecordingJob, RecordingOutcome};
 
 use crate::guard::guarded;
 use crate::toys::{self, ToyFile};
@@ -119,40 +119,27 @@ impl Worker {
         Self { pace, toy_file, ..self }
     }
 
-    /// Does what a command asks for, and gives back one that it leaves to the shell.
-    pub fn take(&mut self, live: &Live, command: ShellCommand) -> Option<ShellCommand> {
+    /// Does what a command asks for.
+    pub fn obey(&mut self, live: &Live, command: WorkCommand) {
         match command {
-            ShellCommand::Align(job) => match self.pace {
+            WorkCommand::Align(job) => match self.pace {
                 Pace::Live => self.align(job),
                 Pace::Repeatable => self.waiting.push(job),
             },
-            ShellCommand::SavePhoto => self.save_photo(live),
-            ShellCommand::Video(true) => self.begin_video(),
-            ShellCommand::Video(false) => self.video = None,
-            ShellCommand::Record(Some(take)) => self.record(*take),
-            ShellCommand::Share => self.share(live),
-            ShellCommand::PickToy => {
+            WorkCommand::SavePhoto => self.save_photo(live),
+            WorkCommand::Video(true) => self.begin_video(),
+            WorkCommand::Video(false) => self.video = None,
+            WorkCommand::Record(job) => job.into_iter().for_each(|job| self.record(*job)),
+            WorkCommand::Share => self.share(live),
+            WorkCommand::PickToy => {
                 let folder = self.folders.toys.as_deref().unwrap_or(Path::new(""));
                 self.tell(ShellEvent::ToyFiles(toys::list(folder)));
             }
-            ShellCommand::ReadToy(name) => {
+            WorkCommand::ReadToy(name) => {
                 self.read_toy(self.folders.toys.clone().unwrap_or_default(), name);
             }
-            ShellCommand::Remember(text) => self.remember(&text),
-            other @ (ShellCommand::AskPermission
-            | ShellCommand::OpenSettings
-            | ShellCommand::RunTracking { .. }
-            | ShellCommand::PauseTracking
-            | ShellCommand::LockExposure(_)
-            | ShellCommand::Underexpose(_)
-            | ShellCommand::HoldAnchor { .. }
-            | ShellCommand::KeepAwake(_)
-            | ShellCommand::FrameRate(_)
-            | ShellCommand::ReopenDevice
-            | ShellCommand::Announce(_)
-            | ShellCommand::Record(None)) => return Some(other),
+            WorkCommand::Remember(text) => self.remember(&text),
         }
-        None
     }
 
     /// Runs the alignments that wait.
@@ -257,21 +244,21 @@ impl Worker {
         }
     }
 
-    fn record(&mut self, take: Take) {
+    fn record(&mut self, job: RecordingJob) {
         let Some(folder) = self.folders.shared.clone() else {
-            let taken = take.without_file(&io::ErrorKind::PermissionDenied.into());
+            let outcome = job.without_file(&io::ErrorKind::PermissionDenied.into());
             let file = String::new();
-            return self.tell(ShellEvent::Recorded(Recorded { file, taken }));
+            return self.tell(ShellEvent::Recorded(Recorded { file, outcome }));
         };
         let died = ShellEvent::Recorded(Recorded {
             file: folder.display().to_string(),
-            taken: Taken::died(take.number()),
+            outcome: RecordingOutcome::died(job.number()),
         });
         let path = self.stem(&folder, "recording").with_extension("mcap");
         let (platform, toy) = (self.platform.clone(), self.toy_file.bytes());
         self.recording = self.spawn("record", died, move |_| {
             let codec = (platform.codec)();
-            ShellEvent::Recorded(record::write(take, (platform.app, &toy), codec, &path))
+            ShellEvent::Recorded(record::write(job, (platform.app, &toy), codec, &path))
         });
     }
 
@@ -429,13 +416,13 @@ mod tests {
     fn without_a_folder_nothing_may_be_kept() {
         let (mut worker, live) = (worker_in(None), live());
         let asked = [
-            ShellCommand::SavePhoto,
-            ShellCommand::Video(true),
-            ShellCommand::Share,
+            WorkCommand::SavePhoto,
+            WorkCommand::Video(true),
+            WorkCommand::Share,
         ];
         for command in asked {
             let name = format!("{command:?}");
-            assert!(worker.take(&live, command).is_none(), "{name} is left");
+            worker.obey(&live, command);
             let event = told(&mut worker);
             assert!(
                 matches!(event, ShellEvent::Saved(Saved::NotAllowed)),
@@ -452,7 +439,7 @@ mod tests {
             fs::write(folder.join(file), b"").expect("a file");
         }
         let mut worker = worker_in(Some(&folder));
-        assert!(worker.take(&live(), ShellCommand::Share).is_none());
+        worker.obey(&live(), WorkCommand::Share);
         let Outcome::Share(files) = wait_for(&mut worker) else {
             panic!("no files to hand on");
         };
@@ -469,12 +456,12 @@ mod tests {
     fn the_app_is_kept_running_until_a_video_is_whole() {
         let folder = std::env::temp_dir().join(format!("app-shell-kept-{}", std::process::id()));
         let (mut worker, live) = (worker_in(Some(&folder)), live());
-        assert!(worker.take(&live, ShellCommand::Video(true)).is_none());
+        worker.obey(&live, WorkCommand::Video(true));
         assert_eq!(
             (KEPT.load(Ordering::SeqCst), LET_GO.load(Ordering::SeqCst)),
             (1, 0)
         );
-        assert!(worker.take(&live, ShellCommand::Video(false)).is_none());
+        worker.obey(&live, WorkCommand::Video(false));
         // It has no picture.
         let event = told(&mut worker);
         assert!(matches!(event, ShellEvent::Saved(Saved::Failed)), "{event:?}");
@@ -486,23 +473,21 @@ mod tests {
     }
 
     #[test]
-    fn toys_are_listed_and_read_and_what_is_not_for_files_is_left() {
+    fn toys_are_listed_and_read() {
         let (mut worker, live) = (worker_in(None), live());
-        assert!(worker.take(&live, ShellCommand::PickToy).is_none());
+        worker.obey(&live, WorkCommand::PickToy);
         let event = told(&mut worker);
         assert!(
             matches!(&event, ShellEvent::ToyFiles(names) if names == &["Llama"]),
             "{event:?}"
         );
-        let none = ShellCommand::ReadToy("none.glb".to_owned());
-        assert!(worker.take(&live, none).is_none());
+        let none = WorkCommand::ReadToy("none.glb".to_owned());
+        worker.obey(&live, none);
         let event = told(&mut worker);
         assert!(
             matches!(&event, ShellEvent::Toy(Err(reason)) if reason.contains("none.glb")),
             "{event:?}"
         );
-        let left = worker.take(&live, ShellCommand::OpenSettings);
-        assert!(matches!(left, Some(ShellCommand::OpenSettings)), "{left:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use app_core::app::{Permission, ShellCommand, ShellEvent};
+use app_core::app::{Permission, PlatformCommand, ShellCommand, ShellEvent, WorkCommand};
 use app_core::core::CoreError;
 use app_core::interface::Screen;
 use app_core::live::Live;
@@ -142,22 +142,26 @@ impl Desk {
     fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
             let picked = self.keeping.toy_to_pick.clone().filter(|path| path.is_file());
-            if let (ShellCommand::PickToy, Some(file)) = (&command, picked) {
-                self.pick(&file);
-                continue;
+            match (command, picked) {
+                (ShellCommand::Platform(command), _) => self.call_platform(command),
+                (ShellCommand::Work(WorkCommand::PickToy), Some(file)) => self.pick(&file),
+                (ShellCommand::Work(command), _) => self.worker.obey(&self.live, command),
             }
-            match self.worker.take(&self.live, command) {
-                Some(ShellCommand::AskPermission) => self.tell(ShellEvent::Permission(self.answer)),
-                Some(ShellCommand::RunTracking { is_new_world, .. }) => {
-                    self.is_tracking = true;
-                    self.feed.world_epoch += u32::from(is_new_world);
-                }
-                Some(ShellCommand::PauseTracking) => self.is_tracking = false,
-                Some(ShellCommand::Underexpose(is_on)) => self.feed.is_dark = is_on,
-                Some(ShellCommand::ReopenDevice) => self.wants_device = true,
-                // A desktop has no screen that goes off, no lens to hold and no settings of its own.
-                _ => {}
+        }
+    }
+
+    fn call_platform(&mut self, command: PlatformCommand) {
+        match command {
+            PlatformCommand::AskPermission => self.tell(ShellEvent::Permission(self.answer)),
+            PlatformCommand::RunTracking { is_new_world, .. } => {
+                self.is_tracking = true;
+                self.feed.world_epoch += u32::from(is_new_world);
             }
+            PlatformCommand::PauseTracking => self.is_tracking = false,
+            PlatformCommand::Underexpose(is_on) => self.feed.is_dark = is_on,
+            PlatformCommand::ReopenDevice => self.wants_device = true,
+            // A desktop has no screen that goes off, no lens to hold and no settings of its own.
+            _ => {}
         }
     }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use app_core::Core;
-use app_core::app::{Device, ShellEvent};
+use app_core::app::{GraphicsState, ShellEvent};
 use app_core::interface::{Insets, Screen, Touch, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -100,13 +100,13 @@ impl Shell {
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
         // Before a driver is asked for anything.
-        let starts = starts::begin(&self.options.keeping.out);
+        let history = starts::begin(&self.options.keeping.out);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
-        self.options.hold.into_iter().for_each(|hold| live.hold(hold));
-        live.time_by(clock());
+        self.options.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
+        live.set_clock(clock());
         let mut desk = Desk::new(live, feed, self.options.keeping.clone(), Pace::Live);
-        desk.tell(ShellEvent::Started(starts));
+        desk.tell(ShellEvent::Started(history));
         desk.tell(ShellEvent::Foreground(true));
         desk.tell(ShellEvent::Surface(Some(window.inner_size().into())));
         self.opened = Some(Opened { window, desk });
@@ -146,7 +146,7 @@ impl Shell {
         };
         let time_s = (now - self.start).as_secs_f64();
         if desk.present(&screen, time_s).is_err() {
-            desk.tell(ShellEvent::Device(Device::Lost));
+            desk.tell(ShellEvent::Graphics(GraphicsState::Lost));
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use app_core::Core;
-use app_core::app::{ShellEvent, Starts};
+use app_core::app::{LaunchHistory, ShellEvent};
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
@@ -98,17 +98,17 @@ fn run(args: Args) -> Result<()> {
         );
     }
     // A tour begins as the first start does.
-    let mut starts = Starts::default();
-    starts.begin();
+    let mut history = LaunchHistory::default();
+    history.begin();
     let core = pollster::block_on(Core::headless(
         &wgpu::Instance::default(),
         &AdapterChoice::Fastest,
     ))?;
     let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
-    args.hold.into_iter().for_each(|hold| live.hold(hold));
-    live.time_by(clock());
+    args.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
+    live.set_clock(clock());
     let mut desk = Desk::new(live, feed, keeping, Pace::Repeatable);
-    desk.tell(ShellEvent::Started(starts));
+    desk.tell(ShellEvent::Started(history));
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
