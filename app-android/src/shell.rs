@@ -8,10 +8,11 @@ use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
+use app_shell::folders::Folders;
 use app_shell::record;
 use app_shell::toys::BUNDLED;
 use app_shell::video::{MOTION_JPEG, VideoFormat};
-use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::worker::{Outcome, Platform, Worker};
 use arcore::feed::Feed;
 use arcore::tracker::{Geometry, Run};
 

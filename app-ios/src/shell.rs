@@ -7,9 +7,10 @@ use std::time::Instant;
 
 use app_core::app::{ArSession, GraphicsState, LaunchHistory, Panics, Permission, PlatformCommand, ShellCommand, ShellEvent, Thermal};
 use app_core::interface::Screen;
+use app_shell::folders::Folders;
 use app_shell::starts;
 use app_shell::video::MOTION_JPEG;
-use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::worker::{Outcome, Platform, Worker};
 use arkit::camera;
 use arkit::session::Session;
 use ios_media::jpeg;

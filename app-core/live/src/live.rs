@@ -18,7 +18,7 @@ use app_pipeline::governor::{BALANCED_FRONT, Governor, Measured};
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
 use app_scene::camera_frame::Display;
-use app_scene::scene::Image;
+use app_scene::scene::{Image, Scene};
 use app_scene::toy::Toy;
 
 use profiler::Profiler;
@@ -35,8 +35,8 @@ pub struct Live {
     /// What is still to be compiled: a pass a picture.
     warm_up: Option<WarmUp>,
     painter: Option<Painter>,
-    /// The scene that the core has.
-    version: Option<u64>,
+    /// The scene that the core has for the preset.
+    scene: Option<Arc<Scene>>,
     display: Display,
     warnings: Vec<Warning>,
     /// Frames a second that are aimed at.
@@ -59,7 +59,7 @@ impl Live {
             chosen: preset,
             preset,
             painter: None,
-            version: None,
+            scene: None,
             display: Display::default(),
             warnings: Vec::new(),
             target_fps: None,
@@ -95,7 +95,7 @@ impl Live {
         self.painter = None;
         // Another device knows none of its textures.
         self.interface = Interface::default();
-        self.version = None;
+        self.scene = None;
     }
 
     /// Takes what happened, and returns what is to be done.
@@ -240,7 +240,7 @@ impl Live {
         }
         self.preset = preset;
         self.warm_up = Some(self.core.warm_up(preset));
-        self.version = None;
+        self.scene = None;
         self.govern_preset();
         self.app.event(ShellEvent::Graphics(GraphicsState::Starting))
     }
@@ -259,7 +259,7 @@ impl Live {
             return None;
         }
         let tested = self_test::run(&mut self.core, self.preset);
-        self.version = None;
+        self.scene = None;
         let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
         self.app.self_tested(&device, outcome)
     }
@@ -268,7 +268,7 @@ impl Live {
     fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
         let interval_ms = 1e3 * (time_s - self.time_s);
         self.time_s = time_s;
-        let is_moving = self.version.is_some() && matches!(self.app.show(), Show::Toy { .. });
+        let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
         let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
             return Ok(());
         };
@@ -294,14 +294,13 @@ impl Live {
             }
             Show::Toy {
                 scene,
-                version,
                 input,
                 display,
             } => {
                 self.display = display;
-                if self.version != Some(version) {
-                    self.core.set_scene(scene.clone(), self.preset)?;
-                    self.version = Some(version);
+                if !self.scene.as_ref().is_some_and(|set| Arc::ptr_eq(set, scene)) {
+                    self.core.set_scene(Arc::clone(scene), self.preset)?;
+                    self.scene = Some(Arc::clone(scene));
                     if let Some(governor) = &self.governor {
                         self.core.turn_down(governor.turned_down())?;
                     }

@@ -18,12 +18,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, WorkCommand};
 use app_core::live::Live;
 use app_core::recording::{PictureCodec, RecordingJob, RecordingOutcome};
 
+use crate::folders::{self, Folders};
 use crate::guard::guarded;
 use crate::toys::{self, ToyFile};
 use crate::video::{Video, VideoFormat};
@@ -55,17 +56,6 @@ pub enum Pace {
     Repeatable,
 }
 
-/// Where files go; a folder can be missing, as that of a card that was taken out.
-#[derive(Clone, Debug, Default)]
-pub struct Folders {
-    /// What people get at.
-    pub shared: Option<PathBuf>,
-    /// Where toys are that a person can choose from.
-    pub toys: Option<PathBuf>,
-    /// What is the app's own.
-    pub own: Option<PathBuf>,
-}
-
 /// What comes of work.
 #[derive(Debug)]
 pub enum Outcome {
@@ -84,7 +74,7 @@ pub struct Worker {
     pace: Pace,
     toy_file: ToyFile,
     /// Alignments that wait.
-    waiting: Vec<Box<AlignJob>>,
+    waiting: Vec<AlignJob>,
     video: Option<Video>,
     /// The thread that writes the latest recording.
     recording: Option<JoinHandle<()>>,
@@ -123,8 +113,8 @@ impl Worker {
     pub fn obey(&mut self, live: &Live, command: WorkCommand) {
         match command {
             WorkCommand::Align(job) => match self.pace {
-                Pace::Live => self.align(job),
-                Pace::Repeatable => self.waiting.push(job),
+                Pace::Live => self.align(*job),
+                Pace::Repeatable => self.waiting.push(*job),
             },
             WorkCommand::SavePhoto => self.save_photo(live),
             WorkCommand::Video(true) => self.begin_video(),
@@ -189,35 +179,31 @@ impl Worker {
         send(&self.outcomes.0, Outcome::Tell(event));
     }
 
-    /// The path of a file that is about to be made, but for its extension: names grow with time.
-    fn stem(&mut self, folder: &Path, what: &str) -> PathBuf {
+    /// The path of a file that is about to be made, but for its extension; none without a folder.
+    fn stem(&mut self, what: &str) -> Option<PathBuf> {
+        self.n_files += 1;
         let number = match self.pace {
-            // A clock that is set before 1970 makes every file the same.
-            Pace::Live => SystemTime::now()
-                .duration_since(UNIX_EPOCH)
-                .unwrap_or_default()
-                .as_millis(),
+            Pace::Live => folders::unix_ms(),
             Pace::Repeatable => self.n_files,
         };
-        self.n_files += 1;
-        folder.join(format!("{what}_{number}"))
+        self.folders.stem(what, number)
     }
 
-    fn align(&self, job: Box<AlignJob>) {
+    fn align(&self, job: AlignJob) {
         self.run("align", ShellEvent::Aligned(None), move |_| {
             ShellEvent::Aligned(Some(Box::new(job.run())))
         });
     }
 
     fn save_photo(&mut self, live: &Live) {
-        let Some(folder) = self.folders.shared.clone() else {
+        let Some(stem) = self.stem("photo") else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
         let Ok(picture) = live.read_picture() else {
             return self.tell(ShellEvent::Saved(Saved::Failed));
         };
-        let path = self.stem(&folder, "photo").with_extension("png");
         self.run("photo", ShellEvent::Saved(Saved::Failed), move |outcomes| {
+            let path = stem.with_extension("png");
             let saved = save::picture(&path, &picture);
             if saved == Saved::Done {
                 send(outcomes, Outcome::Written(path));
@@ -227,10 +213,9 @@ impl Worker {
     }
 
     fn begin_video(&mut self) {
-        let Some(folder) = self.folders.shared.clone() else {
+        let Some(stem) = self.stem("video") else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
-        let stem = self.stem(&folder, "video");
         let (outcomes, kept_running) = (self.outcomes.0.clone(), (self.platform.keep_running)());
         let done = move |saved, file: Option<PathBuf>| {
             file.into_iter()
@@ -245,16 +230,16 @@ impl Worker {
     }
 
     fn record(&mut self, job: RecordingJob) {
-        let Some(folder) = self.folders.shared.clone() else {
+        let Some(stem) = self.stem("recording") else {
             let outcome = job.without_file(&io::ErrorKind::PermissionDenied.into());
             let file = String::new();
             return self.tell(ShellEvent::Recorded(Recorded { file, outcome }));
         };
+        let path = stem.with_extension("mcap");
         let died = ShellEvent::Recorded(Recorded {
-            file: folder.display().to_string(),
+            file: path.display().to_string(),
             outcome: RecordingOutcome::died(job.number()),
         });
-        let path = self.stem(&folder, "recording").with_extension("mcap");
         let (platform, toy) = (self.platform.clone(), self.toy_file.bytes());
         self.recording = self.spawn("record", died, move |_| {
             let codec = (platform.codec)();
@@ -487,6 +472,17 @@ mod tests {
         assert!(
             matches!(&event, ShellEvent::Toy(Err(reason)) if reason.contains("none.glb")),
             "{event:?}"
+        );
+    }
+
+    #[test]
+    fn at_a_repeatable_pace_work_is_done_when_a_command_returns() {
+        let mut worker = worker_in(None).with(Pace::Repeatable, Arc::from(toys::BUNDLED));
+        worker.obey(&live(), WorkCommand::ReadToy("none.glb".to_owned()));
+        let outcome = worker.outcome();
+        assert!(
+            matches!(outcome, Some(Outcome::Tell(ShellEvent::Toy(Err(_))))),
+            "{outcome:?}"
         );
     }
 

@@ -10,8 +10,9 @@ use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::scene::Image;
+use app_shell::folders::Folders;
 use app_shell::video::MOTION_JPEG;
-use app_shell::worker::{Folders, Outcome, Pace, Platform, Worker};
+use app_shell::worker::{Outcome, Pace, Platform, Worker};
 
 use super::feed::Feed;
 use super::moment::Moment;

@@ -126,7 +126,7 @@ impl App {
         };
         self.n_places += 1;
         self.wants_anchor = true;
-        self.place = Some(Place::new(self.n_places, self.n_places << 32, scene));
+        self.place = Some(Place::new(self.n_places, scene));
     }
 
     fn align(&mut self, is_trusted: bool, commands: &mut Vec<ShellCommand>) {

@@ -9,6 +9,7 @@ use super::recorder::Recorder;
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
 use app_scene::frame::FrameInput;
+use app_scene::scene::Scene;
 use app_session::recording::{Ending, Limits, LiveFrame, RecordingJob};
 
 impl App {
@@ -34,7 +35,7 @@ impl App {
             return None;
         };
         self.n_recordings += 1;
-        let (recorder, job) = Recorder::begin(self.n_recordings, place.scene.clone(), latest);
+        let (recorder, job) = Recorder::begin(self.n_recordings, Scene::clone(&place.scene), latest);
         self.recorder = Some(recorder);
         Some(Box::new(job))
     }

@@ -268,7 +268,7 @@ pub(super) fn of_plate_step(step: &PlateStep) -> (Option<f32>, &'static str) {
             let part = f64::from(*n) / f64::from((*n_needed).max(1));
             (Some(super::input::narrowed(part)), "Good. Keep still.")
         }
-        PlateStep::RecordingOutcome { .. } => (Some(1.0), "Done."),
+        PlateStep::Taken { .. } => (Some(1.0), "Done."),
         PlateStep::Refused(refusal) => {
             let help = match refusal {
                 PlateRefusal::NoPicture | PlateRefusal::NoCamera => "Waiting for the camera.",

@@ -222,7 +222,7 @@ impl From<&Aligned> for AlignmentEntry {
                 .collect(),
             no_light: report.no_light.map(|reason| reason.to_string()),
             unexplained: report.unexplained,
-            is_relit: aligned.alignment.relit_plates.is_some(),
+            is_relit: report.is_relit,
             n_listed: aligned.listed.len(),
         }
     }

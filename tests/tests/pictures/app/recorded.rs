@@ -81,7 +81,7 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
     let Show::Toy { scene, .. } = person.app.show() else {
         panic!("{:?}", person.app.step());
     };
-    let scene = scene.clone();
+    let scene = Scene::clone(scene);
     person.act(UserAction::Play(false));
     person.act(UserAction::Record(true));
     assert!(person.app.is_recording());

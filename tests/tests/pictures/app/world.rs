@@ -126,7 +126,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
         camera: input.camera,
         world_from_object: input.world_from_object,
         lights: None,
-        relit_plates: None,
+        scene: None,
         report: AlignmentReport {
             focal_length: None,
             camera: None,
@@ -138,6 +138,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
             world_scale: None,
             no_light: Some(NoLight::PoseUnknown),
             unexplained: None,
+            is_relit: false,
         },
         warnings: Vec::new(),
     }
