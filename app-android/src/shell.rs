@@ -3,15 +3,16 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use app_core::app::{Device, ShellCommand, ShellEvent};
+use app_core::app::{GraphicsState, PlatformCommand, ShellCommand, ShellEvent};
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
+use app_shell::folders::Folders;
 use app_shell::record;
 use app_shell::toys::BUNDLED;
 use app_shell::video::{MOTION_JPEG, VideoFormat};
-use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::worker::{Outcome, Platform, Worker};
 use arcore::feed::Feed;
 use arcore::tracker::{Geometry, Run};
 
@@ -27,13 +28,6 @@ const LOOK: Duration = Duration::from_secs(1);
 const VIDEOS: &[VideoFormat] = &[android_media::video::H264, MOTION_JPEG];
 #[cfg(not(target_os = "android"))]
 const VIDEOS: &[VideoFormat] = &[MOTION_JPEG];
-const PLATFORM: Platform = Platform {
-    app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
-    videos: VIDEOS,
-    codec: || PictureCodec::PHONE,
-    // Android lets an activity that is left go on for minutes.
-    keep_running: || Box::new(()),
-};
 
 /// The toy that the app comes with: the bundled session's, this project's own.
 ///
@@ -57,16 +51,24 @@ pub struct Shell<P> {
 impl<P: Phone> Shell<P> {
     /// A shell that has just been started.
     pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
-        live.time_by(record::clock());
+        live.set_clock(record::clock());
+        let platform = Platform {
+            app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
+            videos: VIDEOS,
+            codec: Arc::new(|| PictureCodec::PHONE),
+            // Android lets an activity that is left go on for minutes.
+            keep_running: || Box::new(()),
+        };
         let folders = Folders {
             shared: phone.folder(),
+            toys: phone.folder(),
             own: phone.own_folder(),
         };
         let mut shell = Self {
             live,
             phone,
             feed,
-            worker: Worker::new(PLATFORM, folders),
+            worker: Worker::new(platform, folders),
             wants_device: false,
             looked: None,
         };
@@ -138,7 +140,7 @@ impl<P: Phone> Shell<P> {
             }
             Err(error) => {
                 eprintln!("app-android: nothing drawn: {error}");
-                self.tell(ShellEvent::Device(Device::Lost));
+                self.tell(ShellEvent::Graphics(GraphicsState::Lost));
             }
         }
     }
@@ -164,13 +166,18 @@ impl<P: Phone> Shell<P> {
     /// Does what the app asks for.
     pub(crate) fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
-            let Some(command) = self.worker.take(&self.live, command) else {
-                continue;
-            };
             match command {
-                ShellCommand::AskPermission => self.phone.ask_for_camera(),
-                ShellCommand::OpenSettings => self.phone.open_settings(),
-                ShellCommand::RunTracking {
+                ShellCommand::Platform(command) => self.call_platform(command),
+                ShellCommand::Work(command) => self.worker.obey(&self.live, command),
+            }
+        }
+    }
+
+    fn call_platform(&mut self, command: PlatformCommand) {
+            match command {
+                PlatformCommand::AskPermission => self.phone.ask_for_camera(),
+                PlatformCommand::OpenSettings => self.phone.open_settings(),
+                PlatformCommand::RunTracking {
                     finds_planes,
                     is_new_world,
                 } => {
@@ -181,27 +188,17 @@ impl<P: Phone> Shell<P> {
                     let event = self.feed.run(&mut self.phone, run);
                     self.tell_some(event);
                 }
-                ShellCommand::PauseTracking => self.feed.pause(),
-                ShellCommand::HoldAnchor {
+                PlatformCommand::PauseTracking => self.feed.pause(),
+                PlatformCommand::HoldAnchor {
                     id,
                     world_from_anchor,
                 } => self.feed.hold(id, &world_from_anchor),
-                ShellCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
-                ShellCommand::ReopenDevice => self.wants_device = true,
-                ShellCommand::Announce(step) => eprintln!("app-android: {step:?}"),
+                PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
+                PlatformCommand::ReopenDevice => self.wants_device = true,
+                PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
                 // ARCore keeps exposure and frame rate to itself.
-                ShellCommand::LockExposure(_) | ShellCommand::Underexpose(_) | ShellCommand::FrameRate(_) => {
+                PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) | PlatformCommand::FrameRate(_) => {
                 }
-                // The worker's.
-                ShellCommand::Align(_)
-                | ShellCommand::SavePhoto
-                | ShellCommand::Video(_)
-                | ShellCommand::Record(_)
-                | ShellCommand::Share
-                | ShellCommand::PickToy
-                | ShellCommand::ReadToy(_)
-                | ShellCommand::Remember(_) => {}
             }
-        }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use app_core::Core;
-use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, Wish};
+use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand};
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
@@ -110,7 +110,7 @@ fn from_the_first_button_to_a_table() {
     shell.set_foreground(true);
     shell.tick();
     assert_eq!(calls(), "", "nothing before the person begins");
-    shell.tell(ShellEvent::Wish(Wish::Begin));
+    shell.tell(ShellEvent::User(UserAction::Begin));
     assert_eq!(shell.live().app().step(), Step::Welcome);
     // Android's question takes the front for a while.
     shell.set_foreground(false);
@@ -118,7 +118,7 @@ fn from_the_first_button_to_a_table() {
     assert_eq!(shell.live().app().step(), Step::FindTable);
     assert!(calls().contains("display=1,2400,1080 resume"));
     shell.tick();
-    shell.tell(ShellEvent::Wish(Wish::Tap(DVec2::new(2.0, 1.0))));
+    shell.tell(ShellEvent::User(UserAction::Tap(DVec2::new(2.0, 1.0))));
     assert_eq!(shell.live().app().step(), Step::TakePlate);
     assert!(calls().contains("planes=0"), "planes are looked for no longer");
     shell.set_foreground(false);
@@ -128,7 +128,7 @@ fn from_the_first_button_to_a_table() {
 #[test]
 fn what_the_worker_cannot_keep_is_told_with_the_next_picture() {
     let mut shell = shell();
-    shell.obey(vec![ShellCommand::Video(true)]);
+    shell.obey(vec![ShellCommand::Work(WorkCommand::Video(true))]);
     shell.tick();
     assert_eq!(
         shell.live().app().notice(),

@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
-use app_core::app::{ArSession, Device, Panics, Permission, ShellCommand, ShellEvent, Starts, Thermal};
+use app_core::app::{ArSession, GraphicsState, LaunchHistory, Panics, Permission, PlatformCommand, ShellCommand, ShellEvent, Thermal};
 use app_core::interface::Screen;
+use app_shell::folders::Folders;
 use app_shell::starts;
 use app_shell::video::MOTION_JPEG;
-use app_shell::worker::{Folders, Outcome, Platform, Worker};
+use app_shell::worker::{Outcome, Platform, Worker};
 use arkit::camera;
 use arkit::session::Session;
 use ios_media::jpeg;
@@ -22,13 +24,6 @@ use crate::convert;
 use crate::hand_on::{self, into_photos};
 use crate::inbox::{Inbox, Told};
 use crate::stage::{Fitted, Stage, StageError};
-
-const PLATFORM: Platform = Platform {
-    app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
-    videos: &[H264, MOTION_JPEG],
-    codec: jpeg::codec,
-    keep_running: hand_on::keep_running,
-};
 
 /// The app's hands.
 pub(crate) struct Shell {
@@ -48,7 +43,7 @@ pub(crate) struct Shell {
     /// While the camera is darkened.
     held_exposure: Option<camera::Exposure>,
     /// For an app that is about to be made.
-    starts: Option<Starts>,
+    history: Option<LaunchHistory>,
     panics: Panics,
     /// After a panic, until there is a new app.
     begins_anew: bool,
@@ -71,7 +66,7 @@ impl Shell {
             frames_per_s: 60,
             shared: Vec::new(),
             held_exposure: None,
-            starts: None,
+            history: None,
             panics: Panics::default(),
             begins_anew: false,
             is_restarted: false,
@@ -80,9 +75,9 @@ impl Shell {
 
     /// Lets the app draw on `layer`, and tells it.
     pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
-        if self.stage.live().is_none() && self.starts.is_none() {
+        if self.stage.live().is_none() && self.history.is_none() {
             // Before a driver is asked for anything.
-            self.starts = Some(starts::begin(&own_folder()));
+            self.history = Some(starts::begin(&own_folder()));
         }
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
             self.lend();
@@ -92,8 +87,8 @@ impl Shell {
             if std::mem::take(&mut self.is_restarted) {
                 self.inbox.tell(ShellEvent::Restarted);
             }
-            if let Some(starts) = self.starts.take() {
-                self.inbox.tell(ShellEvent::Started(starts));
+            if let Some(history) = self.history.take() {
+                self.inbox.tell(ShellEvent::Started(history));
             }
             self.begins_anew = false;
             self.inbox.tell(ShellEvent::Foreground(true));
@@ -141,7 +136,7 @@ impl Shell {
             }
             Err(error) => {
                 eprintln!("app-ios: {error}");
-                self.inbox.tell(ShellEvent::Device(Device::Lost));
+                self.inbox.tell(ShellEvent::Graphics(GraphicsState::Lost));
             }
         }
         self.settle();
@@ -224,46 +219,43 @@ impl Shell {
 
     fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
-            let Some(live) = self.stage.live() else { return };
-            let Some(command) = self.worker.take(live, command) else {
-                continue;
-            };
             match command {
-                ShellCommand::AskPermission => camera::ask_permission(),
-                ShellCommand::OpenSettings => self.open_settings(),
-                ShellCommand::RunTracking {
+                ShellCommand::Platform(command) => self.call_platform(command),
+                ShellCommand::Work(command) => {
+                    let Some(live) = self.stage.live() else { return };
+                    self.worker.obey(live, command);
+                }
+            }
+        }
+    }
+
+    fn call_platform(&mut self, command: PlatformCommand) {
+            match command {
+                PlatformCommand::AskPermission => camera::ask_permission(),
+                PlatformCommand::OpenSettings => self.open_settings(),
+                PlatformCommand::RunTracking {
                     finds_planes,
                     is_new_world,
                 } => self.session.run(finds_planes, is_new_world),
-                ShellCommand::PauseTracking => self.session.pause(),
-                ShellCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
-                ShellCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
-                ShellCommand::Underexpose(false) => {
+                PlatformCommand::PauseTracking => self.session.pause(),
+                PlatformCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
+                PlatformCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
+                PlatformCommand::Underexpose(false) => {
                     if let Some(held) = self.held_exposure.take() {
                         camera::restore(&held);
                     }
                 }
-                ShellCommand::HoldAnchor {
+                PlatformCommand::HoldAnchor {
                     id,
                     world_from_anchor,
                 } => self.session.hold(id, &world_from_anchor),
-                ShellCommand::KeepAwake(is_kept) => {
+                PlatformCommand::KeepAwake(is_kept) => {
                     UIApplication::sharedApplication(self.main_thread).setIdleTimerDisabled(is_kept);
                 }
-                ShellCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
-                ShellCommand::ReopenDevice => self.wants_device = true,
-                ShellCommand::Announce(_) => {}
-                // The worker's.
-                ShellCommand::Align(_)
-                | ShellCommand::SavePhoto
-                | ShellCommand::Video(_)
-                | ShellCommand::Record(_)
-                | ShellCommand::Share
-                | ShellCommand::PickToy
-                | ShellCommand::ReadToy(_)
-                | ShellCommand::Remember(_) => {}
+                PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
+                PlatformCommand::ReopenDevice => self.wants_device = true,
+                PlatformCommand::Announce(_) => {}
             }
-        }
     }
 
     fn open_settings(&self) {
@@ -285,13 +277,20 @@ fn told_to(inbox: &Rc<Inbox>) -> Rc<dyn Fn(ShellEvent)> {
 
 /// A worker for an app that begins.
 fn worker() -> Worker {
-    let home = PathBuf::from(NSHomeDirectory().to_string());
+    let platform = Platform {
+        app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
+        videos: &[H264, MOTION_JPEG],
+        codec: Arc::new(jpeg::codec),
+        keep_running: hand_on::keep_running,
+    };
+    // What Files shows.
+    let documents = PathBuf::from(NSHomeDirectory().to_string()).join("Documents");
     let folders = Folders {
-        // What Files shows.
-        shared: Some(home.join("Documents")),
+        shared: Some(documents.clone()),
+        toys: Some(documents),
         own: Some(own_folder()),
     };
-    Worker::new(PLATFORM, folders)
+    Worker::new(platform, folders)
 }
 
 /// The folder of what is the app's own; a system makes it with the app's home.

@@ -70,7 +70,7 @@ impl Stage {
                 let toy = Arc::new(Toy::from_glb("toy.glb", BUNDLED)?);
                 let core = core_on(&self.instance, layer, size_px)?;
                 let mut live = Live::new(core, toy, Preset::default());
-                live.time_by(clock());
+                live.set_clock(clock());
                 self.live = Some(live);
                 fitted = Fitted::Anew;
             }

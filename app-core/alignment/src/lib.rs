@@ -56,7 +56,7 @@ use glam::DMat4;
 
 use crate::probe::ProbeReport;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene, check};
+use app_scene::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene};
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use lights::Watched;
@@ -96,9 +96,10 @@ pub struct Alignment {
     pub world_from_object: DMat4,
     /// The lights; none where those that were given stay.
     pub lights: Option<Arc<[Light]>>,
-    /// Plates in the light of this frame, once it is another than they were taken in, which [`Aligner::scene`] has from then on: the core
-    /// is to be given that scene anew. Whoever sees other plates here than with the frame before does so.
-    pub relit_plates: Option<Arc<[Plate]>>,
+    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, or its plates are in
+    /// another light than before. None if the core keeps the scene of the frame before, which for the first frame is the one that the
+    /// [`Aligner`] was made with.
+    pub scene: Option<Arc<Scene>>,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -128,7 +129,9 @@ impl Alignment {
 /// tells them where no shadow does.
 #[derive(Debug)]
 pub struct Aligner {
-    scene: Scene,
+    scene: Arc<Scene>,
+    /// The scene that the latest alignment was told with.
+    told_scene: Arc<Scene>,
     /// Looked for where it was asked for.
     ratio: Ratio,
     are_plates_aligned: bool,
@@ -137,25 +140,20 @@ pub struct Aligner {
     /// The pose in the latest view that showed where the toy is.
     held: Option<DMat4>,
     lights: Option<KeptLights>,
-    /// The scene's plates, where they are in another light than they were taken in.
-    relit_plates: Option<Arc<[Plate]>>,
+    /// Whether the scene's plates are in another light than they were taken in.
+    is_relit: bool,
     are_shadows_withheld: bool,
     /// Once it was needed.
     probe: Option<ProbeReport>,
 }
 
-/// Lights that were moved or switched on after the plates were taken.
-struct Relit {
-    lights: KeptLights,
-    /// In their light.
-    plates: Arc<[Plate]>,
-}
-
 impl Aligner {
     /// Knows a scene, and none of its frames.
     #[must_use]
-    pub fn new(scene: Scene) -> Self {
+    pub fn new(scene: impl Into<Arc<Scene>>) -> Self {
+        let scene = scene.into();
         Self {
+            told_scene: Arc::clone(&scene),
             scene,
             ratio: Ratio::default(),
             are_plates_aligned: false,
@@ -163,7 +161,7 @@ impl Aligner {
             view: None,
             held: None,
             lights: None,
-            relit_plates: None,
+            is_relit: false,
             are_shadows_withheld: false,
             probe: None,
         }
@@ -193,7 +191,7 @@ impl Aligner {
 
     /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
     #[must_use]
-    pub fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
@@ -244,7 +242,9 @@ impl Aligner {
         let is_withheld = self.are_shadows_withheld && self.lights.is_some();
         if self.ratio.is_open() && !is_view_known && !is_withheld {
             let lights = self.about(given, input)?;
-            if self.ratio.find(&mut self.scene, input, &lights) {
+            let mut scene = Scene::clone(&self.scene);
+            if self.ratio.find(&mut scene, input, &lights) {
+                self.scene = Arc::new(scene);
                 self.are_plates_aligned = false;
                 (self.view, self.held, self.lights) = (None, None, None);
             }
@@ -276,7 +276,7 @@ impl Aligner {
         if !given.is_empty() {
             return Ok(Arc::clone(given));
         }
-        let found = Self::new(self.scene.clone()).align(input)?;
+        let found = Self::new(Arc::clone(&self.scene)).align(input)?;
         Ok(found.lights.unwrap_or_default())
     }
 
@@ -285,12 +285,12 @@ impl Aligner {
         let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
         let Scene {
             plates, receivers, ..
-        } = &self.scene;
+        } = &*self.scene;
         let given = (input.image.rgba(), &input.camera, withheld.as_ref());
         let found = self
             .cameras
             .find(given, (plates, receivers), &self.scene.uncertainty.camera);
-        let (camera, camera_report) = corrected(&input.camera, found);
+        let (camera, camera_report) = camera::corrected(&input.camera, found);
         let mut input_seen = FrameInput {
             camera,
             ..input.clone()
@@ -381,34 +381,30 @@ impl Aligner {
                 return Ok(moved.in_place_of(&kept, now));
             }
         }
-        if let Some(Relit { lights, plates }) = self.relight(&kept, seen)? {
-            self.scene.plates = plates.to_vec();
-            self.relit_plates = Some(plates);
+        if let Some((lights, scene)) = self.relight(&kept, seen)? {
+            (self.scene, self.is_relit) = (scene, true);
             return Ok(lights);
         }
         kept.searched_in_vain(now);
         Ok(kept)
     }
 
-    /// Lights that explain a view in place of those that were there when the plates were taken, and the plates in their light; none where
-    /// they do not explain it as well.
-    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<Relit>, ToyError> {
+    /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
+    /// light; none where they do not explain it as well.
+    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
         let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
             return Ok(None);
         };
         let relit = Self::new(Scene {
             plates,
-            ..self.scene.clone()
+            ..Scene::clone(&self.scene)
         });
         let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
         let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
         let now = relit
             .watch(&others, &seen)?
             .filter(|now| kept.are_replaced_by(*now));
-        Ok(now.map(|now| Relit {
-            lights: others.in_place_of(kept, now),
-            plates: relit.scene.plates.into(),
-        }))
+        Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
     }
 
     /// What lights leave unexplained of a view; none where it does not tell.
@@ -430,18 +426,22 @@ impl Aligner {
             return;
         }
         for index in 0..self.scene.plates.len().min(MOST_ALIGNED_PLATES) {
-            let (aligned, rest) = self.scene.plates.split_at_mut(index);
-            let Plate { image, camera } = &mut rest[0];
+            let (aligned, rest) = self.scene.plates.split_at(index);
+            let Plate { image, camera } = &rest[0];
             let found = self.cameras.find(
                 (image, camera, None),
                 (aligned, &self.scene.receivers),
                 &self.scene.uncertainty.camera,
             );
-            (*camera, _) = corrected(camera, found);
+            let (aligned, _) = camera::corrected(camera, found);
+            if aligned != *camera {
+                Arc::make_mut(&mut self.scene).plates[index].camera = aligned;
+            }
         }
     }
 
-    fn aligned(&self, input: &FrameInput) -> Alignment {
+    fn aligned(&mut self, input: &FrameInput) -> Alignment {
+        let told = std::mem::replace(&mut self.told_scene, Arc::clone(&self.scene));
         let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
         let discovered = lights.and_then(|lights| lights.discovered.as_ref());
         let report = AlignmentReport {
@@ -457,6 +457,7 @@ impl Aligner {
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
+            is_relit: self.is_relit,
         };
         let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
@@ -471,7 +472,7 @@ impl Aligner {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
-            relit_plates: self.relit_plates.clone(),
+            scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             report,
             warnings: self
                 .ratio
@@ -483,18 +484,4 @@ impl Aligner {
                 .collect(),
         }
     }
-}
-
-/// A camera as found: as given, where that explains the picture no better.
-fn corrected(given: &Camera, found: Option<camera::Found>) -> (Camera, Option<CameraAlignment>) {
-    let Some(found) = found else {
-        return (*given, None);
-    };
-    let corrected = Camera {
-        world_from_camera: found.world_from_camera,
-        ..*given
-    };
-    let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
-    let camera = if is_applied { corrected } else { *given };
-    (camera, Some(found.report(is_applied)))
 }

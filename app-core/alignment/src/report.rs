@@ -37,6 +37,8 @@ pub struct AlignmentReport {
     /// The part of the shadows in the picture that the lights in use leave unexplained; none where too little of them is seen, and
     /// where there are no lights.
     pub unexplained: Option<f64>,
+    /// Whether plates are in another light than they were taken in, since lights were moved or switched on.
+    pub is_relit: bool,
 }
 
 /// The camera, by what the receivers look like in the plates.

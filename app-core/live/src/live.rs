@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use wgpu::LoadOp;
 
-use crate::app::{App, Device, ShellCommand, ShellEvent, Show};
+use crate::app::{App, GraphicsState, ShellCommand, ShellEvent, Show, WorkCommand};
 use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
@@ -18,7 +18,7 @@ use app_pipeline::governor::{BALANCED_FRONT, Governor, Measured};
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
 use app_scene::camera_frame::Display;
-use app_scene::scene::Image;
+use app_scene::scene::{Image, Scene};
 use app_scene::toy::Toy;
 
 use profiler::Profiler;
@@ -35,12 +35,12 @@ pub struct Live {
     /// What is still to be compiled: a pass a picture.
     warm_up: Option<WarmUp>,
     painter: Option<Painter>,
-    /// The scene that the core has.
-    version: Option<u64>,
+    /// The scene that the core has for the preset.
+    scene: Option<Arc<Scene>>,
     display: Display,
     warnings: Vec<Warning>,
-    /// Frames a second that are to be held.
-    hold: Option<u32>,
+    /// Frames a second that are aimed at.
+    target_fps: Option<u32>,
     governor: Option<Governor>,
     profiler: Profiler,
     /// Of the latest picture.
@@ -59,26 +59,26 @@ impl Live {
             chosen: preset,
             preset,
             painter: None,
-            version: None,
+            scene: None,
             display: Display::default(),
             warnings: Vec::new(),
-            hold: None,
+            target_fps: None,
             governor: None,
             profiler: Profiler::default(),
             time_s: 0.0,
         }
     }
 
-    /// Holds so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
+    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
     /// stay as they are.
-    pub fn hold(&mut self, frames_per_second: u32) {
-        self.hold = Some(frames_per_second);
+    pub fn set_target_fps(&mut self, fps: u32) {
+        self.target_fps = Some(fps);
         self.govern_preset();
     }
 
     /// Times frames by a clock of the shell's from now on: for [`Live::times`], for what is shown of times, and for recordings.
-    pub fn time_by(&mut self, clock: Clock) {
-        self.profiler.time_by(clock, &mut self.core);
+    pub fn set_clock(&mut self, clock: Clock) {
+        self.profiler.set_clock(clock, &mut self.core);
     }
 
     /// The times of the latest frames in which the toy moved; none without a clock.
@@ -95,7 +95,7 @@ impl Live {
         self.painter = None;
         // Another device knows none of its textures.
         self.interface = Interface::default();
-        self.version = None;
+        self.scene = None;
     }
 
     /// Takes what happened, and returns what is to be done.
@@ -120,7 +120,7 @@ impl Live {
     /// Draws on the core's surface at `time_s`, which goes on from call to call, and returns what is to be done.
     ///
     /// # Errors
-    /// When the surface or the device is lost: a shell tells [`Device::Lost`] and brings another core.
+    /// When the surface or the device is lost: a shell tells [`GraphicsState::Lost`] and brings another core.
     pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
         let (commands, painting) = self.prepare(screen, time_s)?;
         let (painter, interface) = (&mut self.painter, &mut self.interface);
@@ -202,18 +202,18 @@ impl Live {
         &self.warnings
     }
 
-    /// What the interface wants, and the picture below it.
+    /// What the person does with the interface, and the picture below it.
     fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
         let mut commands = self.follow_preset();
         commands.extend(self.compile_next()?);
         let profile = self.profile();
-        let (wishes, painting) = self.interface.run(&self.app, screen, time_s, &profile);
-        for wish in wishes {
-            commands.extend(self.app.event(ShellEvent::Wish(wish)));
+        let (actions, painting) = self.interface.run(&self.app, screen, time_s, &profile);
+        for action in actions {
+            commands.extend(self.app.event(ShellEvent::User(action)));
         }
         self.govern(time_s)?;
         if self.make_picture()? {
-            commands.extend(self.app.event(ShellEvent::Drawn));
+            commands.extend(self.app.drawn().map(ShellCommand::from));
         }
         Ok((commands, painting))
     }
@@ -227,8 +227,8 @@ impl Live {
             return Ok(Vec::new());
         }
         self.warm_up = None;
-        let mut commands = self.test_device();
-        commands.extend(self.app.event(ShellEvent::Device(Device::Ready)));
+        let mut commands: Vec<_> = self.test_device().map(ShellCommand::from).into_iter().collect();
+        commands.extend(self.app.event(ShellEvent::Graphics(GraphicsState::Ready)));
         Ok(commands)
     }
 
@@ -240,42 +240,42 @@ impl Live {
         }
         self.preset = preset;
         self.warm_up = Some(self.core.warm_up(preset));
-        self.version = None;
+        self.scene = None;
         self.govern_preset();
-        self.app.event(ShellEvent::Device(Device::Starting))
+        self.app.event(ShellEvent::Graphics(GraphicsState::Starting))
     }
 
     /// The governor of the preset that is used.
     fn govern_preset(&mut self) {
-        let hold = self.hold.filter(|_| self.preset == Preset::Balanced);
-        self.governor = hold.map(|hold| Governor::new(BALANCED_FRONT, hold));
+        let target_fps = self.target_fps.filter(|_| self.preset == Preset::Balanced);
+        self.governor = target_fps.map(|fps| Governor::new(BALANCED_FRONT, fps));
     }
 
     /// Has the device draw its test picture, once for each driver and version of this crate.
-    fn test_device(&mut self) -> Vec<ShellCommand> {
+    fn test_device(&mut self) -> Option<WorkCommand> {
         let version = env!("CARGO_PKG_VERSION");
         let device = format!("{version} {} {}", self.preset, self.core.adapter_name());
         if self.core.device().is_none() || !self.app.wants_self_test(&device) {
-            return Vec::new();
+            return None;
         }
         let tested = self_test::run(&mut self.core, self.preset);
-        self.version = None;
+        self.scene = None;
         let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
-        self.app.event(ShellEvent::SelfTested { device, outcome })
+        self.app.self_tested(&device, outcome)
     }
 
     /// Turns settings down or up by how long pictures take while the toy moves.
     fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
         let interval_ms = 1e3 * (time_s - self.time_s);
         self.time_s = time_s;
-        let is_moving = self.version.is_some() && matches!(self.app.show(), Show::Toy { .. });
+        let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
         let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
             return Ok(());
         };
         let turned = governor.take(&Measured {
             gpu_ms: None,
             interval_ms,
-            heat: self.app.thermal(),
+            thermal: self.app.thermal(),
         });
         if turned.is_some() {
             self.core.turn_down(governor.turned_down())?;
@@ -294,14 +294,13 @@ impl Live {
             }
             Show::Toy {
                 scene,
-                version,
                 input,
                 display,
             } => {
                 self.display = display;
-                if self.version != Some(version) {
-                    self.core.set_scene(scene.clone(), self.preset)?;
-                    self.version = Some(version);
+                if !self.scene.as_ref().is_some_and(|set| Arc::ptr_eq(set, scene)) {
+                    self.core.set_scene(Arc::clone(scene), self.preset)?;
+                    self.scene = Some(Arc::clone(scene));
                     if let Some(governor) = &self.governor {
                         self.core.turn_down(governor.turned_down())?;
                     }

@@ -6,6 +6,7 @@
 
 mod avi;
 mod encoder;
+pub mod folders;
 pub mod guard;
 mod motion_jpeg;
 pub mod record;

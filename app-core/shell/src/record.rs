@@ -2,51 +2,51 @@
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
 use app_core::app::{Recorded, Saved};
 use app_core::frame::Clock;
 use app_core::live::Live;
-use app_core::recording::{Limits, PictureCodec, Take, TakeOptions};
+use app_core::recording::{Limits, PictureCodec, RecordingJob, RecordingOptions};
 
 use crate::save;
 
-/// Writes a recording into `folder` until it ends; `app` is the app with its version, and `toy` the file of its toy.
+/// Writes a recording into the file at `path` until it ends; `app` is the app with its version, and `toy` the file of its toy.
 #[must_use]
-pub fn write(take: Take, (app, toy): (&str, &[u8]), codec: PictureCodec, folder: &Path) -> Recorded {
-    // A clock that is set before 1970 makes every recording the same file.
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let name = format!("recording_{}.mcap", since.as_millis());
-    let file = fs::create_dir_all(folder).and_then(|()| File::create(folder.join(&name)));
+pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, path: &Path) -> Recorded {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let file = fs::create_dir_all(folder).and_then(|()| File::create(path));
     let told = [
         ("system", std::env::consts::OS),
         ("architecture", std::env::consts::ARCH),
         ("app", app),
     ];
     let device = told.map(|(key, value)| (key.to_owned(), value.to_owned()));
-    let taken = match file {
-        Ok(file) => take.run(
+    let outcome = match file {
+        Ok(file) => job.run(
             file,
-            TakeOptions {
+            RecordingOptions {
                 toy,
                 codec,
                 device: device.into(),
                 limits: Limits::APP,
             },
         ),
-        Err(error) => take.without_file(&error),
+        Err(error) => job.without_file(&error),
     };
-    Recorded { file: name, taken }
+    let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Recorded { file, outcome }
 }
 
 /// What people hand on, as files of the folder: the log, the times, and the latest recording, as far as there are any.
 #[must_use]
 pub fn share(live: &Live, folder: &Path) -> (Saved, Vec<PathBuf>) {
     let mut files = vec![folder.join("log.txt")];
-    let mut saved = save::bytes(folder, "log.txt", live.app().log().text().as_bytes());
+    let mut saved = save::bytes(&files[0], live.app().log().text().as_bytes());
     if let (Saved::Done, Some(times)) = (saved, live.times()) {
-        files.push(folder.join("profile.json"));
-        let written = serde_json::to_vec(&times).map(|times| save::bytes(folder, "profile.json", &times));
+        let path = folder.join("profile.json");
+        let written = serde_json::to_vec(&times).map(|times| save::bytes(&path, &times));
+        files.push(path);
         saved = written.unwrap_or(Saved::Failed);
     }
     files.extend(latest(folder));
@@ -137,14 +137,15 @@ mod tests {
     fn a_recording_is_a_file_that_is_read_as_a_session_or_is_told_as_missing() {
         let folder = std::env::temp_dir().join(format!("app-shell-recording-{}", std::process::id()));
         let (scene, live) = live(DMat4::from_scale(DVec3::splat(0.1)));
-        let (inlet, take) = Take::new(7, scene.clone(), live.camera.intrinsics);
-        inlet
+        let (sender, job) = RecordingJob::new(7, scene.clone(), live.camera.intrinsics);
+        sender
             .offer(0, Item::Live(Box::new(live.clone())))
             .expect("room in the queue");
-        drop(inlet);
-        let Recorded { file, taken } = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &folder);
-        assert_eq!((taken.n_frames, &taken.ending), (1, &Ending::Asked));
-        let path = folder.join(file);
+        drop(sender);
+        let path = folder.join("recording_2.mcap");
+        let Recorded { file, outcome } = write(job, ("app 1.0", TOY), PictureCodec::PHONE, &path);
+        assert_eq!((outcome.n_frames, &outcome.ending), (1, &Ending::Asked));
+        assert_eq!(file, "recording_2.mcap");
         let recording = Recording::open(fs::read(&path).expect("a file")).expect("a recording");
         assert!(recording.losses().is_empty());
         let read = Capture::open(recording)
@@ -156,9 +157,9 @@ mod tests {
         assert!(free_bytes(&folder).is_some_and(|free| free > 0));
         fs::write(folder.join("recording_1.mcap"), b"").expect("an older one");
         assert_eq!(latest(&folder), Some(path.clone()));
-        let (_, take) = Take::new(8, scene, live.camera.intrinsics);
-        let refused = write(take, ("app 1.0", TOY), PictureCodec::PHONE, &path);
-        assert!(matches!(refused.taken.ending, Ending::Failed(_)), "{refused:?}");
+        let (_, job) = RecordingJob::new(8, scene, live.camera.intrinsics);
+        let refused = write(job, ("app 1.0", TOY), PictureCodec::PHONE, &path.join("a.mcap"));
+        assert!(matches!(refused.outcome.ending, Ending::Failed(_)), "{refused:?}");
         fs::remove_dir_all(&folder).expect("a folder");
     }
 }

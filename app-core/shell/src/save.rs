@@ -7,9 +7,9 @@ use std::path::Path;
 use app_core::app::Saved;
 use app_core::scene::Image;
 
-/// Writes a picture as PNG into a folder, which is made where it is missing.
+/// Writes a picture as PNG, into a folder that is made where it is missing.
 #[must_use]
-pub fn picture(folder: &Path, name: &str, picture: &Image) -> Saved {
+pub fn picture(path: &Path, picture: &Image) -> Saved {
     let mut png = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut png);
     let encoded = image::ImageEncoder::write_image(
@@ -20,15 +20,16 @@ pub fn picture(folder: &Path, name: &str, picture: &Image) -> Saved {
         image::ExtendedColorType::Rgba8,
     );
     match encoded {
-        Ok(()) => bytes(folder, name, &png),
+        Ok(()) => bytes(path, &png),
         Err(_) => Saved::Failed,
     }
 }
 
-/// Writes a file into a folder, which is made where it is missing.
+/// Writes a file, into a folder that is made where it is missing.
 #[must_use]
-pub fn bytes(folder: &Path, name: &str, bytes: &[u8]) -> Saved {
-    outcome(fs::create_dir_all(folder).and_then(|()| fs::write(folder.join(name), bytes)))
+pub fn bytes(path: &Path, bytes: &[u8]) -> Saved {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    outcome(fs::create_dir_all(folder).and_then(|()| fs::write(path, bytes)))
 }
 
 /// What to tell of a file that was written, or not.
@@ -53,15 +54,13 @@ mod tests {
             height_px: 1,
             rgba8: vec![1, 2, 3, 255, 4, 5, 6, 255],
         };
-        assert_eq!(picture(&folder, "photo.png", &photo), Saved::Done);
-        let read = image::open(folder.join("photo.png"))
-            .expect("a PNG file")
-            .to_rgba8();
+        let path = folder.join("photo.png");
+        assert_eq!(picture(&path, &photo), Saved::Done);
+        let read = image::open(&path).expect("a PNG file").to_rgba8();
         assert_eq!(read.into_raw(), photo.rgba8);
         // A file is no folder.
-        let no_folder = folder.join("photo.png");
-        assert_eq!(picture(&no_folder, "photo.png", &photo), Saved::Failed);
-        assert_eq!(bytes(&no_folder, "log.txt", b""), Saved::Failed);
+        assert_eq!(picture(&path.join("photo.png"), &photo), Saved::Failed);
+        assert_eq!(bytes(&path.join("log.txt"), b""), Saved::Failed);
         fs::remove_dir_all(&folder).expect("a folder");
     }
 }

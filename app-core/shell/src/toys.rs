@@ -21,11 +21,17 @@ pub struct ToyFile(Arc<Mutex<Arc<[u8]>>>);
 
 impl Default for ToyFile {
     fn default() -> Self {
-        Self(Arc::new(Mutex::new(Arc::from(BUNDLED))))
+        Self::of(Arc::from(BUNDLED))
     }
 }
 
 impl ToyFile {
+    /// Of that file.
+    #[must_use]
+    pub fn of(file: Arc<[u8]>) -> Self {
+        Self(Arc::new(Mutex::new(file)))
+    }
+
     /// Its bytes.
     #[must_use]
     pub fn bytes(&self) -> Arc<[u8]> {

@@ -5,7 +5,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use app_core::app::Saved;
 use app_core::scene::Image;
@@ -51,20 +50,17 @@ pub struct Video {
 }
 
 impl Video {
-    /// Begins a video in `folder`, by the first of `formats` that can; `done` is told what became of it, by the thread, with
-    /// the file if there is one.
+    /// Begins a video, by the first of `formats` that can, whose extension `stem` gets; `done` is told what became of it, by the
+    /// thread, with the file if there is one.
     ///
     /// # Errors
     /// When there is no thread for it.
     pub fn begin(
-        folder: &Path,
+        stem: PathBuf,
         formats: &'static [VideoFormat],
         done: impl FnOnce(Saved, Option<PathBuf>) + Send + 'static,
     ) -> io::Result<Self> {
         let (pictures, taken) = sync_channel(N_WAITING);
-        // A clock that is set before 1970 makes every video the same file.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let stem = folder.join(format!("video_{}", since.as_millis()));
         thread::Builder::new().name("video".to_owned()).spawn(move || {
             match guarded("the video's thread", || write(&stem, formats, &taken)) {
                 Some(Ok(Some(file))) => done(Saved::Done, Some(file)),
@@ -223,7 +219,7 @@ mod tests {
     fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
         let folder = std::env::temp_dir().join(format!("app-shell-{name}-{}", std::process::id()));
         let (done, saved) = channel();
-        let mut video = Video::begin(&folder, formats, move |saved, file| {
+        let mut video = Video::begin(folder.join("video"), formats, move |saved, file| {
             drop(done.send((saved, file)))
         })
         .expect("a thread");
@@ -277,7 +273,7 @@ mod tests {
         fs::write(&file, b"").expect("a file");
         let (done, saved) = channel();
         let tell = move |saved, _| done.send(saved).expect("a receiver");
-        let mut video = Video::begin(&file, &[MOTION_JPEG], tell).expect("a thread");
+        let mut video = Video::begin(file.join("video"), &[MOTION_JPEG], tell).expect("a thread");
         assert!(video.is_due(0.0));
         assert!(video.add(picture(1, [16, 8]), 0.0));
         assert!(!video.is_due(0.016) && video.is_due(0.033));

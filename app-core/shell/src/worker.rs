@@ -1,4 +1,4 @@
-//! What the app asks for that takes no more than files and threads, the same on both phones.
+//! What the app asks for that takes no more than files and threads, the same on both phones and on a desktop.
 //!
 //! | command | what is done | what comes of it |
 //! | --- | --- | --- |
@@ -14,15 +14,17 @@
 //! A thread that panics, or that cannot be started, is told as work that failed.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
-use app_core::app::{Recorded, Saved, ShellCommand, ShellEvent};
+use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, WorkCommand};
 use app_core::live::Live;
-use app_core::recording::{PictureCodec, Take, Taken};
+use app_core::recording::{PictureCodec, RecordingJob, RecordingOutcome};
 
+use crate::folders::{self, Folders};
 use crate::guard::guarded;
 use crate::toys::{self, ToyFile};
 use crate::video::{Video, VideoFormat};
@@ -31,26 +33,27 @@ use crate::{record, save, starts};
 /// Time after which free space is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// What differs from phone to phone.
-#[derive(Clone, Copy)]
+/// What differs from shell to shell.
+#[derive(Clone)]
 pub struct Platform {
     /// The app with its version, as recordings name it.
     pub app: &'static str,
     /// Of videos, the better first.
     pub videos: &'static [VideoFormat],
     /// Encodes the pictures of recordings.
-    pub codec: fn() -> PictureCodec,
+    pub codec: Arc<dyn Fn() -> PictureCodec + Send + Sync>,
     /// Keeps the app from being suspended until what is returned is dropped: a video has to be made whole.
     pub keep_running: fn() -> Box<dyn Send>,
 }
 
-/// Where files go; a folder can be missing, as that of a card that was taken out.
-#[derive(Clone, Debug, Default)]
-pub struct Folders {
-    /// What people get at.
-    pub shared: Option<PathBuf>,
-    /// What is the app's own.
-    pub own: Option<PathBuf>,
+/// When work is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// While the app goes on.
+    Live,
+    /// The same in each run: alignments wait for [`Worker::align_waiting`], the app waits for whatever ends by itself, and files are
+    /// numbered in place of dated.
+    Repeatable,
 }
 
 /// What comes of work.
@@ -68,8 +71,14 @@ pub enum Outcome {
 pub struct Worker {
     platform: Platform,
     folders: Folders,
+    pace: Pace,
     toy_file: ToyFile,
+    /// Alignments that wait.
+    waiting: Vec<AlignJob>,
     video: Option<Video>,
+    /// The thread that writes the latest recording.
+    recording: Option<JoinHandle<()>>,
+    n_files: u128,
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
     /// When free space was looked at.
     looked: Option<Instant>,
@@ -82,49 +91,64 @@ impl Worker {
         Self {
             platform,
             folders,
+            pace: Pace::Live,
             toy_file: ToyFile::default(),
+            waiting: Vec::new(),
             video: None,
+            recording: None,
+            n_files: 0,
             outcomes: channel(),
             looked: None,
         }
     }
 
-    /// Does what a command asks for, and gives back one that it leaves to the shell.
-    pub fn take(&mut self, live: &Live, command: ShellCommand) -> Option<ShellCommand> {
+    /// At another pace, with another toy's file than the bundled one.
+    #[must_use]
+    pub fn with(self, pace: Pace, toy_file: Arc<[u8]>) -> Self {
+        let toy_file = ToyFile::of(toy_file);
+        Self { pace, toy_file, ..self }
+    }
+
+    /// Does what a command asks for.
+    pub fn obey(&mut self, live: &Live, command: WorkCommand) {
         match command {
-            ShellCommand::Align(job) => self.spawn("align", ShellEvent::Aligned(None), move |_| {
-                ShellEvent::Aligned(Some(Box::new(job.run())))
-            }),
-            ShellCommand::SavePhoto => self.save_photo(live),
-            ShellCommand::Video(true) => self.begin_video(),
-            ShellCommand::Video(false) => self.video = None,
-            ShellCommand::Record(Some(take)) => self.record(*take),
-            ShellCommand::Share => self.share(live),
-            ShellCommand::PickToy => {
-                let folder = self.folders.shared.clone().unwrap_or_default();
-                self.tell(ShellEvent::ToyFiles(toys::list(&folder)));
+            WorkCommand::Align(job) => match self.pace {
+                Pace::Live => self.align(*job),
+                Pace::Repeatable => self.waiting.push(*job),
+            },
+            WorkCommand::SavePhoto => self.save_photo(live),
+            WorkCommand::Video(true) => self.begin_video(),
+            WorkCommand::Video(false) => self.video = None,
+            WorkCommand::Record(job) => job.into_iter().for_each(|job| self.record(*job)),
+            WorkCommand::Share => self.share(live),
+            WorkCommand::PickToy => {
+                let folder = self.folders.toys.as_deref().unwrap_or(Path::new(""));
+                self.tell(ShellEvent::ToyFiles(toys::list(folder)));
             }
-            ShellCommand::ReadToy(name) => {
-                let folder = self.folders.shared.clone().unwrap_or_default();
-                let (file, died) = (self.toy_file.clone(), "it could not be read".to_owned());
-                let read = move |_: &Sender<Outcome>| file.read(&folder, &name);
-                self.spawn("toy", ShellEvent::Toy(Err(died)), read);
+            WorkCommand::ReadToy(name) => {
+                self.read_toy(self.folders.toys.clone().unwrap_or_default(), name);
             }
-            ShellCommand::Remember(text) => self.remember(&text),
-            other @ (ShellCommand::AskPermission
-            | ShellCommand::OpenSettings
-            | ShellCommand::RunTracking { .. }
-            | ShellCommand::PauseTracking
-            | ShellCommand::LockExposure(_)
-            | ShellCommand::Underexpose(_)
-            | ShellCommand::HoldAnchor { .. }
-            | ShellCommand::KeepAwake(_)
-            | ShellCommand::FrameRate(_)
-            | ShellCommand::ReopenDevice
-            | ShellCommand::Announce(_)
-            | ShellCommand::Record(None)) => return Some(other),
+            WorkCommand::Remember(text) => self.remember(&text),
         }
-        None
+    }
+
+    /// Runs the alignments that wait.
+    pub fn align_waiting(&mut self) {
+        let waiting = std::mem::take(&mut self.waiting);
+        waiting.into_iter().for_each(|job| self.align(job));
+    }
+
+    /// Reads the file of a toy that a person has chosen.
+    pub fn read_toy(&self, folder: PathBuf, name: String) {
+        let (file, died) = (self.toy_file.clone(), "it could not be read".to_owned());
+        let read = move |_: &Sender<Outcome>| file.read(&folder, &name);
+        self.run("toy", ShellEvent::Toy(Err(died)), read);
+    }
+
+    /// Waits until a recording that was ended is written.
+    pub fn wait_for_recording(&mut self) {
+        // A thread that panicked has told so.
+        let _ = self.recording.take().map(JoinHandle::join);
     }
 
     /// Takes the picture that was just drawn, for a video.
@@ -155,27 +179,41 @@ impl Worker {
         send(&self.outcomes.0, Outcome::Tell(event));
     }
 
-    fn save_photo(&self, live: &Live) {
-        let Some(folder) = self.folders.shared.clone() else {
+    /// The path of a file that is about to be made, but for its extension; none without a folder.
+    fn stem(&mut self, what: &str) -> Option<PathBuf> {
+        self.n_files += 1;
+        let number = match self.pace {
+            Pace::Live => folders::unix_ms(),
+            Pace::Repeatable => self.n_files,
+        };
+        self.folders.stem(what, number)
+    }
+
+    fn align(&self, job: AlignJob) {
+        self.run("align", ShellEvent::Aligned(None), move |_| {
+            ShellEvent::Aligned(Some(Box::new(job.run())))
+        });
+    }
+
+    fn save_photo(&mut self, live: &Live) {
+        let Some(stem) = self.stem("photo") else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
         let Ok(picture) = live.read_picture() else {
             return self.tell(ShellEvent::Saved(Saved::Failed));
         };
-        // A clock that is set before 1970 makes every photo the same file.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let name = format!("photo_{}.png", since.as_millis());
-        self.spawn("photo", ShellEvent::Saved(Saved::Failed), move |outcomes| {
-            let saved = save::picture(&folder, &name, &picture);
+        self.run("photo", ShellEvent::Saved(Saved::Failed), move |outcomes| {
+            let path = stem.with_extension("png");
+            let saved = save::picture(&path, &picture);
             if saved == Saved::Done {
-                send(outcomes, Outcome::Written(folder.join(name)));
+                send(outcomes, Outcome::Written(path));
             }
             ShellEvent::Saved(saved)
         });
     }
 
     fn begin_video(&mut self) {
-        let Some(folder) = &self.folders.shared else {
+        let Some(stem) = self.stem("video") else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
         let (outcomes, kept_running) = (self.outcomes.0.clone(), (self.platform.keep_running)());
@@ -185,26 +223,27 @@ impl Worker {
             send(&outcomes, Outcome::Tell(ShellEvent::Saved(saved)));
             drop(kept_running);
         };
-        match Video::begin(folder, self.platform.videos, done) {
+        match Video::begin(stem, self.platform.videos, done) {
             Ok(video) => self.video = Some(video),
             Err(_) => self.tell(ShellEvent::Saved(Saved::Failed)),
         }
     }
 
-    fn record(&self, take: Take) {
-        let Some(folder) = self.folders.shared.clone() else {
-            let taken = take.without_file(&io::ErrorKind::PermissionDenied.into());
+    fn record(&mut self, job: RecordingJob) {
+        let Some(stem) = self.stem("recording") else {
+            let outcome = job.without_file(&io::ErrorKind::PermissionDenied.into());
             let file = String::new();
-            return self.tell(ShellEvent::Recorded(Recorded { file, taken }));
+            return self.tell(ShellEvent::Recorded(Recorded { file, outcome }));
         };
+        let path = stem.with_extension("mcap");
         let died = ShellEvent::Recorded(Recorded {
-            file: folder.display().to_string(),
-            taken: Taken::died(take.number()),
+            file: path.display().to_string(),
+            outcome: RecordingOutcome::died(job.number()),
         });
-        let (platform, toy) = (self.platform, self.toy_file.bytes());
-        self.spawn("record", died, move |_| {
+        let (platform, toy) = (self.platform.clone(), self.toy_file.bytes());
+        self.recording = self.spawn("record", died, move |_| {
             let codec = (platform.codec)();
-            ShellEvent::Recorded(record::write(take, (platform.app, &toy), codec, &folder))
+            ShellEvent::Recorded(record::write(job, (platform.app, &toy), codec, &path))
         });
     }
 
@@ -230,13 +269,27 @@ impl Worker {
         }
     }
 
-    /// Runs `work` on a thread and tells what it comes to, or `otherwise` where it comes to nothing.
-    fn spawn(
+    /// Runs `work`, which ends by itself, on a thread and tells what it comes to, or `otherwise` where it comes to nothing.
+    fn run(
         &self,
         name: &str,
         otherwise: ShellEvent,
         work: impl FnOnce(&Sender<Outcome>) -> ShellEvent + Send + 'static,
     ) {
+        let thread = self.spawn(name, otherwise, work);
+        if self.pace == Pace::Repeatable {
+            // A thread that panicked has told so.
+            let _ = thread.map(JoinHandle::join);
+        }
+    }
+
+    /// The same for work that ends when it is told to.
+    fn spawn(
+        &self,
+        name: &str,
+        otherwise: ShellEvent,
+        work: impl FnOnce(&Sender<Outcome>) -> ShellEvent + Send + 'static,
+    ) -> Option<JoinHandle<()>> {
         let outcomes = self.outcomes.0.clone();
         let (hand_over, handed_over) = channel();
         let begun = thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -247,11 +300,13 @@ impl Worker {
             let event = guarded("a thread", || work(&outcomes));
             send(&outcomes, Outcome::Tell(event.unwrap_or(otherwise)));
         });
-        match begun {
+        if begun.is_ok() {
             // The thread waits for it.
-            Ok(_) => drop(hand_over.send(otherwise)),
-            Err(_) => self.tell(otherwise),
+            drop(hand_over.send(otherwise));
+        } else {
+            self.tell(otherwise);
         }
+        begun.ok()
     }
 }
 
@@ -263,8 +318,6 @@ fn send(outcomes: &Sender<Outcome>, outcome: Outcome) {
 #[cfg(test)]
 mod tests {
     use std::fs;
-    use std::path::Path;
-    use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use app_core::Core;
@@ -286,15 +339,17 @@ mod tests {
         }
     }
 
-    const PLATFORM: Platform = Platform {
-        app: "app 1.0",
-        videos: &[MOTION_JPEG],
-        codec: || PictureCodec::PHONE,
-        keep_running: || {
-            KEPT.fetch_add(1, Ordering::SeqCst);
-            Box::new(Kept)
-        },
-    };
+    fn platform() -> Platform {
+        Platform {
+            app: "app 1.0",
+            videos: &[MOTION_JPEG],
+            codec: Arc::new(|| PictureCodec::PHONE),
+            keep_running: || {
+                KEPT.fetch_add(1, Ordering::SeqCst);
+                Box::new(Kept)
+            },
+        }
+    }
 
     /// An app that draws nothing.
     fn live() -> Live {
@@ -304,8 +359,12 @@ mod tests {
 
     fn worker_in(folder: Option<&Path>) -> Worker {
         let folder = folder.map(Path::to_owned);
-        let (shared, own) = (folder.clone(), folder);
-        Worker::new(PLATFORM, Folders { shared, own })
+        let folders = Folders {
+            shared: folder.clone(),
+            toys: folder.clone(),
+            own: folder,
+        };
+        Worker::new(platform(), folders)
     }
 
     /// The next outcome that tells of something else than free space.
@@ -342,13 +401,13 @@ mod tests {
     fn without_a_folder_nothing_may_be_kept() {
         let (mut worker, live) = (worker_in(None), live());
         let asked = [
-            ShellCommand::SavePhoto,
-            ShellCommand::Video(true),
-            ShellCommand::Share,
+            WorkCommand::SavePhoto,
+            WorkCommand::Video(true),
+            WorkCommand::Share,
         ];
         for command in asked {
             let name = format!("{command:?}");
-            assert!(worker.take(&live, command).is_none(), "{name} is left");
+            worker.obey(&live, command);
             let event = told(&mut worker);
             assert!(
                 matches!(event, ShellEvent::Saved(Saved::NotAllowed)),
@@ -365,7 +424,7 @@ mod tests {
             fs::write(folder.join(file), b"").expect("a file");
         }
         let mut worker = worker_in(Some(&folder));
-        assert!(worker.take(&live(), ShellCommand::Share).is_none());
+        worker.obey(&live(), WorkCommand::Share);
         let Outcome::Share(files) = wait_for(&mut worker) else {
             panic!("no files to hand on");
         };
@@ -382,12 +441,12 @@ mod tests {
     fn the_app_is_kept_running_until_a_video_is_whole() {
         let folder = std::env::temp_dir().join(format!("app-shell-kept-{}", std::process::id()));
         let (mut worker, live) = (worker_in(Some(&folder)), live());
-        assert!(worker.take(&live, ShellCommand::Video(true)).is_none());
+        worker.obey(&live, WorkCommand::Video(true));
         assert_eq!(
             (KEPT.load(Ordering::SeqCst), LET_GO.load(Ordering::SeqCst)),
             (1, 0)
         );
-        assert!(worker.take(&live, ShellCommand::Video(false)).is_none());
+        worker.obey(&live, WorkCommand::Video(false));
         // It has no picture.
         let event = told(&mut worker);
         assert!(matches!(event, ShellEvent::Saved(Saved::Failed)), "{event:?}");
@@ -399,23 +458,32 @@ mod tests {
     }
 
     #[test]
-    fn toys_are_listed_and_read_and_what_is_not_for_files_is_left() {
+    fn toys_are_listed_and_read() {
         let (mut worker, live) = (worker_in(None), live());
-        assert!(worker.take(&live, ShellCommand::PickToy).is_none());
+        worker.obey(&live, WorkCommand::PickToy);
         let event = told(&mut worker);
         assert!(
             matches!(&event, ShellEvent::ToyFiles(names) if names == &["Llama"]),
             "{event:?}"
         );
-        let none = ShellCommand::ReadToy("none.glb".to_owned());
-        assert!(worker.take(&live, none).is_none());
+        let none = WorkCommand::ReadToy("none.glb".to_owned());
+        worker.obey(&live, none);
         let event = told(&mut worker);
         assert!(
             matches!(&event, ShellEvent::Toy(Err(reason)) if reason.contains("none.glb")),
             "{event:?}"
         );
-        let left = worker.take(&live, ShellCommand::OpenSettings);
-        assert!(matches!(left, Some(ShellCommand::OpenSettings)), "{left:?}");
+    }
+
+    #[test]
+    fn at_a_repeatable_pace_work_is_done_when_a_command_returns() {
+        let mut worker = worker_in(None).with(Pace::Repeatable, Arc::from(toys::BUNDLED));
+        worker.obey(&live(), WorkCommand::ReadToy("none.glb".to_owned()));
+        let outcome = worker.outcome();
+        assert!(
+            matches!(outcome, Some(Outcome::Tell(ShellEvent::Toy(Err(_))))),
+            "{outcome:?}"
+        );
     }
 
     #[test]

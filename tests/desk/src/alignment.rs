@@ -317,12 +317,12 @@ impl Alignments {
     /// The scene from a frame on: its plates in another light, once lights were moved.
     #[must_use]
     pub fn relit_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
-        let plates = |index: usize| self.of(index)?.alignment.relit_plates.as_ref();
-        let now = plates(index)?;
-        let before = index.checked_sub(1).and_then(plates);
-        let is_new = before.is_none_or(|before| !Arc::ptr_eq(before, now));
-        is_new.then(|| Scene {
-            plates: now.to_vec(),
+        let plates = &self.of(index)?.alignment.scene.as_ref()?.plates;
+        // Cameras alone are corrected in the scene from its begin on.
+        let mut pairs = plates.iter().zip(&given.plates);
+        let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
+        is_relit.then(|| Scene {
+            plates: plates.clone(),
             ..given.clone()
         })
     }

@@ -1,7 +1,7 @@
 //! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
 
 use app_core::governor::{
-    BALANCED_FRONT, Governor, Heat, Knob, Measured, SETTLE_FRAMES, Turned, UP_FRAMES, WINDOW,
+    BALANCED_FRONT, Governor, Thermal, Knob, Measured, SETTLE_FRAMES, Turned, UP_FRAMES, WINDOW,
 };
 
 /// A screen's frame at 60 Hz.
@@ -23,7 +23,7 @@ struct Phone {
     /// Part of the frames that take three times as long.
     spikes: f64,
     has_stamps: bool,
-    heat: Heat,
+    thermal: Thermal,
     state: u64,
     times_ms: Vec<f64>,
     turns: Vec<(usize, Turned)>,
@@ -38,7 +38,7 @@ impl Phone {
             noise: 0.05,
             spikes: 0.02,
             has_stamps: true,
-            heat: Heat::Nominal,
+            thermal: Thermal::Nominal,
             state: 1,
             times_ms: Vec::new(),
             turns: Vec::new(),
@@ -80,7 +80,7 @@ impl Phone {
                     .filter(|_| self.has_stamps)
                     .map(|index| self.times_ms[index]),
                 interval_ms: screens.round() * SCREEN_MS,
-                heat: self.heat,
+                thermal: self.thermal,
             };
             if let Some(turned) = self.governor.take(&frame) {
                 self.turns.push((self.times_ms.len(), turned));
@@ -180,10 +180,10 @@ fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
     for minute in 0..20 {
         // The phone throttles: its frames take longer by the minute.
         phone.full_ms = 0.7 * SCREEN_MS * (1.0 + 0.04 * f64::from(minute));
-        phone.heat = match minute {
-            0..6 => Heat::Nominal,
-            6..12 => Heat::Fair,
-            _ => Heat::Serious,
+        phone.thermal = match minute {
+            0..6 => Thermal::Nominal,
+            6..12 => Thermal::Fair,
+            _ => Thermal::Serious,
         };
         phone.run(MINUTE);
         assert!(
@@ -199,13 +199,13 @@ fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
     // A phone that says in turn that it is cool and that it is not is not believed.
     phone.full_ms = 0.5 * SCREEN_MS;
     for _ in 0..20 {
-        phone.heat = Heat::Nominal;
+        phone.thermal = Thermal::Nominal;
         phone.run(MINUTE / 2);
-        phone.heat = Heat::Serious;
+        phone.thermal = Thermal::Serious;
         phone.run(60);
     }
     assert_eq!(phone.level(), hot, "{:?}", phone.turns);
-    phone.heat = Heat::Nominal;
+    phone.thermal = Thermal::Nominal;
     phone.run(MINUTE + hot * 200);
     assert_eq!(phone.level(), 0, "{:?}", phone.turns);
 }

@@ -1,6 +1,6 @@
 //! What can go wrong around an app, to be tried on a desktop.
 
-use app_core::app::{ArSession, Device, Permission, ShellEvent, Thermal};
+use app_core::app::{ArSession, GraphicsState, Permission, ShellEvent, Thermal};
 use app_core::camera_frame::Tracking;
 use clap::ValueEnum;
 
@@ -61,7 +61,7 @@ impl Fault {
                 feed.world_epoch += 1;
                 None
             }
-            Self::DeviceLost => Some(ShellEvent::Device(Device::Lost)),
+            Self::DeviceLost => Some(ShellEvent::Graphics(GraphicsState::Lost)),
             Self::Hot => Some(ShellEvent::Thermal(Thermal::Critical)),
             Self::MemoryLow => Some(ShellEvent::MemoryLow),
             Self::Background => Some(ShellEvent::Foreground(false)),
@@ -79,7 +79,7 @@ impl Fault {
                 None
             }
             Self::NewWorld | Self::MemoryLow => None,
-            Self::DeviceLost => Some(ShellEvent::Device(Device::Ready)),
+            Self::DeviceLost => Some(ShellEvent::Graphics(GraphicsState::Ready)),
             Self::Hot => Some(ShellEvent::Thermal(Thermal::Nominal)),
             Self::Background => Some(ShellEvent::Foreground(true)),
         }

@@ -19,7 +19,7 @@ const LEVEL: f64 = 0.985;
 
 /// As the format has it.
 const MAX_INDEX_BYTES: u64 = 16 << 20;
-pub(super) const MAX_TOY_BYTES: u64 = 256 << 20;
+const MAX_TOY_BYTES: u64 = 256 << 20;
 
 /// Of the index no more than the name of the toy's file.
 #[derive(Deserialize)]
@@ -97,11 +97,6 @@ impl Feed {
     #[must_use]
     pub fn toy_file(&self) -> Arc<[u8]> {
         Arc::clone(&self.toy_file)
-    }
-
-    /// Another toy, whose file this is.
-    pub fn set_toy_file(&mut self, file: Vec<u8>) {
-        self.toy_file = file.into();
     }
 
     /// The next frame, `elapsed_s` after the one before.

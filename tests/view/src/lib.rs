@@ -3,7 +3,6 @@
 pub mod desk;
 pub mod fault;
 pub mod feed;
-pub mod kept;
 pub mod moment;
 pub mod tour;
 pub mod window;

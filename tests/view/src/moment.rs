@@ -36,7 +36,7 @@ impl Moment {
         let Show::Toy { scene, input, .. } = app.show() else {
             return None;
         };
-        let mut scene = scene.clone();
+        let mut scene = Scene::clone(scene);
         if let Some(lights) = &input.lights {
             scene.lights = lights.to_vec();
         }

@@ -170,7 +170,7 @@ impl<'a> Tour<'a> {
         self.frame()?;
         self.expect(Step::Align, "the ghost was placed")?;
         self.shoot("align")?;
-        self.desk.work();
+        self.desk.align();
         self.wait_for(Step::Play, "the toy was found")
     }
 
@@ -230,14 +230,14 @@ impl<'a> Tour<'a> {
         self.shoot("recorded")?;
         self.press("Share log and recording")?;
         self.shoot("shared")?;
-        if self.desk.toy_to_pick.as_ref().is_some_and(|path| path.is_dir()) {
+        if self.desk.keeping.toy_to_pick.as_ref().is_some_and(|path| path.is_dir()) {
             self.press("Another toy")?;
             self.shoot("choose_toy")?;
             self.press("Back")?;
             self.shoot_nothing()?;
         }
         // A picture is no toy.
-        self.desk.toy_to_pick = self.written.first().cloned();
+        self.desk.keeping.toy_to_pick = self.written.first().cloned();
         self.press("Another toy")?;
         self.shoot("toy_refused")?;
         self.press("Close")?;
@@ -369,7 +369,7 @@ impl<'a> Tour<'a> {
                 return Ok(());
             }
             self.frame()?;
-            self.desk.work();
+            self.desk.align();
         }
         self.expect(step, after)
     }

@@ -5,12 +5,14 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use app_core::Core;
-use app_core::app::{Device, ShellEvent};
-use app_core::frame::Clock;
+use app_core::app::{GraphicsState, ShellEvent};
 use app_core::interface::{Insets, Screen, Touch, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::wgpu;
+use app_shell::record::clock;
+use app_shell::starts;
+use app_shell::worker::Pace;
 use winit::application::ApplicationHandler;
 use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
@@ -18,10 +20,9 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::{Key, NamedKey};
 use winit::window::{Window, WindowId};
 
-use super::desk::{Desk, Jobs};
+use super::desk::{Desk, Keeping};
 use super::fault::Fault;
 use super::feed::Feed;
-use super::kept;
 
 /// Time between two camera frames.
 const FRAME: Duration = Duration::from_millis(33);
@@ -42,12 +43,8 @@ pub struct Options {
     pub text_scale: f64,
     /// Frames a second that are to be held.
     pub hold: Option<u32>,
-    /// Where photos go.
-    pub out: std::path::PathBuf,
-    /// Quality of a recording's pictures; lossless without one.
-    pub jpeg_quality: Option<u8>,
-    /// What a person chooses where a toy is asked for.
-    pub toy_to_pick: Option<std::path::PathBuf>,
+    /// What a person keeps.
+    pub keeping: Keeping,
     /// Close by itself after so many seconds.
     pub seconds: Option<f64>,
 }
@@ -73,13 +70,6 @@ pub fn open(feed: Feed, options: Options) -> Result<()> {
         desk.close();
     }
     app.result
-}
-
-/// The clock of a desktop.
-#[must_use]
-pub fn clock() -> Clock {
-    let start = Instant::now();
-    Clock::new(move || 1e3 * start.elapsed().as_secs_f64())
 }
 
 struct Opened {
@@ -110,15 +100,13 @@ impl Shell {
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
         // Before a driver is asked for anything.
-        let starts = kept::begin_start(&self.options.out);
+        let history = starts::begin(&self.options.keeping.out);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
-        self.options.hold.into_iter().for_each(|hold| live.hold(hold));
-        live.time_by(clock());
-        let mut desk = Desk::new(live, feed, self.options.out.clone(), Jobs::Thread);
-        desk.jpeg_quality = self.options.jpeg_quality;
-        desk.toy_to_pick = self.options.toy_to_pick.clone();
-        desk.tell(ShellEvent::Started(starts));
+        self.options.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
+        live.set_clock(clock());
+        let mut desk = Desk::new(live, feed, self.options.keeping.clone(), Pace::Live);
+        desk.tell(ShellEvent::Started(history));
         desk.tell(ShellEvent::Foreground(true));
         desk.tell(ShellEvent::Surface(Some(window.inner_size().into())));
         self.opened = Some(Opened { window, desk });
@@ -158,7 +146,7 @@ impl Shell {
         };
         let time_s = (now - self.start).as_secs_f64();
         if desk.present(&screen, time_s).is_err() {
-            desk.tell(ShellEvent::Device(Device::Lost));
+            desk.tell(ShellEvent::Graphics(GraphicsState::Lost));
         }
         Ok(())
     }

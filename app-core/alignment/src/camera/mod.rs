@@ -19,7 +19,7 @@ use glam::DMat4;
 use super::mask::Mask;
 use super::receivers::nearest;
 use super::report::CameraAlignment;
-use app_scene::scene::{Camera, Image, Plate, PoseUncertainty, Receiver};
+use app_scene::scene::{Camera, Image, Plate, PoseUncertainty, Receiver, check};
 use brightness::Brightness;
 use points::{Point, points_of};
 use step::{Rigid, Search};
@@ -69,7 +69,7 @@ impl Found {
         self.moved_px > LEAST_PX && found < (1.0 - fall) * given
     }
 
-    pub(super) fn report(&self, is_applied: bool) -> CameraAlignment {
+    fn report(&self, is_applied: bool) -> CameraAlignment {
         CameraAlignment {
             is_applied,
             moved_px: self.moved_px,
@@ -78,6 +78,20 @@ impl Found {
             errors: self.losses,
         }
     }
+}
+
+/// A camera as found: as given, where that explains the picture no better.
+pub(super) fn corrected(given: &Camera, found: Option<Found>) -> (Camera, Option<CameraAlignment>) {
+    let Some(found) = found else {
+        return (*given, None);
+    };
+    let corrected = Camera {
+        world_from_camera: found.world_from_camera,
+        ..*given
+    };
+    let is_applied = found.is_better() && check::camera("camera", &corrected).is_ok();
+    let camera = if is_applied { corrected } else { *given };
+    (camera, Some(found.report(is_applied)))
 }
 
 /// Finds cameras in one scene, one after the other; remembers the plates used last.

@@ -98,10 +98,8 @@ pub enum Verdict {
 pub(super) struct Place {
     /// Counts places: results of another are not taken.
     number: u64,
-    /// What frames are shown with.
-    pub(super) scene: Scene,
-    /// Counts what `scene` has been.
-    pub(super) version: u64,
+    /// What frames are shown with: another one is another allocation.
+    pub(super) scene: Arc<Scene>,
     /// None while it is at work.
     aligner: Option<Aligner>,
     started_s: Option<f64>,
@@ -117,11 +115,11 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn new(number: u64, version: u64, scene: Scene) -> Self {
+    pub(super) fn new(number: u64, scene: Scene) -> Self {
+        let scene = Arc::new(scene);
         Self {
             number,
-            version,
-            aligner: Some(Aligner::new(scene.clone())),
+            aligner: Some(Aligner::new(Arc::clone(&scene))),
             started_s: None,
             n_misses: 0,
             world_from_anchor: rigid(&scene.world_from_object),
@@ -214,7 +212,7 @@ impl Place {
 
     /// The thread of an alignment did not come to an end: begins with a new one.
     pub(super) fn begin_anew(&mut self) {
-        self.aligner = Some(Aligner::new(self.scene.clone()));
+        self.aligner = Some(Aligner::new(Arc::clone(&self.scene)));
     }
 
     fn apply(&mut self, given: &Camera, aligner: &Aligner, alignment: Alignment) {
@@ -228,11 +226,8 @@ impl Place {
         self.world_from_anchored = alignment.camera.world_from_camera * given.world_from_camera.inverse();
         self.world_from_object = alignment.world_from_object;
         self.lights = alignment.lights;
-        // Plates' cameras are aligned with the first frame, and plates follow a light that was moved.
-        if self.verdict.is_none() || !are_same(&self.scene, aligner.scene()) {
-            self.scene = aligner.scene().clone();
-            self.version += 1;
-        }
+        // What an alignment told that missed the toy counts from here on, too.
+        self.scene = Arc::clone(aligner.scene());
         self.verdict = Some(verdict);
     }
 }
@@ -248,12 +243,6 @@ fn moved(camera: &Camera, new_from_old: &DMat4) -> Camera {
 fn rigid(pose: &DMat4) -> DMat4 {
     let (_, rotation, translation) = pose.to_scale_rotation_translation();
     DMat4::from_rotation_translation(rotation, translation)
-}
-
-fn are_same(one: &Scene, other: &Scene) -> bool {
-    let mut plates = one.plates.iter().zip(&other.plates);
-    one.plates.len() == other.plates.len()
-        && plates.all(|(a, b)| Arc::ptr_eq(&a.image, &b.image) && a.camera == b.camera)
 }
 
 fn verdict(alignment: &Alignment) -> Verdict {

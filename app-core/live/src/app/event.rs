@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::aligning::{AlignJob, AlignedJob};
-use super::starts::Starts;
+use super::launch_history::LaunchHistory;
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
 use app_scene::toy::{ClipId, Toy};
-use app_session::recording::{Take, Taken};
+use app_session::recording::{RecordingJob, RecordingOutcome};
 
-pub use app_pipeline::governor::Heat as Thermal;
+pub use app_pipeline::governor::Thermal;
 
 /// Whether the camera may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ pub enum ArSession {
 
 /// How the graphics device is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Device {
+pub enum GraphicsState {
     /// Pipelines are being compiled.
     #[default]
     Starting,
@@ -74,12 +74,12 @@ pub struct Recorded {
     /// Where a person finds it.
     pub file: String,
     /// What became of it.
-    pub taken: Taken,
+    pub outcome: RecordingOutcome,
 }
 
-/// What a person wishes, by a touch or a button.
+/// What a person does, by a touch or a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
+pub enum UserAction {
     /// The first button.
     Begin,
     /// The system's settings, where the camera can be allowed.
@@ -145,7 +145,7 @@ pub enum ShellEvent {
     /// There is something to draw on, of so many pixels, or no longer.
     Surface(Option<[u32; 2]>),
     /// The graphics device.
-    Device(Device),
+    Graphics(GraphicsState),
     /// The AR session.
     ArSession(ArSession),
     /// A camera frame.
@@ -154,38 +154,50 @@ pub enum ShellEvent {
     Thermal(Thermal),
     /// Memory is short.
     MemoryLow,
-    /// [`ShellCommand::Align`] ended; none where its thread did not come to an end.
+    /// [`WorkCommand::Align`] ended; none where its thread did not come to an end.
     Aligned(Option<Box<AlignedJob>>),
-    /// Names of toys' files that a person can choose from, in answer to [`ShellCommand::PickToy`].
+    /// Names of toys' files that a person can choose from, in answer to [`WorkCommand::PickToy`].
     ToyFiles(Vec<String>),
     /// A toy was read, or why it was not.
     Toy(Result<Arc<Toy>, String>),
     /// A photo, a video or what is to be shared was saved, or not.
     Saved(Saved),
-    /// [`ShellCommand::Record`]: it has ended, by itself or since it was asked to.
+    /// [`WorkCommand::Record`]: it has ended, by itself or since it was asked to.
     Recorded(Recorded),
     /// What is free where recordings go, in bytes; once a second.
     FreeSpace(u64),
-    /// What was kept from start to start, once this one has [begun](Starts::begin): before anything else.
-    Started(Starts),
-    /// Whether a device, named with its driver, has drawn its test picture as it should; [`Live`](crate::live::Live) tells.
-    SelfTested {
-        /// Its name.
-        device: String,
-        /// What is wrong.
-        outcome: Result<(), String>,
-    },
+    /// What was kept from start to start, once this one has [begun](LaunchHistory::begin): before anything else.
+    Started(LaunchHistory),
     /// This app has taken the place of one that a panic ended; see [`Panics`](super::Panics).
     Restarted,
-    /// A picture of the moving toy was drawn; [`Live`](crate::live::Live) tells.
-    Drawn,
-    /// What a person wishes.
-    Wish(Wish),
+    /// What a person does with the interface, which [`Live`](crate::live::Live) has.
+    User(UserAction),
 }
 
 /// What a shell is to do.
 #[derive(Debug)]
 pub enum ShellCommand {
+    /// What takes the platform.
+    Platform(PlatformCommand),
+    /// What takes no more than files and threads.
+    Work(WorkCommand),
+}
+
+impl From<PlatformCommand> for ShellCommand {
+    fn from(command: PlatformCommand) -> Self {
+        Self::Platform(command)
+    }
+}
+
+impl From<WorkCommand> for ShellCommand {
+    fn from(command: WorkCommand) -> Self {
+        Self::Work(command)
+    }
+}
+
+/// What a platform is asked for, by its shell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlatformCommand {
     /// Ask for the camera, and tell.
     AskPermission,
     /// Show the system's settings of this app.
@@ -215,25 +227,30 @@ pub enum ShellCommand {
     KeepAwake(bool),
     /// Frames a second to ask the camera for.
     FrameRate(u32),
-    /// Run this on another thread, and tell.
-    Align(Box<AlignJob>),
     /// Open the graphics device anew.
     ReopenDevice,
+    /// Say it to those who do not see the screen.
+    Announce(Step),
+}
+
+/// Work that is the same on each platform.
+#[derive(Debug)]
+pub enum WorkCommand {
+    /// Run this on another thread, and tell.
+    Align(Box<AlignJob>),
     /// Save the next finished picture.
     SavePhoto,
     /// Begin a video of the finished pictures, or end and save it.
     Video(bool),
     /// Write this recording on another thread, and tell; none where the one before was ended: what waits of it is still
     /// written.
-    Record(Option<Box<Take>>),
+    Record(Option<Box<RecordingJob>>),
     /// Let a person choose a toy's file and tell the toy, or tell the files that there are.
     PickToy,
     /// Read the toy's file of that name, on another thread, and tell.
     ReadToy(String),
     /// Hand log, recording and profile to whoever the person chooses.
     Share,
-    /// Keep this text for the next start, at once: see [`Starts`].
+    /// Keep this text for the next start, at once: see [`LaunchHistory`].
     Remember(String),
-    /// Say it to those who do not see the screen.
-    Announce(Step),
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::App;
 use super::aligning::{AlignedJob, Place, Verdict};
-use super::event::{ShellCommand, Thermal};
+use super::event::{PlatformCommand, ShellCommand, Thermal, WorkCommand};
 use super::notice::Notice;
 use super::step::{Cause, Step};
 use super::table::as_told_now;
@@ -126,7 +126,7 @@ impl App {
         };
         self.n_places += 1;
         self.wants_anchor = true;
-        self.place = Some(Place::new(self.n_places, self.n_places << 32, scene));
+        self.place = Some(Place::new(self.n_places, scene));
     }
 
     fn align(&mut self, is_trusted: bool, commands: &mut Vec<ShellCommand>) {
@@ -138,12 +138,12 @@ impl App {
             let job = place.job(self.time_s, input);
             if std::mem::take(&mut self.wants_anchor) {
                 let (id, world_from_anchor) = place.anchor();
-                commands.push(ShellCommand::HoldAnchor {
+                commands.push(PlatformCommand::HoldAnchor {
                     id,
                     world_from_anchor,
-                });
+                }.into());
             }
-            commands.extend(job.map(|job| ShellCommand::Align(Box::new(job))));
+            commands.extend(job.map(|job| WorkCommand::Align(Box::new(job)).into()));
         }
     }
 

@@ -4,11 +4,13 @@
 //! clock, no file, no device and no thread: time comes with the frames, and an alignment, which takes a second, is a job that the
 //! shell runs where it likes. So every order of events can be tested on a desktop.
 
+mod actions;
 mod aligning;
 mod event;
 mod frames;
 mod ghost;
 mod ghost_shape;
+mod launch_history;
 mod lens;
 mod log;
 mod notice;
@@ -20,11 +22,9 @@ mod recorder;
 mod recordings;
 mod show;
 mod start;
-mod starts;
 mod step;
 mod table;
 mod toys;
-mod wishes;
 
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ use start::Start;
 pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use app_alignment::plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use app_alignment::pose_filter::{PoseFilter, PoseNoise, PoseStep};
-pub use event::{ArSession, Device, Permission, Recorded, Saved, ShellCommand, ShellEvent, Thermal, Wish};
+pub use event::{ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent, Thermal, UserAction, WorkCommand};
 pub use log::Log;
 pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
@@ -52,7 +52,7 @@ pub use phone_check::{CheckInk, PhoneQuestion};
 pub use platform::Obstacle;
 pub use playback::Playback;
 pub use show::Show;
-pub use starts::{N_GOOD_FRAMES, N_UNFINISHED, Simplified, Starts};
+pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
 pub use step::{Cause, Step};
 
 use notice::Notices;
@@ -152,7 +152,7 @@ impl App {
             ShellEvent::Permission(permission) => self.permission(permission),
             ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground, &mut commands),
             ShellEvent::Surface(size_px) => self.platform.surface_px = size_px,
-            ShellEvent::Device(device) => self.device(device, &mut commands),
+            ShellEvent::Graphics(state) => self.graphics(state, &mut commands),
             ShellEvent::ArSession(ar_session) => self.ar_session(ar_session),
             ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
             ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
@@ -164,10 +164,8 @@ impl App {
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
             ShellEvent::Started(starts) => self.started(starts),
-            ShellEvent::SelfTested { device, outcome } => self.self_tested(&device, outcome, &mut commands),
             ShellEvent::Restarted => self.tell(Notice::Restarted),
-            ShellEvent::Drawn => self.drawn(&mut commands),
-            ShellEvent::Wish(wish) => self.wish(wish, &mut commands),
+            ShellEvent::User(action) => self.act(action, &mut commands),
         }
         let asked = Asked {
             lens: self.lens.is_awaited(),
@@ -175,11 +173,11 @@ impl App {
         };
         let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
         self.captures = wanted.captures;
-        let take = self.follow_recording(wanted.captures.recording);
+        let job = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);
-        commands.extend(self.commanded.follow(wanted, is_new_world, take));
+        commands.extend(self.commanded.follow(wanted, is_new_world, job));
         if self.step != step {
-            commands.push(ShellCommand::Announce(self.step));
+            commands.push(PlatformCommand::Announce(self.step).into());
         }
         commands
     }

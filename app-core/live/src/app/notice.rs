@@ -1,7 +1,7 @@
 //! What a person should hear of, for some seconds.
 
 use super::event::{Recorded, Saved};
-use super::starts::Simplified;
+use super::launch_history::Simplified;
 
 /// How long it stands, in seconds.
 const SHOWN_S: f64 = 6.0;

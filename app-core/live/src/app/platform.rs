@@ -1,9 +1,9 @@
 //! What the platform grants, and what it is asked for.
 
-use super::event::{ArSession, Device, Permission, ShellCommand, Thermal};
+use super::event::{ArSession, GraphicsState, Permission, PlatformCommand, ShellCommand, Thermal, WorkCommand};
 use super::step::Step;
 use app_scene::camera_frame::Tracking;
-use app_session::recording::Take;
+use app_session::recording::RecordingJob;
 
 /// What the platform grants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub(super) struct Platform {
     pub(super) permission: Permission,
     pub(super) is_foreground: bool,
     pub(super) surface_px: Option<[u32; 2]>,
-    pub device: Device,
+    pub(super) graphics: GraphicsState,
     pub(super) ar_session: ArSession,
     pub(super) thermal: Thermal,
     /// Of the latest frame.
@@ -46,9 +46,9 @@ pub enum Obstacle {
 impl Platform {
     /// The first of what is in the way of a step.
     pub(super) fn obstacle(&self, step: Step) -> Option<Obstacle> {
-        match (self.ar_session, self.device) {
+        match (self.ar_session, self.graphics) {
             (ArSession::Unsupported, _) => return Some(Obstacle::NoAr),
-            (_, Device::Unsupported) => return Some(Obstacle::NoGraphics),
+            (_, GraphicsState::Unsupported) => return Some(Obstacle::NoGraphics),
             _ => {}
         }
         match self.permission {
@@ -63,7 +63,7 @@ impl Platform {
             (self.thermal == Thermal::Critical, Obstacle::TooHot),
             (self.ar_session == ArSession::Interrupted, Obstacle::Interrupted),
             (self.ar_session == ArSession::Failed, Obstacle::ArFailed),
-            (self.device != Device::Ready, Obstacle::Preparing),
+            (self.graphics != GraphicsState::Ready, Obstacle::Preparing),
             (
                 self.tracking != Tracking::Normal,
                 Obstacle::Tracking(self.tracking),
@@ -78,7 +78,7 @@ impl Platform {
         self.is_foreground
             && self.permission == Permission::Granted
             && self.ar_session == ArSession::Able
-            && self.device != Device::Unsupported
+            && self.graphics != GraphicsState::Unsupported
             && self.thermal < Thermal::Critical
     }
 }
@@ -139,47 +139,47 @@ impl Commanded {
         self.tracking
     }
 
-    /// The commands that lead from what was asked for to what is `wanted`; `take` is the recording that begins.
+    /// The commands that lead from what was asked for to what is `wanted`; `job` is the recording that begins.
     pub(super) fn follow(
         &mut self,
         wanted: Self,
         is_new_world: bool,
-        take: Option<Box<Take>>,
+        job: Option<Box<RecordingJob>>,
     ) -> Vec<ShellCommand> {
         let mut commands = Vec::new();
         // What was kept is saved before the camera goes.
         if wanted.captures.video != self.captures.video {
-            commands.push(ShellCommand::Video(wanted.captures.video));
+            commands.push(WorkCommand::Video(wanted.captures.video).into());
         }
         if wanted.captures.recording != self.captures.recording {
-            commands.push(ShellCommand::Record(take));
+            commands.push(WorkCommand::Record(job).into());
         }
         if wanted.frames_per_s != self.frames_per_s {
-            commands.push(ShellCommand::FrameRate(wanted.frames_per_s));
+            commands.push(PlatformCommand::FrameRate(wanted.frames_per_s).into());
         }
         let is_run_anew = (wanted.tracking, wanted.finds_planes) != (self.tracking, self.finds_planes);
         if wanted.tracking && (is_run_anew || is_new_world) {
-            commands.push(ShellCommand::RunTracking {
+            commands.push(PlatformCommand::RunTracking {
                 finds_planes: wanted.finds_planes,
                 is_new_world,
-            });
+            }.into());
         } else if !wanted.tracking && self.tracking {
-            commands.push(ShellCommand::PauseTracking);
+            commands.push(PlatformCommand::PauseTracking.into());
         }
         // A camera that is started again has its exposure free.
         let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
         let was_dark = self.underexposes && self.tracking;
         if was_dark && !wanted.underexposes && wanted.tracking {
-            commands.push(ShellCommand::Underexpose(false));
+            commands.push(PlatformCommand::Underexpose(false).into());
         }
         if wanted.locks_exposure != is_locked && wanted.tracking {
-            commands.push(ShellCommand::LockExposure(wanted.locks_exposure));
+            commands.push(PlatformCommand::LockExposure(wanted.locks_exposure).into());
         }
         if wanted.underexposes && !was_dark {
-            commands.push(ShellCommand::Underexpose(true));
+            commands.push(PlatformCommand::Underexpose(true).into());
         }
         if wanted.is_awake != self.is_awake {
-            commands.push(ShellCommand::KeepAwake(wanted.is_awake));
+            commands.push(PlatformCommand::KeepAwake(wanted.is_awake).into());
         }
         *self = wanted;
         commands

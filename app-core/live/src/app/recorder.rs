@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use app_scene::camera_frame::{CameraFrame, FoundPlane, Tracking};
 use app_scene::scene::{Light, Scene};
 use app_session::record::{LightEstimateRecord, LightRecord};
-use app_session::recording::{Inlet, Item, LiveFrame, Take, Topic};
+use app_session::recording::{Item, LiveFrame, RecordingJob, RecordingSender, Topic};
 
 /// Time between what is told of free space, in nanoseconds: where no frame comes either, it is the only clock.
 const TICK_NS: u64 = 1_000_000_000;
@@ -17,7 +17,7 @@ const TICK_NS: u64 = 1_000_000_000;
 #[derive(Debug)]
 pub(super) struct Recorder {
     number: u64,
-    inlet: Inlet,
+    sender: RecordingSender,
     /// The first frame's time, by the platform's clock.
     origin_ns: i64,
     /// Of the latest frame, or of a tick since, from the first frame on.
@@ -31,11 +31,11 @@ pub(super) struct Recorder {
 
 impl Recorder {
     /// Begins with a frame of `scene`.
-    pub(super) fn begin(number: u64, scene: Scene, frame: &CameraFrame) -> (Self, Take) {
-        let (inlet, take) = Take::new(number, scene, frame.intrinsics);
+    pub(super) fn begin(number: u64, scene: Scene, frame: &CameraFrame) -> (Self, RecordingJob) {
+        let (sender, job) = RecordingJob::new(number, scene, frame.intrinsics);
         let recorder = Self {
             number,
-            inlet,
+            sender,
             origin_ns: frame.stamp.time_ns,
             now_ns: 0,
             has_ticked: false,
@@ -43,7 +43,7 @@ impl Recorder {
             planes: None,
             has_told_drops: false,
         };
-        (recorder, take)
+        (recorder, job)
     }
 
     pub(super) fn number(&self) -> u64 {
@@ -117,7 +117,7 @@ impl Recorder {
 
     /// Whether frames were dropped for the first time.
     pub(super) fn begins_to_drop(&mut self) -> bool {
-        let is_dropping = self.inlet.n_dropped_frames() > 0;
+        let is_dropping = self.sender.n_dropped_frames() > 0;
         is_dropping && !std::mem::replace(&mut self.has_told_drops, is_dropping)
     }
 
@@ -130,7 +130,7 @@ impl Recorder {
 
     /// What has no room is counted there.
     fn offer(&self, item: Item) {
-        let _ = self.inlet.offer(self.now_ns, item);
+        let _ = self.sender.offer(self.now_ns, item);
     }
 }
 

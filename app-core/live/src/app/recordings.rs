@@ -9,11 +9,12 @@ use super::recorder::Recorder;
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
 use app_scene::frame::FrameInput;
-use app_session::recording::{Ending, Limits, LiveFrame, Take};
+use app_scene::scene::Scene;
+use app_session::recording::{Ending, Limits, LiveFrame, RecordingJob};
 
 impl App {
-    /// A person wishes it, or no longer.
-    pub(super) fn wish_recording(&mut self, is_on: bool) {
+    /// A person wants it, or no longer.
+    pub(super) fn want_recording(&mut self, is_on: bool) {
         let is_short = self
             .platform
             .free_bytes
@@ -25,7 +26,7 @@ impl App {
     }
 
     /// Begins a recording that is wanted, or ends one that is not: its queue is closed with that. The one that began.
-    pub(super) fn follow_recording(&mut self, is_wanted: bool) -> Option<Box<Take>> {
+    pub(super) fn follow_recording(&mut self, is_wanted: bool) -> Option<Box<RecordingJob>> {
         if !is_wanted {
             self.recorder = None;
             return None;
@@ -34,9 +35,9 @@ impl App {
             return None;
         };
         self.n_recordings += 1;
-        let (recorder, take) = Recorder::begin(self.n_recordings, place.scene.clone(), latest);
+        let (recorder, job) = Recorder::begin(self.n_recordings, Scene::clone(&place.scene), latest);
         self.recorder = Some(recorder);
-        Some(Box::new(take))
+        Some(Box::new(job))
     }
 
     /// A frame as the platform gave it, in the world in which the toy was placed: what an alignment takes.
@@ -97,7 +98,7 @@ impl App {
 
     /// A recording has ended; another may have begun since.
     pub(super) fn recorded(&mut self, recorded: Recorded) {
-        let number = recorded.taken.number;
+        let number = recorded.outcome.number;
         if self
             .recorder
             .as_ref()
@@ -108,7 +109,7 @@ impl App {
         }
         self.note(&recorded);
         self.tell(
-            if recorded.taken.n_frames == 0 && recorded.taken.ending == Ending::Asked {
+            if recorded.outcome.n_frames == 0 && recorded.outcome.ending == Ending::Asked {
                 Notice::NothingRecorded
             } else {
                 Notice::Recorded(recorded)

@@ -1,5 +1,7 @@
 //! What is to be drawn.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use app_scene::camera_frame::{CameraFrame, Display};
@@ -18,10 +20,8 @@ pub enum Show<'a> {
     Camera(&'a CameraFrame),
     /// The toy in motion, as far as the effect is shown.
     Toy {
-        /// The scene.
-        scene: &'a Scene,
-        /// Another number is another scene.
-        version: u64,
+        /// The scene: another one is another allocation.
+        scene: &'a Arc<Scene>,
         /// For [`Core::frame`](crate::Core::frame).
         input: Box<FrameInput>,
         /// How the picture lies on the screen.
@@ -40,7 +40,6 @@ impl App {
         match (&self.place, self.input(effect)) {
             (Some(place), Some(input)) if self.step == Step::Play && effect > 0.0 => Show::Toy {
                 scene: &place.scene,
-                version: place.version,
                 input: Box::new(place.corrected(input)),
                 display: latest.display,
             },

@@ -1,15 +1,15 @@
 //! The start under way: whether it is a good one, whether its device is, and which preset that leaves.
 
 use super::App;
-use super::event::ShellCommand;
+use super::event::{ShellCommand, WorkCommand};
 use super::notice::Notice;
-use super::starts::{N_GOOD_FRAMES, Simplified, Starts};
+use super::launch_history::{LaunchHistory, N_GOOD_FRAMES, Simplified};
 use app_pipeline::preset::Preset;
 
 /// The start under way.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    starts: Starts,
+    history: LaunchHistory,
     /// Whether it counts as unfinished, as it stands.
     is_counted: bool,
     n_good_frames: u32,
@@ -20,13 +20,13 @@ pub(super) struct Start {
 }
 
 impl Start {
-    fn remember(&self) -> ShellCommand {
-        ShellCommand::Remember(self.starts.text())
+    fn remember(&self) -> WorkCommand {
+        WorkCommand::Remember(self.history.text())
     }
 
     fn simplified(&self) -> Option<Simplified> {
         let refused = self.refused.clone().map(Simplified::SelfTest);
-        refused.or(self.starts.is_simple.then_some(Simplified::Starts))
+        refused.or(self.history.is_simple.then_some(Simplified::FailedLaunches))
     }
 }
 
@@ -47,14 +47,14 @@ impl App {
     #[must_use]
     pub fn wants_self_test(&self, device: &str) -> bool {
         let is_wanted = |start: &Start| {
-            start.simplified().is_none() && start.starts.passed.as_deref() != Some(&one_line(device))
+            start.simplified().is_none() && start.history.passed.as_deref() != Some(&one_line(device))
         };
         self.start.as_ref().is_some_and(is_wanted)
     }
 
-    pub(super) fn started(&mut self, starts: Starts) {
+    pub(super) fn started(&mut self, history: LaunchHistory) {
         self.start = Some(Start {
-            starts,
+            history,
             is_counted: true,
             n_good_frames: 0,
             refused: None,
@@ -63,36 +63,33 @@ impl App {
         self.tell_simplified();
     }
 
-    pub(super) fn self_tested(
-        &mut self,
-        device: &str,
-        outcome: Result<(), String>,
-        commands: &mut Vec<ShellCommand>,
-    ) {
+    /// Whether a device, named with its driver, has drawn its test picture as it should, or what is wrong; what is to be done.
+    pub fn self_tested(&mut self, device: &str, outcome: Result<(), String>) -> Option<WorkCommand> {
         self.note(&("self-test", device, &outcome));
-        let Some(start) = &mut self.start else { return };
+        let start = self.start.as_mut()?;
         start.device = Some(one_line(device));
         match outcome {
             Ok(()) => {
-                start.starts.passed.clone_from(&start.device);
-                commands.push(start.remember());
+                start.history.passed.clone_from(&start.device);
+                Some(start.remember())
             }
             Err(reason) => {
                 start.refused = Some(reason);
                 self.tell_simplified();
+                None
             }
         }
     }
 
-    /// A picture of the moving toy was drawn.
-    pub(super) fn drawn(&mut self, commands: &mut Vec<ShellCommand>) {
-        let Some(start) = &mut self.start else { return };
+    /// A picture of the moving toy was drawn; what is to be done.
+    pub fn drawn(&mut self) -> Option<WorkCommand> {
+        let start = self.start.as_mut()?;
         start.n_good_frames = start.n_good_frames.saturating_add(1);
-        if start.n_good_frames == N_GOOD_FRAMES {
+        (start.n_good_frames == N_GOOD_FRAMES).then(|| {
             start.is_counted = false;
-            start.starts.n_unfinished = 0;
-            commands.push(start.remember());
-        }
+            start.history.n_unfinished = 0;
+            start.remember()
+        })
     }
 
     /// An app that has left the front may be ended there without having failed.
@@ -102,12 +99,12 @@ impl App {
             return;
         }
         start.is_counted = is_foreground;
-        start.starts.n_unfinished = if is_foreground {
-            start.starts.n_unfinished.saturating_add(1)
+        start.history.n_unfinished = if is_foreground {
+            start.history.n_unfinished.saturating_add(1)
         } else {
-            start.starts.n_unfinished.saturating_sub(1)
+            start.history.n_unfinished.saturating_sub(1)
         };
-        commands.push(start.remember());
+        commands.push(start.remember().into());
     }
 
     /// A person wants the preset back: what is wrong with the device is taken for nothing.
@@ -116,15 +113,15 @@ impl App {
         if start.simplified().is_none() {
             return;
         }
-        start.starts.is_simple = false;
+        start.history.is_simple = false;
         if start.refused.take().is_some() {
-            start.starts.passed.clone_from(&start.device);
+            start.history.passed.clone_from(&start.device);
         }
         // It is the other preset that has to prove itself now.
         start.n_good_frames = 0;
         start.is_counted = true;
-        start.starts.n_unfinished = start.starts.n_unfinished.max(1);
-        commands.push(start.remember());
+        start.history.n_unfinished = start.history.n_unfinished.max(1);
+        commands.push(start.remember().into());
     }
 
     fn tell_simplified(&mut self) {

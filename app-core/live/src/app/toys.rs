@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::App;
-use super::event::ShellCommand;
+use super::event::{ShellCommand, WorkCommand};
 use super::ghost_shape::GhostShape;
 use super::notice::Notice;
 use super::playback::Playback;
@@ -21,7 +21,7 @@ impl App {
     pub(super) fn choose_toy(&mut self, chosen: Option<usize>, commands: &mut Vec<ShellCommand>) {
         let files = self.toy_files.take().unwrap_or_default();
         let file = chosen.and_then(|chosen| files.into_iter().nth(chosen));
-        commands.extend(file.map(ShellCommand::ReadToy));
+        commands.extend(file.map(|file| WorkCommand::ReadToy(file).into()));
     }
 
     /// A toy of the person's own; what was photographed of the place stays.

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::parts::{lead, other};
 use super::{style, text};
-use crate::app::{App, CheckInk, PhoneQuestion, Wish};
+use crate::app::{App, CheckInk, PhoneQuestion, UserAction};
 
 /// Side of a patch, in points.
 const PATCH_POINTS: f32 = 64.0;
@@ -21,7 +21,7 @@ const N_CELLS: u16 = 10;
 const CELL_POINTS: [f32; 2] = [64.0, 18.0];
 
 /// The question, its number, and what can be answered.
-pub(super) fn sheet(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+pub(super) fn sheet(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let Some((question, number)) = app.phone_question() else {
         return;
     };
@@ -29,14 +29,14 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
     ui.label(RichText::new(title).small().color(style::MUTED));
     ui.label(text::of_question(question));
     if lead(ui, text::YES) {
-        wishes.push(Wish::Answer(true));
+        actions.push(UserAction::Answer(true));
     }
     ui.horizontal_wrapped(|ui| {
         if other(ui, text::NO) {
-            wishes.push(Wish::Answer(false));
+            actions.push(UserAction::Answer(false));
         }
         if other(ui, text::STOP) {
-            wishes.push(Wish::CheckPhone(false));
+            actions.push(UserAction::CheckPhone(false));
         }
     });
 }

@@ -1,6 +1,6 @@
 //! The app's interface: screens for touch over the camera's picture, drawn by egui, the same on phones and on a desktop.
 //!
-//! It reads the [`App`] and returns what the person wishes; it keeps nothing but where fingers are and which menu is open.
+//! It reads the [`App`] and returns what the person does; it keeps nothing but where fingers are and which menu is open.
 //! Sizes are in points of the platform, and nothing to be touched is lower than 44 of them.
 
 mod check;
@@ -15,7 +15,7 @@ mod text;
 
 use egui::{CentralPanel, Context, Frame};
 
-use crate::app::{App, Step, Wish};
+use crate::app::{App, Step, UserAction};
 
 pub use input::{Insets, Screen, Touch, TouchPhase};
 pub(crate) use painter::Painter;
@@ -94,20 +94,20 @@ impl Interface {
         self.touches.wheel(steps);
     }
 
-    /// One picture of the interface at `time_s`, which goes on from call to call, and what the person wishes.
+    /// One picture of the interface at `time_s`, which goes on from call to call, and what the person does.
     pub(crate) fn run(
         &mut self,
         app: &App,
         screen: &Screen,
         time_s: f64,
         profile: &str,
-    ) -> (Vec<Wish>, Painting) {
-        let (wishes, shapes, pixels_per_point) = self.laid_out(app, screen, time_s, profile);
+    ) -> (Vec<UserAction>, Painting) {
+        let (actions, shapes, pixels_per_point) = self.laid_out(app, screen, time_s, profile);
         let painting = Painting {
             primitives: self.context.tessellate(shapes, pixels_per_point),
             pixels_per_point,
         };
-        (wishes, painting)
+        (actions, painting)
     }
 
     /// What changed of the textures since this was asked for.
@@ -115,8 +115,8 @@ impl Interface {
         std::mem::take(&mut self.textures)
     }
 
-    /// What the person wishes, without a picture.
-    pub fn wishes(&mut self, app: &App, screen: &Screen) -> Vec<Wish> {
+    /// What the person does, without a picture.
+    pub fn actions(&mut self, app: &App, screen: &Screen) -> Vec<UserAction> {
         self.time_s += 0.1;
         self.laid_out(app, screen, self.time_s, "").0
     }
@@ -127,9 +127,9 @@ impl Interface {
         screen: &Screen,
         time_s: f64,
         profile: &str,
-    ) -> (Vec<Wish>, Vec<egui::epaint::ClippedShape>, f32) {
+    ) -> (Vec<UserAction>, Vec<egui::epaint::ClippedShape>, f32) {
         self.time_s = time_s;
-        let mut wishes = Vec::new();
+        let mut actions = Vec::new();
         let wheel_steps = self.touches.take_wheel();
         let input = self.touches.input(screen, time_s);
         let is_menu_open = &mut self.is_menu_open;
@@ -138,17 +138,17 @@ impl Interface {
         }
         let output = self.context.run_ui(input, |ui| {
             CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-                picture::show(ui, app, screen, wheel_steps, &mut wishes);
+                picture::show(ui, app, screen, wheel_steps, &mut actions);
                 let notice = screens::notice(ui, app);
                 if app.shows_profile() {
                     screens::profile(ui, profile, notice);
                 }
-                screens::sheet(ui, app, is_menu_open, &mut wishes);
+                screens::sheet(ui, app, is_menu_open, &mut actions);
             });
         });
         self.widgets = widgets(&output.platform_output, output.pixels_per_point);
         self.textures.add(output.textures_delta);
-        (wishes, output.shapes, output.pixels_per_point)
+        (actions, output.shapes, output.pixels_per_point)
     }
 
     /// What a screen reader finds in the latest picture.

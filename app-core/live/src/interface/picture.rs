@@ -5,12 +5,12 @@ use glam::{DAffine2, DVec2};
 
 use super::input::{Screen, narrowed};
 use super::{check, style};
-use crate::app::{App, Step, Wish};
+use crate::app::{App, Step, UserAction};
 
 /// What one step of a mouse's wheel turns, in radians.
 const WHEEL_RAD: f64 = 0.05;
 
-pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, wishes: &mut Vec<Wish>) {
+pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, actions: &mut Vec<UserAction>) {
     let Some((picture_px, display)) = app.picture() else {
         return;
     };
@@ -25,18 +25,18 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, wi
     let fingers = ui.ctx().multi_touch();
     if let Some(fingers) = fingers {
         // Screens have y downwards: a turn to the right is a negative one, seen from above.
-        wishes.push(Wish::Twist(-f64::from(fingers.rotation_delta)));
+        actions.push(UserAction::Twist(-f64::from(fingers.rotation_delta)));
     } else if response.clicked() {
-        wishes.extend(response.interact_pointer_pos().map(|at| Wish::Tap(pixel(at))));
+        actions.extend(response.interact_pointer_pos().map(|at| UserAction::Tap(pixel(at))));
     } else if response.dragged() {
         let delta = response.drag_delta();
-        wishes.extend(response.interact_pointer_pos().map(|at| Wish::Drag {
+        actions.extend(response.interact_pointer_pos().map(|at| UserAction::Drag {
             from_px: pixel(at - delta),
             to_px: pixel(at),
         }));
     }
     if wheel_steps != 0.0 {
-        wishes.push(Wish::Twist(wheel_steps * WHEEL_RAD));
+        actions.push(UserAction::Twist(wheel_steps * WHEEL_RAD));
     }
     if matches!(app.step(), Step::PlaceToy | Step::Align) {
         ghost(ui, app, &picture_from_screen, units);

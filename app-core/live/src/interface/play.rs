@@ -4,9 +4,9 @@ use egui::{ComboBox, Slider, Ui};
 
 use super::parts::other;
 use super::{style, text};
-use crate::app::{App, Wish};
+use crate::app::{App, UserAction};
 
-pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut Vec<Wish>) {
+pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
     if let Some(verdict) = app.verdict() {
         let words = egui::RichText::new(text::of_verdict(verdict));
         ui.label(words.small().color(style::MUTED));
@@ -17,10 +17,10 @@ pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut
     if app.is_recording() {
         ui.label(egui::RichText::new(text::RECORDING).small());
     }
-    clip(ui, app, wishes);
+    clip(ui, app, actions);
     ui.horizontal_wrapped(|ui| {
         if other(ui, text::PHOTO) {
-            wishes.push(Wish::SavePhoto);
+            actions.push(UserAction::SavePhoto);
         }
         let video = if app.is_making_video() {
             text::END_VIDEO
@@ -28,18 +28,18 @@ pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut
             text::VIDEO
         };
         if other(ui, video) {
-            wishes.push(Wish::Video(!app.is_making_video()));
+            actions.push(UserAction::Video(!app.is_making_video()));
         }
         if other(ui, if *is_menu_open { text::LESS } else { text::MORE }) {
             *is_menu_open = !*is_menu_open;
         }
     });
     if *is_menu_open {
-        menu(ui, app, wishes);
+        menu(ui, app, actions);
     }
 }
 
-fn clip(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let playback = app.playback();
     let names = app.toy().clip_names();
     if !names.is_empty() {
@@ -52,11 +52,11 @@ fn clip(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
                     .selectable_label(playback.clip().is_none(), text::AUTHORED)
                     .clicked()
                 {
-                    wishes.push(Wish::Choose(None));
+                    actions.push(UserAction::Choose(None));
                 }
                 for (id, name) in app.toy().clip_ids().zip(&names) {
                     if ui.selectable_label(playback.clip() == Some(id), name).clicked() {
-                        wishes.push(Wish::Choose(Some(id)));
+                        actions.push(UserAction::Choose(Some(id)));
                     }
                 }
             });
@@ -71,7 +71,7 @@ fn clip(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
             text::PLAY
         };
         if other(ui, label) {
-            wishes.push(Wish::Play(!playback.is_playing()));
+            actions.push(UserAction::Play(!playback.is_playing()));
         }
         let mut time_s = playback.time_s();
         ui.spacing_mut().slider_width = (ui.available_width() - 12.0).max(60.0);
@@ -79,12 +79,12 @@ fn clip(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
         let response = ui.add(slider);
         response.widget_info(|| egui::WidgetInfo::slider(true, playback.time_s(), text::TIME));
         if response.changed() {
-            wishes.extend([Wish::Play(false), Wish::Scrub(time_s)]);
+            actions.extend([UserAction::Play(false), UserAction::Scrub(time_s)]);
         }
     });
 }
 
-fn menu(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+fn menu(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let is_recording = app.is_recording();
     let record = if is_recording {
         text::END_RECORD
@@ -92,20 +92,20 @@ fn menu(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
         text::RECORD
     };
     let entries = [
-        (record, Wish::Record(!is_recording)),
-        (text::PROFILE, Wish::ShowProfile(!app.shows_profile())),
-        (text::CHECK, Wish::CheckPhone(true)),
-        (text::REPLACE, Wish::Replace),
-        (text::RETAKE, Wish::RetakePlate),
-        (text::PICK_TOY, Wish::PickToy),
-        (text::SHARE, Wish::Share),
-        (text::START_OVER, Wish::StartOver),
+        (record, UserAction::Record(!is_recording)),
+        (text::PROFILE, UserAction::ShowProfile(!app.shows_profile())),
+        (text::CHECK, UserAction::CheckPhone(true)),
+        (text::REPLACE, UserAction::Replace),
+        (text::RETAKE, UserAction::RetakePlate),
+        (text::PICK_TOY, UserAction::PickToy),
+        (text::SHARE, UserAction::Share),
+        (text::START_OVER, UserAction::StartOver),
     ];
     ui.horizontal_wrapped(|ui| {
-        let restore = app.simplified().map(|_| (text::RESTORE, Wish::RestorePreset));
-        for (label, wish) in entries.into_iter().chain(restore) {
+        let restore = app.simplified().map(|_| (text::RESTORE, UserAction::RestorePreset));
+        for (label, action) in entries.into_iter().chain(restore) {
             if other(ui, label) {
-                wishes.push(wish);
+                actions.push(action);
             }
         }
     });

@@ -4,10 +4,10 @@ use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui,
 
 use super::parts::{lead, other, words};
 use super::{check, play, style, text};
-use crate::app::{App, Obstacle, Step, Wish};
+use crate::app::{App, Obstacle, Step, UserAction};
 
 /// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
-pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mut Vec<Wish>) {
+pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
     let area = ui.ctx().content_rect();
     let (align, offset, width) = if let Some(width) = width_at_right(area) {
         (Align2::RIGHT_CENTER, vec2(-12.0, 0.0), width)
@@ -28,29 +28,29 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, wishes: &mu
                     .max_height(tallest)
                     .min_scrolled_height(tallest);
                 scrolled.show(ui, |ui| match app.obstacle() {
-                    Some(obstacle) => in_the_way(ui, app, obstacle, wishes),
-                    None if app.phone_question().is_some() => check::sheet(ui, app, wishes),
-                    None if app.toy_files().is_some() => toys(ui, app, wishes),
-                    None if app.step() == Step::Play => play::show(ui, app, is_menu_open, wishes),
-                    None => step(ui, app, wishes),
+                    Some(obstacle) => in_the_way(ui, app, obstacle, actions),
+                    None if app.phone_question().is_some() => check::sheet(ui, app, actions),
+                    None if app.toy_files().is_some() => toys(ui, app, actions),
+                    None if app.step() == Step::Play => play::show(ui, app, is_menu_open, actions),
+                    None => step(ui, app, actions),
                 });
             });
         });
 }
 
-fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let (title, hint) = text::of_step(app);
     words(ui, title, &hint);
     match app.step() {
         Step::Welcome => {
             if lead(ui, text::BEGIN) {
-                wishes.push(Wish::Begin);
+                actions.push(UserAction::Begin);
             }
         }
         Step::TakePlate => {
             plate_step(ui, app);
             if other(ui, text::SKIP_PLATE) {
-                wishes.push(Wish::SkipPlate);
+                actions.push(UserAction::SkipPlate);
             }
         }
         Step::PlaceToy if app.is_taking_lens() => {
@@ -58,27 +58,27 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
         }
         Step::PlaceToy => {
             if lead(ui, text::PLACED) {
-                wishes.push(Wish::Placed);
+                actions.push(UserAction::Placed);
             }
             if app.sees_card() && other(ui, text::TAKE_LENS) {
-                wishes.push(Wish::TakeLens);
+                actions.push(UserAction::TakeLens);
             }
             if other(ui, text::PICK_TOY) {
-                wishes.push(Wish::PickToy);
+                actions.push(UserAction::PickToy);
             }
             if other(ui, text::START_OVER) {
-                wishes.push(Wish::StartOver);
+                actions.push(UserAction::StartOver);
             }
         }
         Step::Align => {
             ui.spinner();
             if other(ui, text::BACK) {
-                wishes.push(Wish::Replace);
+                actions.push(UserAction::Replace);
             }
         }
         Step::FindTable => {
             if other(ui, text::CHECK) {
-                wishes.push(Wish::CheckPhone(true));
+                actions.push(UserAction::CheckPhone(true));
             }
         }
         Step::Play => {}
@@ -86,15 +86,15 @@ fn step(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
 }
 
 /// Toys to choose from.
-fn toys(ui: &mut Ui, app: &App, wishes: &mut Vec<Wish>) {
+fn toys(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     words(ui, text::PICK_TOY, text::WHERE_TOYS_ARE);
     for (index, name) in app.toy_files().unwrap_or_default().iter().enumerate() {
         if other(ui, name) {
-            wishes.push(Wish::ChooseToy(Some(index)));
+            actions.push(UserAction::ChooseToy(Some(index)));
         }
     }
     if other(ui, text::BACK) {
-        wishes.push(Wish::ChooseToy(None));
+        actions.push(UserAction::ChooseToy(None));
     }
 }
 
@@ -105,19 +105,19 @@ fn plate_step(ui: &mut Ui, app: &App) {
     ui.label(help);
 }
 
-fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, wishes: &mut Vec<Wish>) {
+fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<UserAction>) {
     let (title, hint) = text::of_obstacle(obstacle);
     words(ui, title, hint);
     let way_back = match obstacle {
-        Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(Wish::Begin),
-        Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(Wish::OpenSettings),
-        Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(Wish::StartOver),
+        Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(UserAction::Begin),
+        Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(UserAction::OpenSettings),
+        Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(UserAction::StartOver),
         Obstacle::Tracking(_) if app.step() > Step::FindTable => {
-            other(ui, text::START_OVER).then_some(Wish::StartOver)
+            other(ui, text::START_OVER).then_some(UserAction::StartOver)
         }
         _ => None,
     };
-    wishes.extend(way_back);
+    actions.extend(way_back);
 }
 
 /// Width of a sheet that stands at the right, on a wide screen.

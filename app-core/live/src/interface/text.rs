@@ -7,7 +7,7 @@ use crate::app::{
 use app_pipeline::core::CoreError;
 use app_pipeline::gpu::GpuError;
 use app_scene::camera_frame::Tracking;
-use app_session::recording::{Ending, Taken};
+use app_session::recording::{Ending, RecordingOutcome};
 
 /// What a person is about to do, and how.
 pub(super) fn of_step(app: &App) -> (&'static str, String) {
@@ -142,7 +142,7 @@ pub const CLOSED: &str = "The app was closed: something went wrong again and aga
 /// Why the shadow is the simplest.
 pub(super) fn of_simplified(simplified: &Simplified) -> String {
     match simplified {
-        Simplified::Starts => {
+        Simplified::FailedLaunches => {
             "The app ended unexpectedly, so it uses a simple shadow. The full one is in the menu.".to_owned()
         }
         Simplified::SelfTest(reason) => {
@@ -154,12 +154,12 @@ pub(super) fn of_simplified(simplified: &Simplified) -> String {
 }
 
 fn of_recorded(recorded: &Recorded) -> String {
-    let Taken {
+    let RecordingOutcome {
         n_frames,
         n_dropped,
         ending,
         ..
-    } = &recorded.taken;
+    } = &recorded.outcome;
     let why = match ending {
         Ending::Asked => String::new(),
         Ending::NoRoom => "There is no room left. ".to_owned(),

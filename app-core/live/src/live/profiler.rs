@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use app_pipeline::core::{Core, CoreError};
 use app_pipeline::frame::{Clock, FrameReport, PassTime};
-use app_pipeline::governor::{Governor, Heat};
+use app_pipeline::governor::{Governor, Thermal};
 use app_pipeline::profile::{About, Args, Frame, Profile};
 use app_scene::camera_frame::CameraFrame;
 use app_scene::frame::FrameInput;
@@ -47,7 +47,7 @@ struct Latest {
 }
 
 impl Profiler {
-    pub(super) fn time_by(&mut self, clock: Clock, core: &mut Core) {
+    pub(super) fn set_clock(&mut self, clock: Clock, core: &mut Core) {
         core.time_stages(Some(clock.clone()));
         self.clock = Some(clock);
     }
@@ -176,10 +176,10 @@ impl Profiler {
 }
 
 /// What a frame's scope has of heat and settings.
-pub(super) fn args(heat: Heat, governor: Option<&Governor>) -> Args {
+pub(super) fn args(thermal: Thermal, governor: Option<&Governor>) -> Args {
     let turned_down = governor.iter().flat_map(|governor| governor.turned_down());
     Args {
-        heat: Some(format!("{heat:?}")),
+        heat: Some(format!("{thermal:?}")),
         turned_down: turned_down.map(|step| step.what.to_owned()).collect(),
         ..Args::default()
     }

@@ -224,11 +224,12 @@ impl Core {
         Ok(())
     }
 
-    /// Takes a scene; what was learned of another is forgotten.
+    /// Takes a scene; what was learned of the one before is forgotten.
     ///
     /// # Errors
     /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
-    pub fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
+    pub fn set_scene(&mut self, scene: impl Into<Arc<Scene>>, preset: Preset) -> Result<(), CoreError> {
+        let scene = scene.into();
         scene.check()?;
         self.check_sides([scene.width_px, scene.height_px])?;
         for plate in &scene.plates {

@@ -12,7 +12,7 @@
 //!   anything: a step down where one in five of [`LATE_WINDOW`] is late, two where half of them are. A step up is a trial,
 //!   after [`BLIND_UP_FRAMES`] frames of which hardly one was late.
 //! - **Heat** narrows what a frame may take at once, and widens it only after [`COOL_FRAMES`] frames; there is no step up
-//!   above [`Heat::Fair`].
+//!   above [`Thermal::Fair`].
 //!
 //! From a sudden load of twice the time it is back within 40 frames, whether steps bring half or one and a half times of
 //! what is expected; without device times after a window of late frames for each step or two. Back at its best it is after
@@ -56,7 +56,7 @@ const GAINS: [f64; 2] = [0.4, 0.98];
 
 /// How warm a phone says that it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Heat {
+pub enum Thermal {
     /// As it should be.
     #[default]
     Nominal,
@@ -68,7 +68,7 @@ pub enum Heat {
     Critical,
 }
 
-impl Heat {
+impl Thermal {
     /// Part of a frame's time that may be used.
     fn part(self) -> f64 {
         match self {
@@ -88,7 +88,7 @@ pub struct Measured {
     /// Time since the frame before was shown.
     pub interval_ms: f64,
     /// How warm the phone is.
-    pub heat: Heat,
+    pub thermal: Thermal,
 }
 
 /// Steps that were taken.
@@ -121,7 +121,7 @@ pub struct Governor {
     is_trial: bool,
     /// Median load before the latest change, and the level then.
     before: Option<(usize, f64)>,
-    heat: Heat,
+    thermal: Thermal,
     cooler_frames: u32,
 }
 
@@ -141,7 +141,7 @@ impl Governor {
             low_frames: 0,
             is_trial: false,
             before: None,
-            heat: Heat::Nominal,
+            thermal: Thermal::Nominal,
             cooler_frames: 0,
         }
     }
@@ -171,7 +171,7 @@ impl Governor {
 
     /// Takes what is known of a frame; tells where it goes another way from the next frame on.
     pub fn take(&mut self, frame: &Measured) -> Option<Turned> {
-        self.feel(frame.heat);
+        self.feel(frame.thermal);
         self.age = self.age.saturating_add(1);
         if self.age <= SETTLE_FRAMES {
             return None;
@@ -179,7 +179,7 @@ impl Governor {
         let budget_ms = 1e3 / f64::from(self.frames_per_second());
         let to = match frame.gpu_ms {
             Some(gpu_ms) if gpu_ms.is_finite() => {
-                self.loads.push(gpu_ms / (budget_ms * self.heat.part()));
+                self.loads.push(gpu_ms / (budget_ms * self.thermal.part()));
                 self.by_load()
             }
             _ => {
@@ -192,14 +192,14 @@ impl Governor {
     }
 
     /// Follows the heat: up at once, down when it has lasted.
-    fn feel(&mut self, heat: Heat) {
-        if heat >= self.heat {
+    fn feel(&mut self, thermal: Thermal) {
+        if thermal >= self.thermal {
             self.cooler_frames = 0;
         } else {
             self.cooler_frames += 1;
         }
-        if heat > self.heat || self.cooler_frames >= COOL_FRAMES {
-            self.heat = heat;
+        if thermal > self.thermal || self.cooler_frames >= COOL_FRAMES {
+            self.thermal = thermal;
             self.cooler_frames = 0;
             // Loads so far are over another time.
             self.loads.clear();
@@ -214,7 +214,7 @@ impl Governor {
             return Some(self.down_to(load));
         }
         let above = self.level.checked_sub(1)?;
-        let is_low = load / self.gains[above] <= AIM && self.heat <= Heat::Fair;
+        let is_low = load / self.gains[above] <= AIM && self.thermal <= Thermal::Fair;
         self.low_frames = if is_low { self.low_frames + 1 } else { 0 };
         (self.low_frames >= self.waits[above].max(UP_FRAMES)).then_some(above)
     }
@@ -262,7 +262,7 @@ impl Governor {
             return Some((self.level + n_steps).min(self.front.len()));
         }
         let above = self.level.checked_sub(1)?;
-        let is_low = late <= FEW_LATE && self.heat <= Heat::Fair;
+        let is_low = late <= FEW_LATE && self.thermal <= Thermal::Fair;
         self.low_frames = if is_low { self.low_frames + 1 } else { 0 };
         (self.low_frames >= self.waits[above].max(BLIND_UP_FRAMES)).then_some(above)
     }
@@ -270,7 +270,7 @@ impl Governor {
     /// Whether so few steps are taken that a phone this warm would not cool down by them, as far as they say themselves.
     fn is_too_warm(&self) -> bool {
         let taken: f64 = self.front[..self.level].iter().map(|step| step.gain).product();
-        taken > self.heat.part()
+        taken > self.thermal.part()
     }
 
     fn go(&mut self, to: usize) -> Turned {

@@ -49,7 +49,7 @@ use supported::{Lights, Receivers};
 
 /// A scene on the device.
 pub(crate) struct Stage {
-    scene: Scene,
+    scene: Arc<Scene>,
     preset: Preset,
     receivers: Vec<AnchoredReceiver>,
     /// Indices of `receivers` in the scene's list.
@@ -126,7 +126,7 @@ fn simplified(toy: &Toy, preset: Preset) -> &[Caster] {
 impl Stage {
     pub(crate) fn new(
         gpu: &Gpu,
-        scene: Scene,
+        scene: Arc<Scene>,
         preset: Preset,
         toy_in_object: &toy::Bounds,
     ) -> Result<Self, ToyError> {

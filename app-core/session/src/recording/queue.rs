@@ -88,32 +88,32 @@ impl Counts {
 
 /// A queue of at most `n_items` items and `max_bytes` bytes.
 #[must_use]
-pub fn queue(n_items: usize, max_bytes: u64) -> (Inlet, Outlet) {
+pub fn queue(n_items: usize, max_bytes: u64) -> (RecordingSender, RecordingReceiver) {
     let (sender, receiver) = sync_channel(n_items);
     let counts = Arc::new(Counts::default());
-    let inlet = Inlet {
+    let sender = RecordingSender {
         sender,
         counts: Arc::clone(&counts),
         max_bytes,
     };
-    let outlet = Outlet {
+    let receiver = RecordingReceiver {
         receiver,
         counts,
         n_told: 0,
         encoder: None,
     };
-    (inlet, outlet)
+    (sender, receiver)
 }
 
 /// Where items are put in.
 #[derive(Clone, Debug)]
-pub struct Inlet {
+pub struct RecordingSender {
     sender: SyncSender<(u64, Item)>,
     counts: Arc<Counts>,
     max_bytes: u64,
 }
 
-impl Inlet {
+impl RecordingSender {
     /// Puts an item in, or hands it back at once where there is no room or nobody writes any more: it counts as dropped.
     /// Never waits.
     ///
@@ -163,7 +163,7 @@ struct LiveEncoder {
 
 /// Where items are taken out.
 #[derive(Debug)]
-pub struct Outlet {
+pub struct RecordingReceiver {
     receiver: Receiver<(u64, Item)>,
     counts: Arc<Counts>,
     /// Of the items dropped, those that the recording knows of.
@@ -172,7 +172,7 @@ pub struct Outlet {
     encoder: Option<LiveEncoder>,
 }
 
-impl Outlet {
+impl RecordingReceiver {
     /// Takes live frames, too, which show clips of `toy`.
     pub(super) fn take_live_frames(&mut self, codec: PictureCodec, toy: Arc<Toy>) {
         self.encoder = Some(LiveEncoder {
@@ -195,7 +195,7 @@ impl Outlet {
     }
 
     /// Waits for the next item and writes it; items that were dropped meanwhile are told on [`Topic::Events`]. None once
-    /// all inlets are gone and nothing waits.
+    /// all senders are gone and nothing waits.
     pub fn write_next<W: Write>(&mut self, writer: &mut Writer<W>) -> Option<Result<Flushed, WriteError>> {
         let (time_ns, item) = self.receiver.recv().ok()?;
         self.counts

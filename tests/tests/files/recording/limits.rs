@@ -165,11 +165,11 @@ impl Write for Slow {
 #[test]
 fn a_frame_never_waits_for_a_writer_that_does_and_drops_are_told() {
     let (go_on, wait) = mpsc::channel();
-    let (inlet, mut outlet) = queue(8, 100_000);
+    let (sender, mut receiver) = queue(8, 100_000);
     let (done, is_done) = mpsc::channel();
     thread::spawn(move || {
         let mut writer = writer(Slow(wait), Limits::default());
-        while let Some(written) = outlet.write_next(&mut writer) {
+        while let Some(written) = receiver.write_next(&mut writer) {
             written.unwrap();
         }
         done.send(writer.flush().unwrap()).unwrap();
@@ -179,33 +179,33 @@ fn a_frame_never_waits_for_a_writer_that_does_and_drops_are_told() {
             picture: picture(number),
             entry: entry(number).to_string(),
         };
-        inlet.offer(time_ns(number), item).is_ok()
+        sender.offer(time_ns(number), item).is_ok()
     };
     // The sink stands still: this would never end if a frame waited.
     let n_taken = (0..40).filter(|number| offer(*number)).count();
     assert!((1..=9).contains(&n_taken), "{n_taken}");
-    assert_eq!(inlet.n_dropped(), 40 - n_taken as u64);
+    assert_eq!(sender.n_dropped(), 40 - n_taken as u64);
     // More than the bytes that may wait, whatever the number of items.
     let huge = Item::File {
         path: "huge".to_owned(),
         bytes: vec![0; 200_000],
     };
-    assert!(inlet.offer(0, huge).is_err());
+    assert!(sender.offer(0, huge).is_err());
     drop(go_on);
-    drop(inlet);
+    drop(sender);
     let flushed = is_done.recv_timeout(Duration::from_secs(60)).unwrap();
     assert_eq!(flushed.n_frames as usize, n_taken);
 }
 
 #[test]
 fn drops_stand_in_the_recording() {
-    let (inlet, mut outlet) = queue(1, u64::MAX);
+    let (sender, mut receiver) = queue(1, u64::MAX);
     let tick = || Item::Tick { free_bytes: None };
-    assert!(inlet.offer(0, tick()).is_ok());
-    assert!(inlet.offer(1, tick()).is_err() && inlet.offer(2, tick()).is_err());
-    drop(inlet);
+    assert!(sender.offer(0, tick()).is_ok());
+    assert!(sender.offer(1, tick()).is_err() && sender.offer(2, tick()).is_err());
+    drop(sender);
     let mut writer = writer(Vec::new(), Limits::default());
-    while let Some(written) = outlet.write_next(&mut writer) {
+    while let Some(written) = receiver.write_next(&mut writer) {
         written.unwrap();
     }
     let recording = open(&writer.finish().unwrap().0).unwrap();

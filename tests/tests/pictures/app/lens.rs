@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
-use app_core::app::{App, Device, LensFailure, Notice, Permission, ShellCommand, ShellEvent, Step, Wish};
+use app_core::app::{App, GraphicsState, LensFailure, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
 use app_core::camera_frame::CameraFrame;
 use app_core::card::{card_from_lens, lens_shape};
 use app_core::scene::Probe;
@@ -82,15 +82,15 @@ impl Person {
         person.feed.hides_planes = true;
         for event in [
             ShellEvent::Foreground(true),
-            ShellEvent::Device(Device::Ready),
+            ShellEvent::Graphics(GraphicsState::Ready),
             ShellEvent::Permission(Permission::Granted),
-            ShellEvent::Wish(Wish::Begin),
+            ShellEvent::User(UserAction::Begin),
         ] {
             person.tell(event);
         }
         person.frames(2);
-        person.tell(ShellEvent::Wish(Wish::Tap(BESIDE_TOY_PX)));
-        person.tell(ShellEvent::Wish(Wish::SkipPlate));
+        person.tell(ShellEvent::User(UserAction::Tap(BESIDE_TOY_PX)));
+        person.tell(ShellEvent::User(UserAction::SkipPlate));
         person.feed.is_toy_there = true;
         person.frames(1);
         person.commands.clear();
@@ -99,7 +99,7 @@ impl Person {
 
     fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
-            if let ShellCommand::Underexpose(is_on) = command {
+            if let ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) = command {
                 self.commands.push(format!("{command:?}"));
                 self.feed.is_dark = is_on && self.can_darken;
             }
@@ -118,7 +118,7 @@ impl Person {
     }
 
     fn take_lens(&mut self) {
-        self.tell(ShellEvent::Wish(Wish::TakeLens));
+        self.tell(ShellEvent::User(UserAction::TakeLens));
         assert!(self.app.is_taking_lens());
     }
 }
@@ -129,11 +129,11 @@ fn the_card_is_the_table_where_no_plane_is_found() {
     assert_eq!(person.app.step(), Step::PlaceToy);
     assert!(person.app.sees_card());
     // Without it there is no table to tap on.
-    person.tell(ShellEvent::Wish(Wish::StartOver));
+    person.tell(ShellEvent::User(UserAction::StartOver));
     let mut frame = person.frame();
     frame.world_from_card = None;
     person.tell(ShellEvent::Frame(Box::new(frame)));
-    person.tell(ShellEvent::Wish(Wish::Tap(BESIDE_TOY_PX)));
+    person.tell(ShellEvent::User(UserAction::Tap(BESIDE_TOY_PX)));
     assert_eq!(person.app.step(), Step::FindTable);
     assert_eq!(person.app.notice(), Some(&Notice::NoTableThere));
 }
@@ -143,7 +143,7 @@ fn a_dark_picture_of_the_lens_tells_the_light_and_the_camera_is_given_back() {
     let mut person = Person::at_ghost(&LIT);
     person.take_lens();
     // A toy is not placed meanwhile: the picture is too dark to align it.
-    person.tell(ShellEvent::Wish(Wish::Placed));
+    person.tell(ShellEvent::User(UserAction::Placed));
     assert_eq!(person.app.step(), Step::PlaceToy);
     person.frames(1);
     assert_eq!(person.app.notice(), Some(&Notice::LensTaken(1)));
@@ -151,12 +151,12 @@ fn a_dark_picture_of_the_lens_tells_the_light_and_the_camera_is_given_back() {
     person.frames(1);
     let mut jobs = Vec::new();
     for event in [
-        ShellEvent::Wish(Wish::Placed),
+        ShellEvent::User(UserAction::Placed),
         ShellEvent::Frame(Box::new(person.frame())),
     ] {
         let commands = person.app.event(event);
         jobs.extend(commands.into_iter().filter_map(|command| match command {
-            ShellCommand::Align(job) => Some(job),
+            ShellCommand::Work(WorkCommand::Align(job)) => Some(job),
             _ => None,
         }));
     }
@@ -198,7 +198,7 @@ fn a_card_that_is_not_seen_tells_no_lens() {
     let mut frame = person.frame();
     frame.world_from_card = None;
     person.tell(ShellEvent::Frame(Box::new(frame)));
-    person.tell(ShellEvent::Wish(Wish::TakeLens));
+    person.tell(ShellEvent::User(UserAction::TakeLens));
     assert!(!person.app.is_taking_lens());
     assert_eq!(
         person.app.notice(),

@@ -1,12 +1,9 @@
 //! Whatever happens in whatever order, what the shell is asked for makes sense.
 
-use app_core::app::{
-    AlignJob, AlignedJob, App, ArSession, Device, Notice, Permission, Saved, ShellCommand, ShellEvent, Show,
-    Step, Thermal, Wish,
-};
+use app_core::app::{AlignJob, AlignedJob, App, ArSession, GraphicsState, Notice, Permission, PlatformCommand, Saved, ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand};
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
-use app_core::recording::{Ending, Take};
+use app_core::recording::{Ending, RecordingJob};
 use glam::DVec2;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -19,7 +16,7 @@ pub(crate) enum Happening {
     Permission(Permission),
     Foreground(bool),
     Surface(bool),
-    Device(Device),
+    Graphics(GraphicsState),
     ArSession(ArSession),
     /// So many frames, 33 ms apart, 17 or 50.
     Frames(u8, i64, Tracking),
@@ -39,7 +36,7 @@ pub(crate) enum Happening {
     /// The first or the last recording ends, asked or not.
     RecordingEnds(bool),
     FreeSpace(u64),
-    Wish(Wish),
+    User(UserAction),
 }
 
 fn happening() -> impl Strategy<Value = Happening> {
@@ -50,10 +47,10 @@ fn happening() -> impl Strategy<Value = Happening> {
         Permission::Barred,
     ]);
     let device = select(vec![
-        Device::Starting,
-        Device::Ready,
-        Device::Lost,
-        Device::Unsupported,
+        GraphicsState::Starting,
+        GraphicsState::Ready,
+        GraphicsState::Lost,
+        GraphicsState::Unsupported,
     ]);
     let ar_session = select(vec![
         ArSession::Able,
@@ -76,7 +73,7 @@ fn happening() -> impl Strategy<Value = Happening> {
         1 => permission.prop_map(Happening::Permission),
         1 => any::<bool>().prop_map(Happening::Foreground),
         1 => any::<bool>().prop_map(Happening::Surface),
-        1 => device.prop_map(Happening::Device),
+        1 => device.prop_map(Happening::Graphics),
         1 => ar_session.prop_map(Happening::ArSession),
         8 => (1_u8..20, select(vec![17_i64, 33, 50]), tracking).prop_map(|(n, ms, tracking)| Happening::Frames(n, ms, tracking)),
         1 => any::<bool>().prop_map(Happening::StaleFrame),
@@ -91,48 +88,48 @@ fn happening() -> impl Strategy<Value = Happening> {
         1 => saved.prop_map(Happening::Saved),
         1 => any::<bool>().prop_map(Happening::RecordingEnds),
         1 => select(vec![0, u64::MAX]).prop_map(Happening::FreeSpace),
-        12 => wish().prop_map(Happening::Wish),
+        12 => action().prop_map(Happening::User),
     ]
 }
 
-fn wish() -> impl Strategy<Value = Wish> {
+fn action() -> impl Strategy<Value = UserAction> {
     let pixel = || (-10.0..80.0, -10.0..60.0).prop_map(|(x, y)| DVec2::new(x, y));
     let plain = vec![
-        Wish::Begin,
-        Wish::OpenSettings,
-        Wish::SkipPlate,
-        Wish::TakeLens,
-        Wish::Placed,
-        Wish::Placed,
-        Wish::Replace,
-        Wish::RetakePlate,
-        Wish::StartOver,
-        Wish::Choose(None),
-        Wish::Choose(world::toy().clip_ids().next()),
-        Wish::Play(false),
-        Wish::SavePhoto,
-        Wish::Video(true),
-        Wish::Video(false),
-        Wish::Record(true),
-        Wish::Record(false),
-        Wish::ShowProfile(true),
-        Wish::CheckPhone(true),
-        Wish::CheckPhone(false),
-        Wish::Answer(true),
-        Wish::Answer(true),
-        Wish::PickToy,
-        Wish::ChooseToy(Some(1)),
-        Wish::ChooseToy(None),
-        Wish::Share,
-        Wish::RestorePreset,
+        UserAction::Begin,
+        UserAction::OpenSettings,
+        UserAction::SkipPlate,
+        UserAction::TakeLens,
+        UserAction::Placed,
+        UserAction::Placed,
+        UserAction::Replace,
+        UserAction::RetakePlate,
+        UserAction::StartOver,
+        UserAction::Choose(None),
+        UserAction::Choose(world::toy().clip_ids().next()),
+        UserAction::Play(false),
+        UserAction::SavePhoto,
+        UserAction::Video(true),
+        UserAction::Video(false),
+        UserAction::Record(true),
+        UserAction::Record(false),
+        UserAction::ShowProfile(true),
+        UserAction::CheckPhone(true),
+        UserAction::CheckPhone(false),
+        UserAction::Answer(true),
+        UserAction::Answer(true),
+        UserAction::PickToy,
+        UserAction::ChooseToy(Some(1)),
+        UserAction::ChooseToy(None),
+        UserAction::Share,
+        UserAction::RestorePreset,
     ];
     prop_oneof![
         8 => select(plain),
-        4 => Just(Wish::Tap(DVec2::new(32.0, 24.0))),
-        1 => pixel().prop_map(Wish::Tap),
-        1 => (pixel(), pixel()).prop_map(|(from_px, to_px)| Wish::Drag { from_px, to_px }),
-        1 => any::<f64>().prop_map(Wish::Twist),
-        1 => any::<f64>().prop_map(Wish::Scrub),
+        4 => Just(UserAction::Tap(DVec2::new(32.0, 24.0))),
+        1 => pixel().prop_map(UserAction::Tap),
+        1 => (pixel(), pixel()).prop_map(|(from_px, to_px)| UserAction::Drag { from_px, to_px }),
+        1 => any::<f64>().prop_map(UserAction::Twist),
+        1 => any::<f64>().prop_map(UserAction::Scrub),
     ]
 }
 
@@ -151,7 +148,7 @@ struct Platform {
     time_ns: i64,
     world_epoch: u32,
     jobs: Vec<AlignJob>,
-    takes: Vec<Take>,
+    recordings: Vec<RecordingJob>,
 }
 
 impl Platform {
@@ -166,7 +163,7 @@ impl Platform {
                 vec![ShellEvent::Foreground(is_foreground)]
             }
             Happening::Surface(is_there) => vec![ShellEvent::Surface(is_there.then_some([640, 360]))],
-            Happening::Device(device) => vec![ShellEvent::Device(device)],
+            Happening::Graphics(device) => vec![ShellEvent::Graphics(device)],
             Happening::ArSession(ar_session) => vec![ShellEvent::ArSession(ar_session)],
             Happening::Frames(n, elapsed_ms, tracking) => {
                 let frames = (0..n).map(|_| {
@@ -205,19 +202,19 @@ impl Platform {
             Happening::Saved(saved) => vec![ShellEvent::Saved(saved)],
             Happening::RecordingEnds(is_last) => {
                 let place = if is_last {
-                    self.takes.len().checked_sub(1)
+                    self.recordings.len().checked_sub(1)
                 } else {
                     Some(0)
                 };
-                let place = place.filter(|place| *place < self.takes.len());
-                let ended = place.map(|place| self.takes.remove(place));
+                let place = place.filter(|place| *place < self.recordings.len());
+                let ended = place.map(|place| self.recordings.remove(place));
                 ended
-                    .map(|take| ShellEvent::Recorded(world::full(take)))
+                    .map(|job| ShellEvent::Recorded(world::full(job)))
                     .into_iter()
                     .collect()
             }
             Happening::FreeSpace(free_bytes) => vec![ShellEvent::FreeSpace(free_bytes)],
-            Happening::Wish(wish) => vec![ShellEvent::Wish(wish)],
+            Happening::User(action) => vec![ShellEvent::User(action)],
         }
     }
 
@@ -244,44 +241,44 @@ impl Platform {
     /// Obeys, and says what makes no sense.
     fn obey(&mut self, command: ShellCommand) -> Result<(), String> {
         let is_wrong = match &command {
-            ShellCommand::PauseTracking => !self.runs,
-            ShellCommand::LockExposure(_) => !self.runs,
+            ShellCommand::Platform(PlatformCommand::PauseTracking) => !self.runs,
+            ShellCommand::Platform(PlatformCommand::LockExposure(_)) => !self.runs,
             // Only what is held can be darkened.
-            ShellCommand::Underexpose(is_on) => !self.runs || !self.is_locked || *is_on == self.is_dark,
-            ShellCommand::KeepAwake(is_on) => *is_on == self.is_awake,
-            ShellCommand::Video(is_on) => *is_on == self.makes_video,
-            ShellCommand::Record(take) => take.is_some() == self.records,
+            ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => !self.runs || !self.is_locked || *is_on == self.is_dark,
+            ShellCommand::Platform(PlatformCommand::KeepAwake(is_on)) => *is_on == self.is_awake,
+            ShellCommand::Work(WorkCommand::Video(is_on)) => *is_on == self.makes_video,
+            ShellCommand::Work(WorkCommand::Record(job)) => job.is_some() == self.records,
             _ => false,
         };
         if is_wrong {
             return Err(format!("{command:?}"));
         }
         match command {
-            ShellCommand::RunTracking { .. } => {
+            ShellCommand::Platform(PlatformCommand::RunTracking { .. }) => {
                 self.is_locked &= self.runs;
                 self.is_dark &= self.runs;
                 self.runs = true;
             }
-            ShellCommand::PauseTracking => self.runs = false,
-            ShellCommand::LockExposure(is_on) => self.is_locked = is_on,
-            ShellCommand::Underexpose(is_on) => self.is_dark = is_on,
-            ShellCommand::KeepAwake(is_on) => self.is_awake = is_on,
-            ShellCommand::Video(is_on) => self.makes_video = is_on,
-            ShellCommand::Record(take) => {
-                self.records = take.is_some();
+            ShellCommand::Platform(PlatformCommand::PauseTracking) => self.runs = false,
+            ShellCommand::Platform(PlatformCommand::LockExposure(is_on)) => self.is_locked = is_on,
+            ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => self.is_dark = is_on,
+            ShellCommand::Platform(PlatformCommand::KeepAwake(is_on)) => self.is_awake = is_on,
+            ShellCommand::Work(WorkCommand::Video(is_on)) => self.makes_video = is_on,
+            ShellCommand::Work(WorkCommand::Record(job)) => {
+                self.records = job.is_some();
                 // One after the other, each with a number of its own.
-                if let Some(take) = take {
+                if let Some(job) = job {
                     if self
-                        .takes
+                        .recordings
                         .last()
-                        .is_some_and(|last| last.number() >= take.number())
+                        .is_some_and(|last| last.number() >= job.number())
                     {
                         return Err("a recording's number comes again".to_owned());
                     }
-                    self.takes.push(*take);
+                    self.recordings.push(*job);
                 }
             }
-            ShellCommand::Align(job) => self.jobs.push(*job),
+            ShellCommand::Work(WorkCommand::Align(job)) => self.jobs.push(*job),
             _ => {}
         }
         Ok(())
@@ -350,7 +347,7 @@ fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
             let step = app.step();
             let commands = app.event(event);
             let said = commands.iter().find_map(|command| match command {
-                ShellCommand::Announce(step) => Some(*step),
+                ShellCommand::Platform(PlatformCommand::Announce(step)) => Some(*step),
                 _ => None,
             });
             if said != (app.step() != step).then_some(app.step()) {
@@ -377,13 +374,13 @@ pub(crate) fn happen(happenings: Vec<Happening>) -> App {
 pub(crate) fn straight() -> Vec<Happening> {
     vec![
         Happening::Foreground(true),
-        Happening::Device(Device::Ready),
+        Happening::Graphics(GraphicsState::Ready),
         Happening::Permission(Permission::Granted),
-        Happening::Wish(Wish::Begin),
+        Happening::User(UserAction::Begin),
         Happening::Frames(3, 33, Tracking::Normal),
-        Happening::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
-        Happening::Wish(Wish::SkipPlate),
-        Happening::Wish(Wish::Placed),
+        Happening::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
+        Happening::User(UserAction::SkipPlate),
+        Happening::User(UserAction::Placed),
         Happening::Frames(2, 33, Tracking::Normal),
         Happening::AlignmentEnds(Some(0.1)),
     ]
@@ -406,8 +403,8 @@ proptest! {
 #[test]
 fn a_platform_that_is_asked_for_nonsense_says_so() {
     let mut platform = Platform::default();
-    assert!(platform.obey(ShellCommand::PauseTracking).is_err());
-    assert!(platform.obey(ShellCommand::Video(false)).is_err());
+    assert!(platform.obey(ShellCommand::Platform(PlatformCommand::PauseTracking)).is_err());
+    assert!(platform.obey(ShellCommand::Work(WorkCommand::Video(false))).is_err());
     platform.runs = true;
     assert_eq!(
         platform.check(&world::app()).err().as_deref(),
@@ -446,19 +443,19 @@ fn the_effect_comes_and_goes_with_the_pose() {
 #[test]
 fn a_recording_that_ended_late_leaves_the_next_one_alone() {
     let (mut app, mut platform) = live_through(straight()).unwrap();
-    let wish = |app: &mut App, platform: &mut Platform, is_on| {
-        for command in app.event(ShellEvent::Wish(Wish::Record(is_on))) {
+    let action = |app: &mut App, platform: &mut Platform, is_on| {
+        for command in app.event(ShellEvent::User(UserAction::Record(is_on))) {
             platform.obey(command).unwrap();
         }
     };
     for is_on in [true, false, true] {
-        wish(&mut app, &mut platform, is_on);
+        action(&mut app, &mut platform, is_on);
     }
-    let mut takes = std::mem::take(&mut platform.takes);
-    assert_eq!(takes.len(), 2);
-    let first = ShellEvent::Recorded(world::full(takes.remove(0)));
+    let mut recordings = std::mem::take(&mut platform.recordings);
+    assert_eq!(recordings.len(), 2);
+    let first = ShellEvent::Recorded(world::full(recordings.remove(0)));
     assert!(app.event(first).is_empty() && app.is_recording());
-    let second = ShellEvent::Recorded(world::full(takes.remove(0)));
+    let second = ShellEvent::Recorded(world::full(recordings.remove(0)));
     let names: Vec<String> = app
         .event(second)
         .iter()
@@ -467,19 +464,19 @@ fn a_recording_that_ended_late_leaves_the_next_one_alone() {
     assert_eq!(names, ["Record(None)"]);
     assert!(!app.is_recording());
     assert!(
-        matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.taken.ending == Ending::NoRoom)
+        matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.outcome.ending == Ending::NoRoom)
     );
     // With hardly anything free none begins.
     let _ = app.event(ShellEvent::FreeSpace(1 << 20));
-    wish(&mut app, &mut platform, true);
+    action(&mut app, &mut platform, true);
     assert!(!app.is_recording() && app.notice() == Some(&Notice::NoRoomToRecord));
 }
 
 #[test]
 fn a_recording_and_a_video_are_saved_before_the_camera_goes() {
     let (mut app, _) = live_through(straight()).unwrap();
-    for wish in [Wish::Video(true), Wish::Record(true)] {
-        let _ = app.event(ShellEvent::Wish(wish));
+    for action in [UserAction::Video(true), UserAction::Record(true)] {
+        let _ = app.event(ShellEvent::User(action));
     }
     let commands = app.event(ShellEvent::Foreground(false));
     let names: Vec<String> = commands.iter().map(|command| format!("{command:?}")).collect();

@@ -1,6 +1,6 @@
 //! The questions of a new phone: what is drawn for them lies where it should, and the answers are kept.
 
-use app_core::app::{App, CheckInk, Notice, PhoneQuestion, ShellCommand, ShellEvent, Step, Wish};
+use app_core::app::{App, CheckInk, Notice, PhoneQuestion, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
 use glam::{DVec2, DVec3};
 
@@ -9,8 +9,8 @@ use crate::app::world;
 /// An app that looks for a table, at its first question, and that has a frame.
 fn asked() -> App {
     let mut app = world::at_ghost();
-    let _ = app.event(ShellEvent::Wish(Wish::StartOver));
-    let _ = app.event(ShellEvent::Wish(Wish::CheckPhone(true)));
+    let _ = app.event(ShellEvent::User(UserAction::StartOver));
+    let _ = app.event(ShellEvent::User(UserAction::CheckPhone(true)));
     see(&mut app, 3);
     app
 }
@@ -26,7 +26,7 @@ fn see(app: &mut App, id: u64) -> Vec<ShellCommand> {
 }
 
 fn answer(app: &mut App, is_yes: bool) -> Vec<ShellCommand> {
-    app.event(ShellEvent::Wish(Wish::Answer(is_yes)))
+    app.event(ShellEvent::User(UserAction::Answer(is_yes)))
 }
 
 /// Where the frames' camera sees a point of the world, by the pinhole's own formula.
@@ -123,8 +123,8 @@ fn lengths_are_those_of_the_world() {
 #[test]
 fn nothing_is_drawn_without_a_pose_or_a_table() {
     let mut app = world::at_ghost();
-    let _ = app.event(ShellEvent::Wish(Wish::StartOver));
-    let _ = app.event(ShellEvent::Wish(Wish::CheckPhone(true)));
+    let _ = app.event(ShellEvent::User(UserAction::StartOver));
+    let _ = app.event(ShellEvent::User(UserAction::CheckPhone(true)));
     let mut bare = world::frame(3, 99_000_000, 0, Tracking::Normal);
     (bare.planes, bare.world_from_card) = (std::sync::Arc::new([]), None);
     let _ = app.event(ShellEvent::Frame(Box::new(bare)));
@@ -139,13 +139,13 @@ fn nothing_is_drawn_without_a_pose_or_a_table() {
 #[test]
 fn answers_are_kept_and_touches_of_the_picture_mean_nothing_meanwhile() {
     let mut app = asked();
-    let _ = app.event(ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
+    let _ = app.event(ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
     assert_eq!(app.step(), Step::FindTable);
     let mut locks = Vec::new();
     for question in PhoneQuestion::ALL {
         assert_eq!(app.phone_question().map(|(asked, _)| asked), Some(question));
         for command in answer(&mut app, question != PhoneQuestion::Delay) {
-            if let ShellCommand::LockExposure(is_held) = command {
+            if let ShellCommand::Platform(PlatformCommand::LockExposure(is_held)) = command {
                 locks.push((question, is_held));
             }
         }
@@ -163,6 +163,6 @@ fn answers_are_kept_and_touches_of_the_picture_mean_nothing_meanwhile() {
         "{log}"
     );
     assert!(answer(&mut app, true).is_empty(), "nothing is asked any more");
-    let _ = app.event(ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
+    let _ = app.event(ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
     assert_eq!(app.step(), Step::TakePlate);
 }

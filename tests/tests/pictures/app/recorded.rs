@@ -7,10 +7,10 @@ use std::sync::{Arc, mpsc};
 use std::thread;
 
 use app_core::Core;
-use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, Wish};
+use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
 use app_core::gpu::AdapterChoice;
-use app_core::recording::{Ending, Limits, PictureCodec, Recording, Take, TakeOptions, Taken, Topic};
+use app_core::recording::{Ending, Limits, PictureCodec, Recording, RecordingJob, RecordingOptions, RecordingOutcome, Topic};
 use app_core::scene::{Pose, Scene};
 use app_core::session::{
     Capture, Files, GroundTruth, Session, SessionError, SessionFrame, SessionWarning, Truth,
@@ -33,8 +33,8 @@ use crate::app::world;
 /// Poses of the bundled session that are shown, by the numbers of its frames.
 const POSES: [usize; 3] = [1, 2, 3];
 
-fn options(toy: &[u8], codec: PictureCodec) -> TakeOptions<'_> {
-    TakeOptions {
+fn options(toy: &[u8], codec: PictureCodec) -> RecordingOptions<'_> {
+    RecordingOptions {
         toy,
         codec,
         device: BTreeMap::from([("model".to_owned(), "desk".to_owned())]),
@@ -57,11 +57,11 @@ impl std::io::Write for Shared {
     }
 }
 
-fn written(take: Take, toy: &[u8], codec: PictureCodec) -> (Vec<u8>, Taken) {
+fn written(job: RecordingJob, toy: &[u8], codec: PictureCodec) -> (Vec<u8>, RecordingOutcome) {
     let sink = Shared::default();
-    let taken = take.run(sink.clone(), options(toy, codec));
+    let outcome = job.run(sink.clone(), options(toy, codec));
     let bytes = std::mem::take(&mut *sink.0.lock().unwrap());
-    (bytes, taken)
+    (bytes, outcome)
 }
 
 /// What the app was fed while it recorded.
@@ -81,9 +81,9 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
     let Show::Toy { scene, .. } = person.app.show() else {
         panic!("{:?}", person.app.step());
     };
-    let scene = scene.clone();
-    person.wish(Wish::Play(false));
-    person.wish(Wish::Record(true));
+    let scene = Scene::clone(scene);
+    person.act(UserAction::Play(false));
+    person.act(UserAction::Record(true));
     assert!(person.app.is_recording());
     let mut frames: Vec<SessionFrame> = Vec::new();
     for pose in POSES {
@@ -91,8 +91,8 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
         let Pose::Clip { clip, time_secs } = shown_pose else {
             panic!("{shown_pose:?}");
         };
-        person.wish(Wish::Choose(Some(clip)));
-        person.wish(Wish::Scrub(time_secs));
+        person.act(UserAction::Choose(Some(clip)));
+        person.act(UserAction::Scrub(time_secs));
         person.frames(1);
         let fed = person.app.latest().unwrap();
         frames.push(SessionFrame {
@@ -106,20 +106,20 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
             warnings: Vec::new(),
         });
     }
-    person.wish(Wish::Record(false));
+    person.act(UserAction::Record(false));
     assert!(!person.app.is_recording());
-    let (bytes, taken) = written(person.takes.remove(0), &toy, codec);
+    let (bytes, outcome) = written(person.recordings.remove(0), &toy, codec);
     let n_frames = u32::try_from(POSES.len()).unwrap();
-    let expected = Taken {
+    let expected = RecordingOutcome {
         number: 1,
         n_frames,
         n_dropped: 0,
         ending: Ending::Asked,
     };
-    assert_eq!(taken, expected);
+    assert_eq!(outcome, expected);
     person.tell(ShellEvent::Recorded(Recorded {
         file: "a.mcap".to_owned(),
-        taken,
+        outcome,
     }));
     assert!(matches!(person.app.notice(), Some(Notice::Recorded(_))));
     (Fed { scene, frames }, bytes)
@@ -350,7 +350,7 @@ fn compare_scenes(given: &Scene, read: &Scene) {
 fn frames_never_wait_and_what_is_missing_is_told() {
     const N: u64 = 400;
     let mut app = happen(straight());
-    let mut commands = app.event(ShellEvent::Wish(Wish::Record(true)));
+    let mut commands = app.event(ShellEvent::User(UserAction::Record(true)));
     let frame = |id: u64| {
         let time_ns = 10_000_000_000 + 33_000_000 * i64::try_from(id).unwrap();
         ShellEvent::Frame(Box::new(world::frame(1_000 + id, time_ns, 0, Tracking::Normal)))
@@ -359,17 +359,17 @@ fn frames_never_wait_and_what_is_missing_is_told() {
         commands.extend(app.event(frame(id)));
     }
     assert_eq!(app.notice(), Some(&Notice::RecordingDrops));
-    let takes = commands.into_iter().filter_map(|command| match command {
-        ShellCommand::Record(take) => take,
+    let recordings = commands.into_iter().filter_map(|command| match command {
+        ShellCommand::Work(WorkCommand::Record(job)) => job,
         _ => None,
     });
-    let takes: Vec<_> = takes.collect();
-    let [take] = <[Box<Take>; 1]>::try_from(takes).unwrap();
+    let recordings: Vec<_> = recordings.collect();
+    let [job] = <[Box<RecordingJob>; 1]>::try_from(recordings).unwrap();
     // The writer comes late: it takes what waits, and what comes from now on.
     let (done, is_done) = mpsc::channel();
     let writer = thread::spawn(move || {
         let toy = world::toy_file();
-        let ended = written(*take, &toy, PictureCodec::Lossless);
+        let ended = written(*job, &toy, PictureCodec::Lossless);
         done.send(()).unwrap();
         ended
     });
@@ -378,15 +378,15 @@ fn frames_never_wait_and_what_is_missing_is_told() {
         let _ = app.event(ShellEvent::FreeSpace(1 << 20));
         thread::yield_now();
     }
-    let (bytes, taken) = writer.join().unwrap();
-    assert_eq!(taken.ending, Ending::NoRoom);
-    assert!(taken.n_frames > 100, "{taken:?}");
-    assert_eq!(u64::from(taken.n_frames) + taken.n_dropped, N);
+    let (bytes, outcome) = writer.join().unwrap();
+    assert_eq!(outcome.ending, Ending::NoRoom);
+    assert!(outcome.n_frames > 100, "{outcome:?}");
+    assert_eq!(u64::from(outcome.n_frames) + outcome.n_dropped, N);
     let commands = app.event(ShellEvent::Recorded(Recorded {
         file: "a.mcap".to_owned(),
-        taken: taken.clone(),
+        outcome: outcome.clone(),
     }));
-    assert!(matches!(commands[..], [ShellCommand::Record(None)]));
+    assert!(matches!(commands[..], [ShellCommand::Work(WorkCommand::Record(None))]));
     let recording = Recording::open(bytes).unwrap();
     assert!(recording.losses().is_empty());
     let notes = recording.notes();
@@ -399,5 +399,5 @@ fn frames_never_wait_and_what_is_missing_is_told() {
     assert!(told(Topic::Events, r#""state":"Normal""#));
     assert!(told(Topic::Planes, r#""id":7"#));
     let capture = Capture::open(recording).unwrap();
-    assert_eq!(capture.n_frames(), taken.n_frames as usize);
+    assert_eq!(capture.n_frames(), outcome.n_frames as usize);
 }

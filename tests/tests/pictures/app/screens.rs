@@ -1,6 +1,6 @@
 //! The interface without a device: what can be read out and touched, on every screen.
 
-use app_core::app::{App, Device, Permission, ShellEvent, Step, Wish};
+use app_core::app::{App, GraphicsState, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
 use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget};
 use glam::DVec2;
@@ -48,7 +48,7 @@ fn widgets(app: &App, screen: &Screen) -> Vec<Widget> {
     let mut interface = Interface::default();
     // Sheets find their size with the first picture.
     for _ in 0..3 {
-        interface.wishes(app, screen);
+        interface.actions(app, screen);
     }
     interface.widgets().to_vec()
 }
@@ -60,21 +60,21 @@ fn events() -> Vec<ShellEvent> {
         ShellEvent::Permission(Permission::Barred),
         ShellEvent::Permission(Permission::Denied),
         ShellEvent::Permission(Permission::Granted),
-        ShellEvent::Wish(Wish::Begin),
-        ShellEvent::Device(Device::Ready),
+        ShellEvent::User(UserAction::Begin),
+        ShellEvent::Graphics(GraphicsState::Ready),
         ShellEvent::Frame(Box::new(world::frame(1, 0, 0, Tracking::TooDark))),
         ShellEvent::Frame(Box::new(world::frame(2, 33_000_000, 0, Tracking::Normal))),
-        ShellEvent::Wish(Wish::CheckPhone(true)),
-        ShellEvent::Wish(Wish::Answer(true)),
-        ShellEvent::Wish(Wish::Answer(true)),
-        ShellEvent::Wish(Wish::Answer(true)),
-        ShellEvent::Wish(Wish::CheckPhone(false)),
+        ShellEvent::User(UserAction::CheckPhone(true)),
+        ShellEvent::User(UserAction::Answer(true)),
+        ShellEvent::User(UserAction::Answer(true)),
+        ShellEvent::User(UserAction::Answer(true)),
+        ShellEvent::User(UserAction::CheckPhone(false)),
         // Beside the table.
-        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, -400.0))),
-        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
+        ShellEvent::User(UserAction::Tap(DVec2::new(32.0, -400.0))),
+        ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
         ShellEvent::Frame(Box::new(world::frame(3, 66_000_000, 0, Tracking::Normal))),
-        ShellEvent::Wish(Wish::SkipPlate),
-        ShellEvent::Wish(Wish::Placed),
+        ShellEvent::User(UserAction::SkipPlate),
+        ShellEvent::User(UserAction::Placed),
     ]
 }
 
@@ -140,7 +140,7 @@ fn a_sheet_is_the_same_whichever_came_before() {
         let mut interface = Interface::default();
         for app in &apps() {
             for _ in 0..3 {
-                interface.wishes(app, &screen);
+                interface.actions(app, &screen);
             }
             let at = format!("{name}, {:?}, {:?}", app.step(), app.obstacle());
             assert_eq!(interface.widgets(), widgets(app, &screen), "{at}");
@@ -153,8 +153,8 @@ fn a_finger_presses_the_button_below_it() {
     let mut app = world::app();
     let _ = app.event(ShellEvent::Foreground(true));
     let mut interface = Interface::default();
-    interface.wishes(&app, &PORTRAIT);
-    interface.wishes(&app, &PORTRAIT);
+    interface.actions(&app, &PORTRAIT);
+    interface.actions(&app, &PORTRAIT);
     let begin = interface
         .widgets()
         .iter()
@@ -162,13 +162,13 @@ fn a_finger_presses_the_button_below_it() {
         .unwrap();
     let [left, top, right, bottom] = begin.bounds_px;
     let mut press = |at_px| {
-        let mut wishes = Vec::new();
+        let mut actions = Vec::new();
         for phase in [TouchPhase::Began, TouchPhase::Ended] {
             interface.touch(Touch { id: 4, phase, at_px });
-            wishes.extend(interface.wishes(&app, &PORTRAIT));
+            actions.extend(interface.actions(&app, &PORTRAIT));
         }
-        wishes
+        actions
     };
-    assert_eq!(press([0.5 * (left + right), 0.5 * (top + bottom)]), [Wish::Begin]);
+    assert_eq!(press([0.5 * (left + right), 0.5 * (top + bottom)]), [UserAction::Begin]);
     assert_eq!(press([5.0, 5.0]), []);
 }

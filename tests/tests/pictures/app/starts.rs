@@ -1,9 +1,7 @@
 //! Starts that come to no end lead to the simplest preset, and back from there.
 
 use app_core::Core;
-use app_core::app::{
-    App, N_GOOD_FRAMES, N_UNFINISHED, Notice, Panics, ShellCommand, ShellEvent, Simplified, Starts, Wish,
-};
+use app_core::app::{App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent, Simplified, UserAction, WorkCommand};
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
@@ -20,26 +18,38 @@ struct Phone {
 
 impl Phone {
     fn start(&mut self) -> App {
-        let mut starts = Starts::read(&self.kept);
-        starts.begin();
-        self.kept = starts.text();
+        let mut history = LaunchHistory::read(&self.kept);
+        history.begin();
+        self.kept = history.text();
         let mut app = world::app();
-        self.tell(&mut app, ShellEvent::Started(starts));
+        self.tell(&mut app, ShellEvent::Started(history));
         self.tell(&mut app, ShellEvent::Foreground(true));
         app
     }
 
     fn tell(&mut self, app: &mut App, event: ShellEvent) {
         for command in app.event(event) {
-            if let ShellCommand::Remember(text) = command {
-                self.kept = text;
+            if let ShellCommand::Work(command) = command {
+                self.obey(command);
             }
         }
     }
 
+    fn obey(&mut self, command: WorkCommand) {
+        if let WorkCommand::Remember(text) = command {
+            self.kept = text;
+        }
+    }
+
+    fn test(&mut self, app: &mut App, device: &str, outcome: Result<(), String>) {
+        app.self_tested(device, outcome)
+            .into_iter()
+            .for_each(|command| self.obey(command));
+    }
+
     fn draw(&mut self, app: &mut App, n_frames: u32) {
         for _ in 0..n_frames {
-            self.tell(app, ShellEvent::Drawn);
+            app.drawn().into_iter().for_each(|command| self.obey(command));
         }
     }
 }
@@ -47,7 +57,7 @@ impl Phone {
 #[test]
 fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
     let mut phone = Phone::default();
-    for n in 0..N_UNFINISHED {
+    for n in 0..MAX_FAILED_LAUNCHES {
         let mut app = phone.start();
         assert_eq!(app.preset(Preset::Best), Preset::Best, "start {n}");
         assert_eq!(app.notice(), None);
@@ -56,25 +66,25 @@ fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
     }
     let mut app = phone.start();
     assert_eq!(app.preset(Preset::Best), Preset::Flat);
-    assert_eq!(app.notice(), Some(&Notice::Simplified(Simplified::Starts)));
+    assert_eq!(app.notice(), Some(&Notice::Simplified(Simplified::FailedLaunches)));
     // It stays so, however good it is, until the person wants it otherwise.
     phone.draw(&mut app, N_GOOD_FRAMES);
     let mut app = phone.start();
     assert_eq!(app.preset(Preset::Best), Preset::Flat);
-    phone.tell(&mut app, ShellEvent::Wish(Wish::RestorePreset));
+    phone.tell(&mut app, ShellEvent::User(UserAction::RestorePreset));
     assert_eq!((app.preset(Preset::Best), app.simplified()), (Preset::Best, None));
     // The start that brought it back is one of those that count.
-    for _ in 1..N_UNFINISHED {
+    for _ in 1..MAX_FAILED_LAUNCHES {
         assert_eq!(phone.start().simplified(), None);
     }
-    assert_eq!(phone.start().simplified(), Some(Simplified::Starts));
+    assert_eq!(phone.start().simplified(), Some(Simplified::FailedLaunches));
 }
 
 #[test]
 fn a_good_start_clears_those_that_failed() {
     let mut phone = Phone::default();
     for _ in 0..5 {
-        for _ in 1..N_UNFINISHED {
+        for _ in 1..MAX_FAILED_LAUNCHES {
             let _ = phone.start();
         }
         let mut app = phone.start();
@@ -98,50 +108,46 @@ fn an_app_that_is_left_has_not_failed() {
         }
     }
     // One that has come back to the front can fail as well.
-    for _ in 0..N_UNFINISHED {
+    for _ in 0..MAX_FAILED_LAUNCHES {
         let mut app = phone.start();
         assert_eq!(app.simplified(), None);
         phone.tell(&mut app, ShellEvent::Foreground(false));
         phone.tell(&mut app, ShellEvent::Foreground(true));
     }
-    assert_eq!(phone.start().simplified(), Some(Simplified::Starts));
+    assert_eq!(phone.start().simplified(), Some(Simplified::FailedLaunches));
 }
 
 #[test]
 fn a_device_is_tested_once_and_each_time_while_it_fails() {
     let mut phone = Phone::default();
-    let tested = |device: &str, outcome: Result<(), String>| ShellEvent::SelfTested {
-        device: device.to_owned(),
-        outcome,
-    };
     let fault = || Err("red is blue".to_owned());
     for _ in 0..3 {
         let mut app = phone.start();
         assert!(app.wants_self_test("Adreno\n(1)"));
-        phone.tell(&mut app, tested("Adreno\n(1)", fault()));
+        phone.test(&mut app, "Adreno\n(1)", fault());
         assert_eq!(app.preset(Preset::Balanced), Preset::Flat);
         let simplified = Simplified::SelfTest("red is blue".to_owned());
         assert_eq!(app.notice(), Some(&Notice::Simplified(simplified)));
         phone.draw(&mut app, N_GOOD_FRAMES);
     }
     let mut app = phone.start();
-    phone.tell(&mut app, tested("Adreno\n(1)", Ok(())));
+    phone.test(&mut app, "Adreno\n(1)", Ok(()));
     assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
     phone.draw(&mut app, N_GOOD_FRAMES);
     let mut app = phone.start();
     assert!(!app.wants_self_test("Adreno\n(1)"));
     // Another driver, which the person trusts against the test.
     assert!(app.wants_self_test("Adreno (2)"));
-    phone.tell(&mut app, tested("Adreno (2)", fault()));
-    phone.tell(&mut app, ShellEvent::Wish(Wish::RestorePreset));
+    phone.test(&mut app, "Adreno (2)", fault());
+    phone.tell(&mut app, ShellEvent::User(UserAction::RestorePreset));
     assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
     assert!(!phone.start().wants_self_test("Adreno (2)"));
 }
 
 #[test]
 fn whatever_is_kept_is_read() {
-    let mut starts = Starts::read("passed one (a b)\nunfinished 1\nsimple\n");
-    assert_eq!(starts, Starts::read(&starts.text()));
+    let mut starts = LaunchHistory::read("passed one (a b)\nunfinished 1\nsimple\n");
+    assert_eq!(starts, LaunchHistory::read(&starts.text()));
     assert_eq!(starts.text(), "unfinished 1\nsimple\npassed one (a b)\n");
     for text in [
         "",
@@ -150,9 +156,9 @@ fn whatever_is_kept_is_read() {
         "\0\0",
         "simple as that",
     ] {
-        assert_eq!(Starts::read(text), Starts::default(), "{text:?}");
+        assert_eq!(LaunchHistory::read(text), LaunchHistory::default(), "{text:?}");
     }
-    starts = Starts::read("unfinished 4294967295");
+    starts = LaunchHistory::read("unfinished 4294967295");
     starts.begin();
     assert_eq!(starts.text(), "unfinished 1\nsimple\n");
 }
@@ -178,12 +184,12 @@ fn kept_after_compiling(text: &str) -> (Live, Vec<String>) {
         world::toy(),
         Preset::Balanced,
     );
-    let mut commands = live.event(ShellEvent::Started(Starts::read(text)));
+    let mut commands = live.event(ShellEvent::Started(LaunchHistory::read(text)));
     for n in 0..100 {
         commands.extend(live.screenshot(&SCREEN, f64::from(n) / 30.0).unwrap().1);
     }
     let kept = commands.into_iter().filter_map(|command| match command {
-        ShellCommand::Remember(text) => Some(text),
+        ShellCommand::Work(WorkCommand::Remember(text)) => Some(text),
         _ => None,
     });
     (live, kept.collect())

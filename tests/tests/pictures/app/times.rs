@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use app_core::Core;
-use app_core::app::{Device, Permission, ShellCommand, ShellEvent, Step, Wish};
+use app_core::app::{GraphicsState, Permission, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
 use app_core::frame::Clock;
 use app_core::gpu::AdapterChoice;
@@ -31,7 +31,7 @@ const SCREEN: Screen = Screen {
 
 fn tell(live: &mut Live, event: ShellEvent) {
     for command in live.event(event) {
-        if let ShellCommand::Align(job) = command {
+        if let ShellCommand::Work(WorkCommand::Align(job)) = command {
             let alignment = world::alignment(job.input(), Some(0.1));
             tell(live, ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
         }
@@ -55,12 +55,12 @@ fn playing() -> (Live, Arc<AtomicU64>) {
     let now_ms = Arc::new(AtomicU64::new(0));
     let clock = Arc::clone(&now_ms);
     #[expect(clippy::cast_precision_loss, reason = "a few seconds")]
-    live.time_by(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
+    live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
     for event in [
         ShellEvent::Foreground(true),
-        ShellEvent::Device(Device::Ready),
+        ShellEvent::Graphics(GraphicsState::Ready),
         ShellEvent::Permission(Permission::Granted),
-        ShellEvent::Wish(Wish::Begin),
+        ShellEvent::User(UserAction::Begin),
     ] {
         tell(&mut live, event);
     }
@@ -71,9 +71,9 @@ fn playing() -> (Live, Arc<AtomicU64>) {
 /// Has the toy found by three frames, of which the first has that number.
 fn place(live: &mut Live, id: u64) {
     deliver(live, id, None);
-    tell(live, ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
-    tell(live, ShellEvent::Wish(Wish::SkipPlate));
-    tell(live, ShellEvent::Wish(Wish::Placed));
+    tell(live, ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
+    tell(live, ShellEvent::User(UserAction::SkipPlate));
+    tell(live, ShellEvent::User(UserAction::Placed));
     deliver(live, id + 1, None);
     deliver(live, id + 2, None);
     assert_eq!(live.app().step(), Step::Play);
@@ -96,7 +96,7 @@ fn a_frame_tells_how_old_its_picture_is_and_how_many_nobody_saw() {
     deliver(&mut live, 5, Some(40.0));
     deliver(&mut live, 7, Some(30.0));
     assert_eq!(draw(&mut live, 121), (Some(31.0), Some(2)), "neither 5 nor 6");
-    tell(&mut live, ShellEvent::Wish(Wish::StartOver));
+    tell(&mut live, ShellEvent::User(UserAction::StartOver));
     deliver(&mut live, 8, Some(40.0));
     live.screenshot(&SCREEN, 0.0).unwrap();
     place(&mut live, 40);

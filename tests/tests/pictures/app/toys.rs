@@ -1,6 +1,6 @@
 //! Another toy: the list of those that there are, one of which is read.
 
-use app_core::app::{ShellCommand, ShellEvent, Step, Wish};
+use app_core::app::{ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
 use app_core::interface::{Insets, Interface, Screen};
 use glam::DVec2;
 
@@ -21,7 +21,7 @@ const SCREEN: Screen = Screen {
 fn labels(app: &app_core::app::App) -> Vec<String> {
     let mut interface = Interface::default();
     for _ in 0..3 {
-        interface.wishes(app, &SCREEN);
+        interface.actions(app, &SCREEN);
     }
     interface
         .widgets()
@@ -34,29 +34,29 @@ fn labels(app: &app_core::app::App) -> Vec<String> {
 fn a_toy_is_chosen_from_the_files_that_there_are() {
     let mut app = world::at_ghost();
     assert!(labels(&app).contains(&"Another toy".to_owned()));
-    let asked = app.event(ShellEvent::Wish(Wish::PickToy));
-    assert!(matches!(asked[..], [ShellCommand::PickToy]), "{asked:?}");
+    let asked = app.event(ShellEvent::User(UserAction::PickToy));
+    assert!(matches!(asked[..], [ShellCommand::Work(WorkCommand::PickToy)]), "{asked:?}");
     let files = || ShellEvent::ToyFiles(vec!["Llama".to_owned(), "fox.glb".to_owned()]);
     let _ = app.event(files());
     let listed = labels(&app);
     for label in ["Llama", "fox.glb", "Back"] {
         assert!(listed.contains(&label.to_owned()), "{listed:?}");
     }
-    let read = app.event(ShellEvent::Wish(Wish::ChooseToy(Some(1))));
+    let read = app.event(ShellEvent::User(UserAction::ChooseToy(Some(1))));
     assert!(
-        matches!(&read[..], [ShellCommand::ReadToy(name)] if name == "fox.glb"),
+        matches!(&read[..], [ShellCommand::Work(WorkCommand::ReadToy(name))] if name == "fox.glb"),
         "{read:?}"
     );
     assert_eq!(app.toy_files(), None);
     let _ = app.event(files());
-    for wish in [Wish::ChooseToy(Some(2)), Wish::ChooseToy(None)] {
-        assert!(app.event(ShellEvent::Wish(wish)).is_empty());
+    for action in [UserAction::ChooseToy(Some(2)), UserAction::ChooseToy(None)] {
+        assert!(app.event(ShellEvent::User(action)).is_empty());
         assert_eq!(app.toy_files(), None);
     }
     // The ghost is the other toy's, where the person taps next.
     let _ = app.event(ShellEvent::Toy(Ok(world::toy())));
     assert_eq!(app.step(), Step::PlaceToy);
     assert!(app.ghost_contour_px().is_empty());
-    let _ = app.event(ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))));
+    let _ = app.event(ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
     assert!(!app.ghost_contour_px().is_empty());
 }

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, Verdict, Wish};
-use app_core::app::{Device, Permission};
-use app_core::recording::Take;
+use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
+use app_core::app::{GraphicsState, Permission};
+use app_core::recording::RecordingJob;
 use app_core::scene::Camera;
 use desk::files::BUNDLED_SESSION;
 use desk::stored::Stored;
@@ -19,22 +19,22 @@ pub(crate) struct Person {
     pub(crate) app: App,
     pub(crate) feed: Feed,
     /// Recordings that wait to be written.
-    pub(crate) takes: Vec<Take>,
+    pub(crate) recordings: Vec<RecordingJob>,
 }
 
 impl Person {
     pub(crate) fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
             match command {
-                ShellCommand::Align(job) => self.tell(ShellEvent::Aligned(Some(Box::new(job.run())))),
-                ShellCommand::Record(take) => self.takes.extend(take.map(|take| *take)),
+                ShellCommand::Work(WorkCommand::Align(job)) => self.tell(ShellEvent::Aligned(Some(Box::new(job.run())))),
+                ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 _ => {}
             }
         }
     }
 
-    pub(crate) fn wish(&mut self, wish: Wish) {
-        self.tell(ShellEvent::Wish(wish));
+    pub(crate) fn act(&mut self, action: UserAction) {
+        self.tell(ShellEvent::User(action));
     }
 
     pub(crate) fn frames(&mut self, n: usize) {
@@ -68,19 +68,19 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
     let mut person = Person {
         app,
         feed,
-        takes: Vec::new(),
+        recordings: Vec::new(),
     };
     for event in [
         ShellEvent::Foreground(true),
-        ShellEvent::Device(Device::Ready),
+        ShellEvent::Graphics(GraphicsState::Ready),
         ShellEvent::Permission(Permission::Granted),
     ] {
         person.tell(event);
     }
-    person.wish(Wish::Begin);
+    person.act(UserAction::Begin);
     person.frames(2);
     let at = person.pixel_of(DVec3::ZERO);
-    person.wish(Wish::Tap(at));
+    person.act(UserAction::Tap(at));
     assert_eq!(person.app.step(), Step::TakePlate);
     for _ in 0..60 {
         if person.app.step() == Step::TakePlate {
@@ -94,10 +94,10 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
     let (world_from_object, camera) = person.feed.toy();
     let turn_rad = yaw_rad(world_from_object) - facing_rad(world_from_object, camera) + OFF_RAD;
     let at = person.pixel_of(off_m);
-    person.wish(Wish::Twist(turn_rad));
-    person.wish(Wish::Tap(at));
+    person.act(UserAction::Twist(turn_rad));
+    person.act(UserAction::Tap(at));
     assert!(person.app.ghost_contour_px().len() > 50);
-    person.wish(Wish::Placed);
+    person.act(UserAction::Placed);
     assert_eq!(person.app.step(), Step::Align);
     person
 }

@@ -4,10 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use app_core::alignment::NoLight;
 use app_core::alignment::{Alignment, AlignmentReport, PoseAlignment, PoseDeviation};
-use app_core::app::{App, Device, Permission, Recorded, ShellEvent, Wish};
+use app_core::app::{App, GraphicsState, Permission, Recorded, ShellEvent, UserAction};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::FrameInput;
-use app_core::recording::Take;
+use app_core::recording::RecordingJob;
 use app_core::scene::{Image, Intrinsics};
 use app_core::toy::Toy;
 use glam::{DMat4, DVec2, DVec3};
@@ -35,12 +35,12 @@ pub(crate) fn at_ghost() -> App {
     let mut app = app();
     for event in [
         ShellEvent::Foreground(true),
-        ShellEvent::Device(Device::Ready),
+        ShellEvent::Graphics(GraphicsState::Ready),
         ShellEvent::Permission(Permission::Granted),
-        ShellEvent::Wish(Wish::Begin),
+        ShellEvent::User(UserAction::Begin),
         ShellEvent::Frame(Box::new(frame(1, 0, 0, Tracking::Normal))),
-        ShellEvent::Wish(Wish::Tap(DVec2::new(32.0, 24.0))),
-        ShellEvent::Wish(Wish::SkipPlate),
+        ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
+        ShellEvent::User(UserAction::SkipPlate),
         ShellEvent::Frame(Box::new(frame(2, 33_000_000, 0, Tracking::Normal))),
     ] {
         let _ = app.event(event);
@@ -100,10 +100,10 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
 }
 
 /// A recording that found no room.
-pub(crate) fn full(take: Take) -> Recorded {
+pub(crate) fn full(job: RecordingJob) -> Recorded {
     Recorded {
         file: "full.mcap".to_owned(),
-        taken: take.without_file(&std::io::ErrorKind::StorageFull.into()),
+        outcome: job.without_file(&std::io::ErrorKind::StorageFull.into()),
     }
 }
 
@@ -126,7 +126,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
         camera: input.camera,
         world_from_object: input.world_from_object,
         lights: None,
-        relit_plates: None,
+        scene: None,
         report: AlignmentReport {
             focal_length: None,
             camera: None,
@@ -138,6 +138,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
             world_scale: None,
             no_light: Some(NoLight::PoseUnknown),
             unexplained: None,
+            is_relit: false,
         },
         warnings: Vec::new(),
     }

@@ -6,16 +6,18 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use app_core::Core;
-use app_core::app::{ShellEvent, Starts};
+use app_core::app::{LaunchHistory, ShellEvent};
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::wgpu;
+use app_shell::record::clock;
+use app_shell::worker::Pace;
 use clap::{Parser, ValueEnum};
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, repository};
-use view::desk::{Desk, Jobs};
+use view::desk::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
 use view::tour::Tour;
@@ -76,6 +78,11 @@ fn run(args: Args) -> Result<()> {
     let feed = Feed::of_stored(open_session(&path)?).with_context(|| path.display().to_string())?;
     let results = || repository().join(RESULTS);
     let out = args.out.unwrap_or_else(results);
+    let keeping = Keeping {
+        out: out.clone(),
+        jpeg_quality: args.jpeg,
+        toy_to_pick: args.toy,
+    };
     if !args.tour {
         return window::open(
             feed,
@@ -85,27 +92,23 @@ fn run(args: Args) -> Result<()> {
                 faults: args.fault,
                 text_scale: args.text_scale,
                 hold: args.hold,
-                out,
+                keeping,
                 seconds: args.seconds,
-                jpeg_quality: args.jpeg,
-                toy_to_pick: args.toy,
             },
         );
     }
     // A tour begins as the first start does.
-    let mut starts = Starts::default();
-    starts.begin();
+    let mut history = LaunchHistory::default();
+    history.begin();
     let core = pollster::block_on(Core::headless(
         &wgpu::Instance::default(),
         &AdapterChoice::Fastest,
     ))?;
     let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
-    args.hold.into_iter().for_each(|hold| live.hold(hold));
-    live.time_by(window::clock());
-    let mut desk = Desk::new(live, feed, out.clone(), Jobs::WhenAsked);
-    desk.tell(ShellEvent::Started(starts));
-    desk.jpeg_quality = args.jpeg;
-    desk.toy_to_pick = args.toy;
+    args.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
+    live.set_clock(clock());
+    let mut desk = Desk::new(live, feed, keeping, Pace::Repeatable);
+    desk.tell(ShellEvent::Started(history));
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

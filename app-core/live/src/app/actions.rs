@@ -1,42 +1,42 @@
-//! What happens when a person wishes something, or the platform changes.
+//! What happens when a person does something, or the platform changes.
 
 use super::App;
-use super::event::{ArSession, Device, Permission, Saved, ShellCommand, Wish};
+use super::event::{ArSession, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction, WorkCommand};
 use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
 use super::table::table_at;
 
 impl App {
-    pub(super) fn wish(&mut self, wish: Wish, commands: &mut Vec<ShellCommand>) {
-        let is_on_picture = matches!(wish, Wish::Tap(_) | Wish::Drag { .. } | Wish::Twist(_));
+    pub(super) fn act(&mut self, action: UserAction, commands: &mut Vec<ShellCommand>) {
+        let is_on_picture = matches!(action, UserAction::Tap(_) | UserAction::Drag { .. } | UserAction::Twist(_));
         if is_on_picture && self.phone_check.is_some() {
             return;
         }
-        match wish {
-            Wish::CheckPhone(is_on) => self.check_phone(is_on && self.step != Step::Welcome),
-            Wish::Answer(is_yes) => self.answer(is_yes),
-            Wish::Begin => self.begin(commands),
-            Wish::OpenSettings => commands.push(ShellCommand::OpenSettings),
-            Wish::Tap(pixel) => self.tap(pixel),
-            Wish::Drag { from_px, to_px } => {
+        match action {
+            UserAction::CheckPhone(is_on) => self.check_phone(is_on && self.step != Step::Welcome),
+            UserAction::Answer(is_yes) => self.answer(is_yes),
+            UserAction::Begin => self.begin(commands),
+            UserAction::OpenSettings => commands.push(PlatformCommand::OpenSettings.into()),
+            UserAction::Tap(pixel) => self.tap(pixel),
+            UserAction::Drag { from_px, to_px } => {
                 if let (Step::PlaceToy, Some(ghost), Some(camera)) =
                     (self.step, &mut self.ghost, &self.camera)
                 {
                     ghost.drag(camera, [from_px, to_px]);
                 }
             }
-            Wish::Twist(angle_rad) => {
+            UserAction::Twist(angle_rad) => {
                 if let (Step::PlaceToy, Some(ghost)) = (self.step, &mut self.ghost) {
                     ghost.turn(angle_rad);
                 }
             }
-            Wish::TakeLens => self.take_lens(),
-            Wish::SkipPlate => self.go(Cause::PlateSkipped),
-            Wish::Placed => self.placed(),
-            Wish::Replace => self.go(Cause::Replace),
-            Wish::RetakePlate => self.go(Cause::RetakePlate),
-            Wish::StartOver => {
+            UserAction::TakeLens => self.take_lens(),
+            UserAction::SkipPlate => self.go(Cause::PlateSkipped),
+            UserAction::Placed => self.placed(),
+            UserAction::Replace => self.go(Cause::Replace),
+            UserAction::RetakePlate => self.go(Cause::RetakePlate),
+            UserAction::StartOver => {
                 self.platform.ar_session = match self.platform.ar_session {
                     ArSession::Failed => ArSession::Able,
                     other => other,
@@ -44,21 +44,21 @@ impl App {
                 self.go(Cause::StartOver);
                 self.wants_new_world = self.step == Step::FindTable;
             }
-            Wish::Choose(clip) => self.playback.choose(&self.toy, clip),
-            Wish::Play(is_playing) => self.playback.play(is_playing),
-            Wish::Scrub(time_s) => self.playback.scrub(time_s),
-            Wish::SavePhoto => {
+            UserAction::Choose(clip) => self.playback.choose(&self.toy, clip),
+            UserAction::Play(is_playing) => self.playback.play(is_playing),
+            UserAction::Scrub(time_s) => self.playback.scrub(time_s),
+            UserAction::SavePhoto => {
                 if self.step == Step::Play {
-                    commands.push(ShellCommand::SavePhoto);
+                    commands.push(WorkCommand::SavePhoto.into());
                 }
             }
-            Wish::Video(is_on) => self.captures.video = is_on,
-            Wish::Record(is_on) => self.wish_recording(is_on),
-            Wish::ShowProfile(is_on) => self.shows_profile = is_on,
-            Wish::PickToy => commands.push(ShellCommand::PickToy),
-            Wish::ChooseToy(chosen) => self.choose_toy(chosen, commands),
-            Wish::Share => commands.push(ShellCommand::Share),
-            Wish::RestorePreset => self.restore_preset(commands),
+            UserAction::Video(is_on) => self.captures.video = is_on,
+            UserAction::Record(is_on) => self.want_recording(is_on),
+            UserAction::ShowProfile(is_on) => self.shows_profile = is_on,
+            UserAction::PickToy => commands.push(WorkCommand::PickToy.into()),
+            UserAction::ChooseToy(chosen) => self.choose_toy(chosen, commands),
+            UserAction::Share => commands.push(WorkCommand::Share.into()),
+            UserAction::RestorePreset => self.restore_preset(commands),
         }
     }
 
@@ -67,7 +67,7 @@ impl App {
             Permission::Granted => self.go(Cause::Begun),
             Permission::Unknown | Permission::Denied if self.step == Step::Welcome => {
                 self.wants_to_begin = true;
-                commands.push(ShellCommand::AskPermission);
+                commands.push(PlatformCommand::AskPermission.into());
             }
             _ => {}
         }
@@ -121,11 +121,11 @@ impl App {
         self.fade = app_scene::camera_frame::Fade::default();
     }
 
-    pub(super) fn device(&mut self, device: Device, commands: &mut Vec<ShellCommand>) {
-        let was = std::mem::replace(&mut self.platform.device, device);
-        match (was, device) {
-            (_, Device::Lost) => commands.push(ShellCommand::ReopenDevice),
-            (Device::Lost, Device::Ready) => self.tell(Notice::DeviceRestarted),
+    pub(super) fn graphics(&mut self, state: GraphicsState, commands: &mut Vec<ShellCommand>) {
+        let was = std::mem::replace(&mut self.platform.graphics, state);
+        match (was, state) {
+            (_, GraphicsState::Lost) => commands.push(PlatformCommand::ReopenDevice.into()),
+            (GraphicsState::Lost, GraphicsState::Ready) => self.tell(Notice::DeviceRestarted),
             _ => {}
         }
     }

@@ -1,16 +1,16 @@
 //! What is kept from start to start: starts that came to no end, and the device that draws what it should.
 
 /// Unfinished starts in a row after which the app starts with the simplest preset.
-pub const N_UNFINISHED: u32 = 2;
+pub const MAX_FAILED_LAUNCHES: u32 = 2;
 /// Pictures of the moving toy after which a start is a good one.
 pub const N_GOOD_FRAMES: u32 = 60;
 
 /// What the shell keeps from start to start, as a text of some lines.
 ///
-/// It is read, [begun](Starts::begin) and stored again before the graphics device is opened, then handed to the app
+/// It is read, [begun](LaunchHistory::begin) and stored again before the graphics device is opened, then handed to the app
 /// ([`ShellEvent::Started`](super::ShellEvent::Started)), which asks for it to be stored whenever it changes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Starts {
+pub struct LaunchHistory {
     /// Starts in a row that did not come to an end, with the one under way.
     pub(super) n_unfinished: u32,
     /// So many had not that the simplest preset is used, until the person wants another.
@@ -23,25 +23,25 @@ pub struct Starts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Simplified {
     /// The app came to no end several times.
-    Starts,
+    FailedLaunches,
     /// The device does not draw what it should, and what is wrong.
     SelfTest(String),
 }
 
-impl Starts {
+impl LaunchHistory {
     /// What was kept. Lines that mean nothing are skipped, so that no file can keep an app from starting.
     #[must_use]
     pub fn read(text: &str) -> Self {
-        let mut starts = Self::default();
+        let mut history = Self::default();
         for line in text.lines() {
             match line.split_once(' ') {
-                Some(("unfinished", n)) => starts.n_unfinished = n.trim().parse().unwrap_or(0),
-                Some(("passed", device)) => starts.passed = Some(device.to_owned()),
-                None if line == "simple" => starts.is_simple = true,
+                Some(("unfinished", n)) => history.n_unfinished = n.trim().parse().unwrap_or(0),
+                Some(("passed", device)) => history.passed = Some(device.to_owned()),
+                None if line == "simple" => history.is_simple = true,
                 _ => {}
             }
         }
-        starts
+        history
     }
 
     /// What is to be kept.
@@ -59,7 +59,7 @@ impl Starts {
 
     /// Another start begins, which is to be stored before anything is done that may end it.
     pub fn begin(&mut self) {
-        if self.n_unfinished >= N_UNFINISHED {
+        if self.n_unfinished >= MAX_FAILED_LAUNCHES {
             self.is_simple = true;
             self.n_unfinished = 0;
         }

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::codec::{PictureCodec, png};
 use super::error::{Stop, WriteError};
-use super::queue::{Inlet, Outlet, queue};
+use super::queue::{RecordingSender, RecordingReceiver, queue};
 use super::writer::{Limits, Writer};
 use crate::ScenePaths;
 use crate::record::{CaptureRecord, Index};
@@ -23,16 +23,16 @@ const TOY: &str = "toy.glb";
 
 /// A recording that is to be written: by a thread of the caller's, which has the file.
 #[derive(Debug)]
-pub struct Take {
+pub struct RecordingJob {
     number: u64,
     scene: Scene,
     intrinsics: Intrinsics,
-    outlet: Outlet,
+    receiver: RecordingReceiver,
 }
 
 /// What the caller knows of a recording.
 #[derive(Debug)]
-pub struct TakeOptions<'a> {
+pub struct RecordingOptions<'a> {
     /// The toy's file.
     pub toy: &'a [u8],
     /// How pictures are encoded; plates never lose a code.
@@ -60,7 +60,7 @@ pub enum Ending {
 
 /// What became of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Taken {
+pub struct RecordingOutcome {
     /// Which it was.
     pub number: u64,
     /// Frames in it.
@@ -71,7 +71,7 @@ pub struct Taken {
     pub ending: Ending,
 }
 
-impl Taken {
+impl RecordingOutcome {
     /// Of one whose thread did not come to its end.
     #[must_use]
     pub fn died(number: u64) -> Self {
@@ -84,24 +84,24 @@ impl Taken {
     }
 }
 
-impl Take {
+impl RecordingJob {
     /// The recording of that number of a scene whose cameras mostly have these `intrinsics`, and where its frames go: it ends when all
-    /// inlets are gone.
+    /// senders are gone.
     #[must_use]
-    pub fn new(number: u64, scene: Scene, intrinsics: Intrinsics) -> (Inlet, Self) {
-        let (inlet, outlet) = queue(N_ITEMS, MAX_BYTES);
-        let take = Self {
+    pub fn new(number: u64, scene: Scene, intrinsics: Intrinsics) -> (RecordingSender, Self) {
+        let (sender, receiver) = queue(N_ITEMS, MAX_BYTES);
+        let job = Self {
             number,
             scene,
             intrinsics,
-            outlet,
+            receiver,
         };
-        (inlet, take)
+        (sender, job)
     }
 
     /// Writes it into an empty sink until it ends: the toy, the plates, then what comes; seconds or minutes.
-    pub fn run<W: Write>(mut self, sink: W, options: TakeOptions<'_>) -> Taken {
-        self.outlet
+    pub fn run<W: Write>(mut self, sink: W, options: RecordingOptions<'_>) -> RecordingOutcome {
+        self.receiver
             .take_live_frames(options.codec, Arc::clone(&self.scene.toy));
         let paths: Vec<_> = (0..self.scene.plates.len())
             .map(|place| format!("plates/{place:03}.png"))
@@ -129,14 +129,14 @@ impl Take {
             Err(error) => return self.ended(0, ending_of(error)),
         };
         let mut stop = None;
-        while let Some(written) = self.outlet.write_next(&mut writer) {
+        while let Some(written) = self.receiver.write_next(&mut writer) {
             // What cannot be encoded is left out; a writer that has stopped stays so.
             if let Err(WriteError::Stopped(reason)) = written {
                 stop = Some(reason);
                 break;
             }
         }
-        self.outlet.drop_rest();
+        self.receiver.drop_rest();
         let flushed = writer.flushed();
         match (writer.finish(), stop) {
             (Ok((_, flushed)), stop) => {
@@ -149,7 +149,7 @@ impl Take {
 
     /// What is told of one that has no file.
     #[must_use]
-    pub fn without_file(self, error: &std::io::Error) -> Taken {
+    pub fn without_file(self, error: &std::io::Error) -> RecordingOutcome {
         use std::io::ErrorKind;
         let ending = match error.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Ending::NoRoom,
@@ -165,11 +165,11 @@ impl Take {
         self.number
     }
 
-    fn ended(&self, n_frames: u32, ending: Ending) -> Taken {
-        Taken {
+    fn ended(&self, n_frames: u32, ending: Ending) -> RecordingOutcome {
+        RecordingOutcome {
             number: self.number,
             n_frames,
-            n_dropped: self.outlet.n_dropped_frames(),
+            n_dropped: self.receiver.n_dropped_frames(),
             ending,
         }
     }
