@@ -36,7 +36,6 @@ use app_scene::geometry::bounds::Sphere;
 pub(crate) struct Model {
     pub(crate) state: SceneState,
     pub(crate) region: Region,
-    order: Order,
     lighting: Lighting,
     captured: CaptureTargets,
     drawn: FrameTargets,
@@ -49,40 +48,6 @@ struct Passes {
     plate: plate::Pass,
     capture: capture::Passes,
     frame: frame::Passes,
-}
-
-/// The steps of both paths, by change.
-struct Order {
-    capture: [Vec<capture::order::Step>; Change::ALL.len()],
-    frame: Vec<frame::Step>,
-}
-
-impl Order {
-    fn new(plan: &Plan) -> Self {
-        Self {
-            capture: Change::ALL.map(|change| capture::order::order(plan, change)),
-            frame: frame::order(plan),
-        }
-    }
-
-    /// The capture steps that `change` needs after so many pictures.
-    fn captured(&self, change: Change, n_before: u32) -> impl Iterator<Item = capture::order::Step> {
-        let steps = self.capture[change as usize].iter().copied();
-        steps.filter(move |step| change != Change::Picture || step.is_due(n_before))
-    }
-}
-
-/// The passes that run for `change` and a new pose after so many pictures, each as often as it runs but for the steps of a fit.
-pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'static str)> {
-    let order = Order::new(plan);
-    let captured = order
-        .captured(change, n_before)
-        .flat_map(capture::order::Step::passes);
-    let drawn = order.frame.iter().flat_map(|step| step.passes());
-    captured
-        .map(|pass| (capture_path(change), *pass))
-        .chain(drawn.map(|pass| (Path::Frame, *pass)))
-        .collect()
 }
 
 /// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
@@ -105,7 +70,6 @@ impl Model {
     ) -> Self {
         Self {
             state,
-            order: Order::new(&plan),
             lighting: Lighting::new(gpu, &plan, light_points),
             captured: CaptureTargets::new(gpu, &plan),
             drawn: FrameTargets::new(gpu, &plan),
@@ -128,7 +92,6 @@ impl Model {
         globals: &Globals,
         light_points: Vec<Vec<Vec4>>,
     ) -> Self {
-        self.order = Order::new(&plan);
         let is_alike = plan.has_sizes_of(&self.region.plan);
         if is_alike && self.captured.serves(&plan) {
             self.captured.light.injected = None;
@@ -143,7 +106,6 @@ impl Model {
         let Self {
             state,
             mut region,
-            order,
             lighting,
             captured,
             drawn,
@@ -160,7 +122,6 @@ impl Model {
         Self {
             state,
             region,
-            order,
             lighting,
             captured,
             drawn,
@@ -196,7 +157,7 @@ impl Model {
         self.drawn.physical_marks = Some(physical);
     }
 
-    /// Encodes what of the frame path is due, and before it the capture steps that the change needs.
+    /// Encodes what the frame path cannot keep, and before it what the capture path learns of the change.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -204,36 +165,32 @@ impl Model {
         pictures: &Pictures<'_>,
         news: News,
     ) {
-        let change = news.change;
-        let lighting = (&self.passes.light, &self.lighting);
         let capture = CapturePath {
             region: &self.region,
             captured: &self.captured,
             passes: &self.passes.capture,
             plate: &self.passes.plate,
-            lighting,
+            light: &self.passes.light,
+            lighting: &self.lighting,
             state: &self.state,
             toy,
             pictures,
         };
-        recorder.path = capture_path(change);
-        for step in self.order.captured(change, pictures.n_before) {
-            capture.encode(recorder, step);
-        }
+        recorder.path = capture_path(news.change);
+        capture.encode(recorder, news.change);
         let frame = FramePath {
             region: &self.region,
             captured: &self.captured,
             drawn: &self.drawn,
             passes: &self.passes.frame,
-            lighting,
+            light: &self.passes.light,
+            lighting: &self.lighting,
             state: &self.state,
             toy,
             frame: pictures.frame,
         };
         recorder.path = Path::Frame;
-        for step in self.order.frame.iter().filter(|step| step.is_due(news)) {
-            frame.encode(recorder, *step);
-        }
+        frame.encode(recorder, news);
     }
 
     /// Replaces visibilities from the next frame on.

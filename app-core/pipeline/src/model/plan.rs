@@ -1,6 +1,4 @@
 //! The plan of a scene: numbers of points, sizes of maps, and what is left out. Pure data, made without a device.
-//!
-//! Both paths take their order from it (`capture::order`, `frame::order`).
 
 use glam::UVec2;
 use wgpu::TextureFormat;

@@ -8,7 +8,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::observed::Observed;
+use crate::model::capture::Observed;
 use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};

@@ -7,7 +7,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::observed::Observed;
+use crate::model::capture::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, MODEL};
 use crate::model::plan::Plan;
 use crate::model::state::grids::{GRID, Grids};

@@ -11,7 +11,7 @@ use crate::gpu::shader::{Part, Shader, part};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
-use crate::model::capture::observed::Observed;
+use crate::model::capture::Observed;
 use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, HEMISPHERES, MODEL, TOY_RADIANCE};
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::grids::{GRID, Grids};
@@ -110,6 +110,21 @@ pub(crate) struct Task {
 }
 
 impl Task {
+    /// Of the first receiver, with its plate as it is.
+    pub(crate) fn new(plan: &Plan, subject: Subject, is_first: bool) -> Self {
+        Self {
+            subject,
+            receiver: 0,
+            n_steps: match subject {
+                Subject::Intensities => plan.n_intensity_steps,
+                Subject::Receiver | Subject::Toy if is_first => plan.n_fit_steps,
+                Subject::Receiver | Subject::Toy => plan.n_refine_steps,
+            },
+            is_refinement: !is_first,
+            completes_plate: false,
+        }
+    }
+
     /// The uniform of step `index`, for a picture of `exposure_ratio` times the exposure of the one before.
     pub(crate) fn step(&self, plan: &Plan, index: u32, exposure_ratio: f32) -> FitStep {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;

@@ -4,7 +4,7 @@ use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
-use crate::model::capture::observed::Observed;
+use crate::model::capture::Observed;
 use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::plan::Plan;

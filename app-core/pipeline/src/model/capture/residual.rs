@@ -5,7 +5,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, part};
 use crate::gpu::texture::TextureView;
-use crate::model::capture::observed::Observed;
+use crate::model::capture::Observed;
 use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
 use crate::model::parts::{ACCUMULATED, MODEL};
 use crate::model::state::grids::{GRID, Grids};
