@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use app_core::alignment::{AlignError, LensAlignment};
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
-use app_core::governor::Step;
+use app_core::governor::QualityStep;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use app_core::session::{GroundTruth, Session, SessionError};
@@ -40,7 +40,7 @@ pub struct Options {
     /// How much work a frame may cost: all frames with each, and no two the same.
     pub presets: Vec<Preset>,
     /// What is turned down of the presets, as the governor does it.
-    pub turned_down: &'static [Step],
+    pub turned_down: &'static [QualityStep],
     /// The frames to replay, all without it.
     pub frames: Option<Range<usize>>,
     /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
@@ -237,13 +237,13 @@ struct Run<'a> {
     alignments: &'a Alignments,
     out: Option<Out>,
     follower: Follower,
-    turned_down: &'static [Step],
+    turned_down: &'static [QualityStep],
 }
 
 impl Run<'_> {
     fn set_scene(&mut self, scene: Scene, preset: Preset) -> Result<(), CoreError> {
         self.core.set_scene(scene, preset)?;
-        self.core.turn_down(self.turned_down)
+        self.core.set_quality_reductions(self.turned_down)
     }
 
     fn replay(

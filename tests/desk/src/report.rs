@@ -1,6 +1,6 @@
 //! What a replay found out, as it stands in `report.json`. The order of the fields is the order in the file.
 
-use app_core::frame::{FrameReport, LeftOut, PassRun, PassTime, Path, PixelRect};
+use app_core::frame::{FrameReport, SkippedWork, PassRun, PassTime, PassGroup, PixelRect};
 use app_core::scene::MAX_LIGHTS;
 use app_pipeline::model::state::solution::Fit;
 use serde::ser::SerializeStruct;
@@ -150,7 +150,7 @@ impl FrameEntry {
     /// Whether nothing was learned anew, so that its times are those of a frame in the long run.
     #[must_use]
     pub fn is_steady(&self) -> bool {
-        self.region.is_some() && self.passes.iter().all(|pass| pass.path != Path::Capture.name())
+        self.region.is_some() && self.passes.iter().all(|pass| pass.path != PassGroup::Capture.name())
     }
 }
 
@@ -244,11 +244,11 @@ impl From<PixelRect> for RectEntry {
     }
 }
 
-impl From<&LeftOut> for SkippedEntry {
-    fn from(left_out: &LeftOut) -> Self {
+impl From<&SkippedWork> for SkippedEntry {
+    fn from(skipped: &SkippedWork) -> Self {
         Self {
-            what: left_out.what,
-            why: left_out.why,
+            what: skipped.what,
+            why: skipped.reason,
         }
     }
 }

@@ -9,17 +9,16 @@ use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, Scene};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::pass_run::Path;
+use crate::gpu::pass_run::PassGroup;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::frame::Picture;
+use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
-use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
-use crate::plan::{Change, News};
+use crate::plan::{Change, FrameDelta};
 use crate::readback::FloatMap;
 use crate::readback::inject::{Injected, InjectedVisibility, upload};
 
@@ -77,11 +76,11 @@ impl Baseline {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        delta: FrameDelta,
     ) {
         let (passes, targets, scene) = (&self.passes, &self.targets, self.scene());
-        if news.change >= Change::View {
-            recorder.path = Path::Capture;
+        if delta.change >= Change::View {
+            recorder.group = PassGroup::Capture;
             self.encode_plate(recorder, pictures);
             passes.masks.encode(recorder, &self.globals, toy, &targets.masks);
             self.encode_shadow(recorder, toy, &toy.physical, self.injected.physical.as_ref());
@@ -96,15 +95,15 @@ impl Baseline {
                 passes.census.encode(recorder, labels, &targets.census);
             }
         }
-        recorder.path = Path::Frame;
-        if news.change == Change::Picture {
+        recorder.group = PassGroup::Frame;
+        if delta.change == Change::Picture {
             // The plate is brought to the exposure of the new picture.
             self.encode_plate(recorder, pictures);
         }
-        if !news.keeps_pose() {
+        if !delta.keeps_pose() {
             self.encode_shadow(recorder, toy, &toy.shown, self.injected.shown.as_ref());
         }
-        if !news.keeps_picture() {
+        if !delta.keeps_picture() {
             self.encode_picture(recorder, toy, pictures);
         }
     }

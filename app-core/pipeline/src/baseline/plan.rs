@@ -1,7 +1,7 @@
 //! The plan of the baseline.
 
 use crate::geometry::rect::PixelRect;
-use crate::plan::{LeftOut, SceneFacts};
+use crate::plan::{SkippedWork, SceneFacts};
 use crate::preset::BaselineSettings;
 use app_scene::scene::MAX_LIGHTS;
 
@@ -19,18 +19,18 @@ pub(crate) struct BaselinePlan {
     /// Whether the shadow is of constant strength, rather than sampled.
     pub(crate) is_constant: bool,
     /// Work that the scene does not need.
-    pub(crate) left_out: Vec<LeftOut>,
+    pub(crate) skipped: Vec<SkippedWork>,
 }
 
 impl BaselinePlan {
     /// Plans a scene. Lights beyond the fourth are left out.
     pub(crate) fn new(facts: &SceneFacts, settings: &BaselineSettings) -> Self {
         let is_constant = settings.constant_ratio.is_some();
-        let mut left_out = Vec::new();
+        let mut skipped = Vec::new();
         if is_constant {
-            left_out.push(LeftOut {
+            skipped.push(SkippedWork {
                 what: "samples of the real shadow",
-                why: "the preset's shadow is constant",
+                reason: "the preset's shadow is constant",
             });
         }
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
@@ -41,7 +41,7 @@ impl BaselinePlan {
             n_receivers: facts.n_receivers,
             n_sets: (1 << n_lights) - 1,
             is_constant,
-            left_out,
+            skipped,
         }
     }
 }

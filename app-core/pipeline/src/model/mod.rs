@@ -4,7 +4,6 @@ pub(crate) mod capture;
 pub mod diagnostics;
 pub(crate) mod frame;
 pub(crate) mod lighting;
-pub(crate) mod parts;
 pub mod plan;
 pub(crate) mod readback;
 pub(crate) mod region;
@@ -13,7 +12,7 @@ pub mod state;
 use glam::Vec4;
 
 use crate::gpu::context::Gpu;
-use crate::gpu::pass_run::Path;
+use crate::gpu::pass_run::PassGroup;
 use crate::gpu::recorder::Recorder;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::region_parts::{Marks, RegionParts};
@@ -22,12 +21,11 @@ use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
-use crate::passes::frame::Picture;
+use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::globals::Globals;
-use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, News};
+use crate::plan::{Change, FrameDelta};
 use crate::readback::FloatMap;
 use crate::readback::inject::InjectedVisibility;
 use app_scene::geometry::bounds::Sphere;
@@ -51,11 +49,11 @@ struct Passes {
 }
 
 /// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
-fn capture_path(change: Change) -> Path {
+fn capture_path(change: Change) -> PassGroup {
     if change >= Change::View {
-        Path::Capture
+        PassGroup::Capture
     } else {
-        Path::Frame
+        PassGroup::Frame
     }
 }
 
@@ -141,16 +139,16 @@ impl Model {
     }
 
     /// Looks for the toy and its shadows in the region, in the poses that are new.
-    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
-        if news.keeps_pose() {
+    pub(crate) fn update_coverage_tiles(&mut self, toy: &ToyMesh, delta: FrameDelta) {
+        if delta.keeps_pose() {
             return;
         }
-        let seen = (&self.region, &self.lighting);
+        let marks = |pose, maps| Marks::of(&self.region, &self.lighting, toy, pose, maps);
         let known = self.drawn.physical_marks.take();
         let physical = known
-            .filter(|_| news.change < Change::View)
-            .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
-        let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
+            .filter(|_| delta.change < Change::View)
+            .unwrap_or_else(|| marks(&toy.physical, &self.captured.light));
+        let shown = marks(&toy.shown, &self.drawn.light);
         let (plan, uniform) = (&self.region.plan, &self.region.uniform);
         self.drawn.shown_toy = toy.shown.seen_rect(&uniform.by_camera(), plan.toy_box.size_px);
         self.drawn.parts = RegionParts::new([&physical, &shown]);
@@ -163,7 +161,7 @@ impl Model {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        delta: FrameDelta,
     ) {
         let capture = CapturePath {
             region: &self.region,
@@ -176,8 +174,8 @@ impl Model {
             toy,
             pictures,
         };
-        recorder.path = capture_path(news.change);
-        capture.encode(recorder, news.change);
+        recorder.group = capture_path(delta.change);
+        capture.encode(recorder, delta.change);
         let frame = FramePath {
             region: &self.region,
             captured: &self.captured,
@@ -189,8 +187,8 @@ impl Model {
             toy,
             frame: pictures.frame,
         };
-        recorder.path = Path::Frame;
-        frame.encode(recorder, news);
+        recorder.group = PassGroup::Frame;
+        frame.encode(recorder, delta);
     }
 
     /// Replaces visibilities from the next frame on.
@@ -198,7 +196,7 @@ impl Model {
         let n_lights = self.region.plan.n_lights;
         let upload = |map: &Option<FloatMap>, light: &LightMaps| {
             let map = map.as_ref();
-            map.map(|map| InjectedLights::new(gpu, (map, n_lights), &light.visibility.lights))
+            map.map(|map| InjectedLights::new(gpu, map, n_lights, &light.visibility.lights))
         };
         self.captured.light.injected = upload(&maps.physical, &self.captured.light);
         self.drawn.light.injected = upload(&maps.shown, &self.drawn.light);

@@ -1,7 +1,7 @@
 //! Which passes a plan runs on which path, with which sizes and formats.
 
 use app_core::Core;
-use app_core::frame::{FrameInput, Path};
+use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::{BALANCED, Preset};
 use app_core::session::{Capture, Session};
 use app_pipeline::core::inspect::Inspect;
@@ -55,8 +55,8 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
 }
 
 fn leaves_out(plan: &Plan, what: &str) -> bool {
-    assert!(plan.left_out.iter().all(|left_out| !left_out.why.is_empty()));
-    plan.left_out.iter().any(|left_out| left_out.what == what)
+    assert!(plan.skipped.iter().all(|skipped| !skipped.reason.is_empty()));
+    plan.skipped.iter().any(|skipped| skipped.what == what)
 }
 
 /// A frame's change, and the passes of the capture path and of the frame path.
@@ -69,7 +69,7 @@ fn ran(core: &mut Core, input: &FrameInput) -> Ran {
         let runs = report.ran.iter().filter(|run| run.path == path);
         runs.map(|run| run.pass).collect::<Vec<_>>().join(" ")
     };
-    (report.change, [Path::Capture, Path::Frame].map(of))
+    (report.change, [PassGroup::Capture, PassGroup::Frame].map(of))
 }
 
 /// A core that counts frames of the bundled session, and the first of them.

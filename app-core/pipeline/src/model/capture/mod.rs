@@ -246,7 +246,7 @@ impl CapturePath<'_> {
         };
         for index in 0..task.n_steps {
             let step = task.step(&self.region.plan, index, self.pictures.exposure_ratio);
-            self.passes.fit.encode(recorder, &inputs, (&task, &step), targets);
+            self.passes.fit.encode(recorder, &inputs, &task, &step, targets);
             self.passes
                 .fit_solve
                 .encode(recorder, &to_solve, &step, self.state);

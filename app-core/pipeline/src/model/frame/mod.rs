@@ -13,10 +13,10 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::model::state::solution::{Scene, SeenScene};
-use crate::passes::frame::Frame;
+use crate::passes::pictures::Frame;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::News;
+use crate::plan::FrameDelta;
 
 passes!(Plan: moved_mask, toy, coverage, composite);
 
@@ -61,16 +61,17 @@ pub(crate) struct FramePath<'a> {
 
 impl FramePath<'_> {
     /// Draws what cannot stay of the frame before: of a paused toy a new picture changes the colours alone.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, news: News) {
-        if news.keeps_picture() {
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
+        if delta.keeps_picture() {
             return;
         }
         let (passes, of) = (self.passes, &self.drawn.by_pass);
-        let is_shape_new = !news.keeps_pose();
+        let is_shape_new = !delta.keeps_pose();
         if is_shape_new {
             self.encode_light(recorder);
-            let drawn = (self.region, self.toy);
-            passes.moved_mask.encode(recorder, drawn, &of.moved_mask);
+            passes
+                .moved_mask
+                .encode(recorder, self.region, self.toy, &of.moved_mask);
         }
         passes.toy.encode(recorder, &self.toy_inputs(), &of.toy);
         if is_shape_new {

@@ -41,7 +41,7 @@ pub(crate) struct InjectedLights {
 
 impl InjectedLights {
     /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
-    pub(crate) fn new(gpu: &Gpu, (map, n_lights): (&FloatMap, usize), like: &Texture) -> Self {
+    pub(crate) fn new(gpu: &Gpu, map: &FloatMap, n_lights: usize, like: &Texture) -> Self {
         let size_px = UVec2::new(map.width, map.height);
         let mut shadowed = Tiles::over(size_px, TILE_PX);
         let rows = (0..map.height).flat_map(|y| (0..map.width).map(move |x| UVec2::new(x, y)));
@@ -123,7 +123,7 @@ impl Lighting {
     }
 
     /// Marks the tiles of the region, of `TILE_PX`, in which a toy in a pose may hide any part of any light.
-    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, (posed, maps): (Posed<'_>, &LightMaps)) {
+    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, posed: Posed<'_>, maps: &LightMaps) {
         if let Some(injected) = &maps.injected {
             tiles.join(&injected.shadowed);
         }
@@ -138,7 +138,7 @@ impl Lighting {
                 };
                 posed
                     .toy
-                    .mark_seen(tiles, (posed.pose, self.casters.light), (&onto, AROUND_SHADOW_PX));
+                    .mark_seen(tiles, posed.pose, self.casters.light, &onto, AROUND_SHADOW_PX);
             }
         }
     }
@@ -168,9 +168,9 @@ impl Lighting {
                     side: Some(Side::Light(index)),
                 })
                 .collect();
-            let onto = (&maps.visibility.lights, &self.orders.lights);
             let inputs = inputs(self.casters.light);
-            passes.occlusion.encode(recorder, &inputs, &lights, onto);
+            let (map, order) = (&maps.visibility.lights, &self.orders.lights);
+            passes.occlusion.encode(recorder, &inputs, &lights, map, order);
             if let Some(injected) = &maps.injected {
                 recorder.copy(&injected.visibility, &maps.visibility.lights);
             }
@@ -179,9 +179,9 @@ impl Lighting {
             points: &self.ambient,
             side: None,
         }];
-        let onto = (&maps.visibility.ambient, &self.orders.ambient);
         let inputs = inputs(self.casters.ambient);
-        passes.occlusion.encode(recorder, &inputs, &ambient, onto);
+        let (map, order) = (&maps.visibility.ambient, &self.orders.ambient);
+        passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
 
     /// Draws the toy's shadow on itself.
