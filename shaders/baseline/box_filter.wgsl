@@ -5,6 +5,9 @@
 // Reads: terms with their label; then sums of rows. Writes: their sums, alpha the count.
 // CPU reference: reference/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and 3.5.
 
+//#import common/baseline
+//#import common/fullscreen
+
 struct Summed {
   // The label whose rows are summed; 0 sums columns of these sums, in texels of `receiver`.
   label: u32,

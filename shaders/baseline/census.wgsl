@@ -4,6 +4,8 @@
 // at 0.
 // CPU reference: reference/census.rs.
 
+//#import common/baseline
+
 @group(1) @binding(0) var eligible: texture_2d<u32>;
 @group(1) @binding(1) var<storage, read_write> seen_sets: array<atomic<u32>, MAX_RECEIVERS>;
 

@@ -9,6 +9,9 @@
 // binary) and 4.6 (a mask per light); 2019, section 5.7 (a subregion per receiver). The margin is an addition: a
 // pixel at an edge is half lit, or half toy.
 
+//#import common/baseline
+//#import common/fullscreen
+
 @group(1) @binding(0) var masks: texture_2d<f32>;
 @group(1) @binding(1) var visibility: texture_2d<f32>;
 

@@ -3,6 +3,8 @@
 // Reads: physical positions in anchor space. Writes: 0 or 1.
 // Source: Casas et al. 2018, section 4.2.
 
+//#import common/globals
+
 @vertex
 fn vs_project(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   return globals.clip_from_anchor * vec4f(in_anchor, 1.0);

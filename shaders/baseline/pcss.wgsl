@@ -8,6 +8,9 @@
 // Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], one channel per light.
 // CPU reference: reference/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
 
+//#import common/baseline
+//#import common/fullscreen
+
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 
 // Beyond a receiver's edge the adjacent receiver's texels are read: shadows meet at the edge.

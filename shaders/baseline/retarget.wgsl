@@ -10,6 +10,9 @@
 // CPU reference: reference/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4,
 // 4.3, 4.4 and 4.6.
 
+//#import common/baseline
+//#import common/fullscreen
+
 @group(1) @binding(0) var frame: texture_2d<f32>;
 @group(1) @binding(1) var plate: texture_2d<f32>;
 @group(1) @binding(2) var masks: texture_2d<f32>;

@@ -10,6 +10,9 @@
 // ring, the closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio is corrected here
 // to shadow over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
 
+//#import common/baseline
+//#import common/fullscreen
+
 @group(1) @binding(0) var warp: texture_2d_array<f32>;
 @group(1) @binding(1) var eligible: texture_2d<u32>;
 @group(1) @binding(2) var frame: texture_2d<f32>;

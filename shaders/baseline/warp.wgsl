@@ -8,6 +8,9 @@
 // Reads: positions of both poses. Writes: source in region_px, occluder's height over the receiver in metres, 1.
 // Source: Casas et al. 2018, sections 3.2 and 4.5; 2019, section 5.7.
 
+//#import common/baseline
+//#import common/flatten
+
 struct Warped {
   @builtin(position) clip: vec4f,
   // Homogeneous, so that the division comes after the interpolation.

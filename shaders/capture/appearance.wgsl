@@ -10,6 +10,12 @@
 // its visibility there; their base colour, alpha how far they face upwards.
 // CPU reference: reference/appearance.rs.
 
+//#import common/globals
+//#import common/hemispheres
+//#import common/depth
+//#import common/fullscreen
+//#import common/source
+
 @group(1) @binding(0) var validity: texture_2d<f32>;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
 @group(1) @binding(2) var gbuffer_normal: texture_2d<f32>;

@@ -10,6 +10,14 @@
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 
+//#import common/fit
+//#import common/frame
+//#import common/model
+//#import common/pixel
+//#import common/channels
+//#import common/fullscreen
+//#import common/marks
+
 @group(1) @binding(0) var plate: texture_2d<f32>;
 @group(1) @binding(1) var validity: texture_2d<f32>;
 @group(1) @binding(2) var visibility: texture_2d<f32>;

@@ -5,6 +5,14 @@
 // Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate. CPU reference: reference/estimate.rs.
 
+//#import common/fit
+//#import common/frame
+//#import common/model
+//#import common/channels
+//#import common/completed
+//#import common/fullscreen
+//#import common/marks
+
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var plate: texture_2d<f32>;
 @group(1) @binding(3) var validity: texture_2d<f32>;

@@ -7,6 +7,9 @@
 // 0 where the whole grid is empty.
 // CPU reference: reference/fill.rs. Source: Gortler et al. 1996, section 3.4.
 
+//#import common/grid
+//#import common/between_cells
+
 @group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
 
 const WORKGROUP: u32 = 256u;

@@ -13,6 +13,16 @@
 // channel.
 // CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
 
+//#import common/fit
+//#import common/frame
+//#import common/fit_step
+//#import common/model
+//#import common/toy_radiance
+//#import common/pixel
+//#import common/marks
+//#import common/completed
+//#import common/fit_sums
+
 // Where the plate is to be completed.
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 

@@ -9,6 +9,10 @@
 // CPU reference: reference/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
 // only ever taken out here, the most negative one first.
 
+//#import common/fit
+//#import common/fit_step
+//#import common/receiver_light
+
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
 @group(1) @binding(2) var<storage, read_write> solution: Fit;

@@ -4,6 +4,10 @@
 // (linear, alpha 1 on the toy), unit normal in anchor space and the material's index, each light's cosine times its
 // visibility, reversed depth.
 
+//#import common/self_shadow
+//#import common/material
+//#import common/behind
+
 struct Vertex {
   @builtin(instance_index) material: u32,
   @location(0) in_anchor: vec3f,

@@ -4,6 +4,13 @@
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 // CPU reference: reference/lit.rs.
 
+//#import common/fit
+//#import common/frame
+//#import common/model
+//#import common/channels
+//#import common/pool
+//#import common/marks
+
 @group(1) @binding(4) var validity: texture_2d<f32>;
 @group(1) @binding(5) var visibility: texture_2d<f32>;
 @group(1) @binding(6) var ambient: texture_2d<f32>;

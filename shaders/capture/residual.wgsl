@@ -5,6 +5,13 @@
 // Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
 // the pyramids. CPU reference: reference/residual.rs.
 
+//#import common/fit
+//#import common/frame
+//#import common/model
+//#import common/pixel
+//#import common/pool
+//#import common/marks
+
 @group(1) @binding(4) var plate: texture_2d<f32>;
 @group(1) @binding(5) var validity: texture_2d<f32>;
 @group(1) @binding(6) var visibility: texture_2d<f32>;

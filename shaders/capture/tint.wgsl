@@ -6,6 +6,15 @@
 //
 // Reads: frame, validity, gbuffer, fit. Writes: sums of the finest cells. CPU reference: reference/tint.rs.
 
+//#import common/fit
+//#import common/frame
+//#import common/toy_radiance
+//#import common/pixel
+//#import common/channels
+//#import common/tint_grid
+//#import common/tint_cells
+//#import common/marks
+
 // Sampling stride in pixels along each side, so large that no sum overflows.
 @group(1) @binding(0) var<uniform> stride_px: u32;
 @group(1) @binding(1) var<uniform> tint_grid: TintGrid;

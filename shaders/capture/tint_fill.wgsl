@@ -8,6 +8,10 @@
 // finest holds (tint, 1). CPU reference: reference/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a
 // volume.
 
+//#import common/pixel
+//#import common/accumulated
+//#import common/between_tints
+
 @group(1) @binding(0) var<storage, read> sums: array<u32>;
 // Sums of tints times certainty, and of certainties.
 @group(1) @binding(1) var<storage, read_write> accumulated: array<vec4f>;

@@ -4,6 +4,9 @@
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as neither.
 // Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: reference/validity.rs.
 
+//#import common/depth
+//#import common/fullscreen
+
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
 
 // Distance kept from the toy's outline on the receiver.

@@ -4,6 +4,10 @@
 // hid it; there a is 0, and a half beside the toy.
 // CPU reference: reference/withhold.rs.
 
+//#import common/model
+//#import common/channels
+//#import common/fullscreen
+
 @group(1) @binding(0) var validity: texture_2d<f32>;
 @group(1) @binding(1) var visibility: texture_2d<f32>;
 @group(1) @binding(2) var ambient: texture_2d<f32>;

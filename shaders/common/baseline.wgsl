@@ -1,5 +1,7 @@
 // Constants that the papers leave open, tuned as `preset.rs` states, and properties of the scene.
 
+//#import common/globals
+
 struct Baseline {
   // Radius of each light's disc: metres for a sphere, slope for a directional light.
   light_radii: vec4f,

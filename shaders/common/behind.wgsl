@@ -1,5 +1,7 @@
 // Whether a receiver hides the toy: a foot that sinks into the table, a tail behind a wall.
 
+//#import common/globals
+
 // Share of the depth within which a surface lies on the receiver, not behind it.
 const ON_RECEIVER: f32 = 1e-4;
 

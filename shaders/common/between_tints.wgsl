@@ -1,5 +1,7 @@
 // Trilinear interpolation of tints.
 
+//#import common/tint_cells
+
 // Cells of all levels of a grid: 16, 8, 4, 2 and 1 along each side, finest first.
 const TINT_PYRAMID: u32 = 4681u;
 

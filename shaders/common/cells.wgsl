@@ -1,5 +1,9 @@
 // The value of a coarse grid at a receiver's point.
 
+//#import common/globals
+//#import common/grid
+//#import common/between_cells
+
 fn cell_at(point: ReceiverPoint) -> vec4f {
   let receiver = receiver_of(point);
   let cell_m = grids.grids[receiver].cell_m;

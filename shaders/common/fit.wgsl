@@ -1,5 +1,7 @@
 // Solution of the least-squares fits to the real shadow and the real toy.
 
+//#import common/globals
+
 const N_COLUMNS: u32 = 6u;
 
 struct ReceiverFit {

@@ -1,5 +1,7 @@
 // Sums of weighted normal equations: over the pixels of an invocation, then over its workgroup, into rows of the shader's.
 
+//#import common/fit
+
 const WORKGROUP: u32 = 256u;
 // Upper triangle of the symmetric matrix row by row, then the right-hand side, then the clipped pixels' part of the
 // matrix' first element.

@@ -1,5 +1,7 @@
 // Projection of a point from a light onto a receiver, and the clip position of its shadow. Source: Blinn 1988.
 
+//#import common/globals
+
 // Homogeneous (x, z, w): the line from the light through the point meets y = 0 at (x, z) / w. w is the height of the
 // light above the point; nothing is divided here, since the rasteriser clips points above the light.
 fn flatten(light: vec4f, in_plane: vec3f) -> vec3f {

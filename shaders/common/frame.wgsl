@@ -1,5 +1,9 @@
 // The camera's picture in the work region, as linear light, read in the form that it came in.
 
+//#import common/globals
+//#import common/srgb
+//#import common/planes
+
 // Whether it is planes: a constant, so that nothing of the other form is left in what is compiled.
 override IS_PLANAR: bool = false;
 

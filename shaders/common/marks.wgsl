@@ -1,5 +1,7 @@
 // Marks of the validity mask, which is of the physical box: all else shows the receiver, well clear of the toy.
 
+//#import common/globals
+
 const FAR_MARKS = vec4f(1.0, 0.0, 1.0, 1.0);
 
 fn marks_at(region_texel: vec2i) -> vec4f {

@@ -10,6 +10,8 @@
 // Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one fraction per
 // light, so that no sample with the same overlap is needed (compare Chuang et al. 2003, shadow matting).
 
+//#import common/fit
+
 // Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
 // Positive, since the direct fractions sum to less than 1.
 fn plate_falloff(point: ReceiverPoint) -> vec3f {

@@ -1,5 +1,7 @@
 // Whether a point of the toy has moved on the screen.
 
+//#import common/globals
+
 // Distance in pixels up to which a point counts as still, and from which as moved.
 const STILL_PX: f32 = 0.05;
 const MOVED_PX: f32 = 0.2;

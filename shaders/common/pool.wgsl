@@ -3,6 +3,10 @@
 // A cell takes a fixed set of points of its receiver, whichever pixels show them, so that it does not swim when the
 // camera moves.
 
+//#import common/globals
+//#import common/grid
+//#import common/accumulated
+
 // Cells of values times their certainty, all levels of the pyramids; pooling writes the finest.
 @group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
 // What was known before: sums of values times certainty, and of certainties. Those of the finest levels alone.

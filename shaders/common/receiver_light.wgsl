@@ -4,6 +4,9 @@
 // to the receiver is to the ambient light on a surface that lies like the receiver. From below comes what the first
 // receiver throws back.
 
+//#import common/fit
+//#import common/hemispheres
+
 // Part of the light from above that a receiver throws back: middle grey and somewhat less, since the toy shades it.
 const PRIOR_REFLECTANCE: f32 = 0.25;
 // Share of all lights below which a light's relation has no more weight.

@@ -6,6 +6,8 @@
 // Source: Williams 1978 (shadow maps), Holbert 2011 (normal offset; here in closed form), Heckbert and Herf 1997
 // (soft shadows as a mean over light points).
 
+//#import common/toy_light
+
 const MAX_TILES: u32 = 64u;
 
 struct SelfShadow {

@@ -1,5 +1,7 @@
 // Which pixel near a pixel of the physical box its colour is from.
 
+//#import common/globals
+
 // Farthest that a pixel of one surface is looked for.
 const REACH_PX: i32 = 3;
 // Pixels around a pixel are numbered row by row, so many to a row.

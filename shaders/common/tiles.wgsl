@@ -1,5 +1,7 @@
 // Tiles of a counting target, closed to what is drawn next, or opened to it again.
 
+//#import common/globals
+
 @vertex
 fn vs_tile(@location(0) in_region_px: vec3f, @builtin(instance_index) is_closed: u32) -> @builtin(position) vec4f {
   let at = in_region_px.xy / globals.region_size_px * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);

@@ -1,5 +1,7 @@
 // Cosine of the toy's surface to a light, for a unit normal in anchor space.
 
+//#import common/globals
+
 // Cosine of the normal to light `i`, 0 where the surface is turned away.
 fn light_cosine(i: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
   let light = globals.lights[i];

@@ -1,6 +1,9 @@
 // Fitted radiance of the toy over base colour and gain: ambient light from above and from below, and one factor per
 // light, stated at the plate's intensity, for intensity times cosine times visibility. None of them is negative.
 
+//#import common/fit
+//#import common/hemispheres
+
 fn toy_radiance_over_base(normal: vec3f, received: vec4f) -> vec3f {
   return toy_radiance_from(hemispheres(normal), received);
 }

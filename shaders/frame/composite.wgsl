@@ -9,6 +9,16 @@
 // linear
 // colour, opaque. CPU reference: reference/composite.rs.
 
+//#import common/fit
+//#import common/frame
+//#import common/model
+//#import common/pixel
+//#import common/cells
+//#import common/channels
+//#import common/covered
+//#import common/fullscreen
+//#import common/marks
+
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
   has_detail: u32,

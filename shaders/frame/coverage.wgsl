@@ -11,6 +11,10 @@
 // Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position of the lattice that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
+//#import common/behind
+//#import common/covered
+//#import common/tiles
+
 struct Positions {
   // How many are drawn for, all or a part of N_POSITIONS: each stands for as many.
   n: u32,

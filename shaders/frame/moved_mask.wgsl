@@ -2,6 +2,9 @@
 //
 // Reads: both poses. Writes: 1 where the surface has moved, as a fraction of the pixel.
 
+//#import common/moved
+//#import common/behind
+
 struct Surface {
   @builtin(position) clip: vec4f,
   @location(0) shown_clip: vec4f,

@@ -8,6 +8,20 @@
 // under, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, alpha the fraction of
 // samples hit; where it differs from the camera's pixel.
 
+//#import common/fit
+//#import common/frame
+//#import common/toy_light
+//#import common/toy_radiance
+//#import common/self_shadow
+//#import common/material
+//#import common/depth
+//#import common/moved
+//#import common/channels
+//#import common/tint_grid
+//#import common/between_tints
+//#import common/behind
+//#import common/source
+
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;

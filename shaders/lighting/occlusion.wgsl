@@ -16,6 +16,9 @@
 // CPU reference: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
 // Here the accumulation is done by the blending of one pass rather than by one pass per point.
 
+//#import common/flatten
+//#import common/tiles
+
 struct LightPoints {
   // Homogeneous: (position, 1) or (unit direction, 0); point k in the space of receiver r has index r n_points + k.
   points: array<vec4f, 256>,

@@ -4,6 +4,8 @@
 // Reads: posed positions in anchor space. Writes: reversed depth.
 // CPU reference: reference/self_shadow.rs.
 
+//#import common/self_shadow
+
 @vertex
 fn vs_light(@location(0) in_anchor: vec3f, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
   return self_shadow.atlas_from_anchor[tile] * vec4f(in_anchor, 1.0);

@@ -3,6 +3,9 @@
 // Reads: luma, chroma (Cb, Cr) of half its size, rounded up. Writes: codes of the camera image, opaque.
 // CPU reference: reference/camera_planes.rs.
 
+//#import common/fullscreen
+//#import common/planes
+
 @group(1) @binding(0) var<uniform> encoding: Encoding;
 @group(1) @binding(1) var luma: texture_2d<f32>;
 @group(1) @binding(2) var chroma: texture_2d<f32>;

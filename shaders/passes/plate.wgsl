@@ -6,6 +6,9 @@
 // Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: reference/plate.rs.
 // Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
 
+//#import common/globals
+//#import common/fullscreen
+
 const MAX_PLATES: u32 = 4u;
 
 struct PlateView {

@@ -2,6 +2,9 @@
 //
 // Reads: frame_codes and region_codes, 8 bits. Writes: codes, opaque.
 
+//#import common/srgb
+//#import common/fullscreen
+
 struct Placement {
   origin_px: vec2u,
   size_px: vec2u,

@@ -4,6 +4,10 @@
 // the frame as well where the region fades. Writes: sRGB codes, opaque.
 // Frame and region are each filtered by itself, planes as codes: at the region's border all show the same light.
 
+//#import common/srgb
+//#import common/fullscreen
+//#import common/planes
+
 struct ScreenMap {
   // Columns of the map from pixels of the screen to those of the picture.
   x_axis: vec2f,

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
-use super::mask::Mask;
-use super::picture::{Picture, Pyramid};
+use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;

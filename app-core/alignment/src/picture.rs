@@ -1,11 +1,20 @@
-//! Pictures in linear light, and ever smaller copies of them.
+//! Pictures in linear light, ever smaller copies of them, and marks on their pixels.
 
 use glam::{DVec2, IVec2, UVec2};
 
-use super::mask::Mask;
-use super::rectangle::{index_in, places};
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Image, Intrinsics};
+
+/// Index of a place within a rectangle of a size; none outside it.
+pub(super) fn index_in(size_px: IVec2, place: IVec2) -> Option<usize> {
+    let is_inside = place.cmpge(IVec2::ZERO).all() && place.cmplt(size_px).all();
+    is_inside.then_some((place.y * size_px.x + place.x) as usize)
+}
+
+/// All places of a rectangle, in the order of their indices.
+pub(super) fn places(size_px: IVec2) -> impl Iterator<Item = IVec2> + Clone + use<> {
+    (0..size_px.y).flat_map(move |y| (0..size_px.x).map(move |x| IVec2::new(x, y)))
+}
 
 /// Linear red, green and blue.
 pub(super) type Color = [f32; 3];
@@ -182,4 +191,52 @@ pub(super) fn noise_deviation(linear: f32) -> f32 {
         2.4 / 1.055 * linear.powf(1.4 / 2.4)
     };
     NOISE_CODES / 255.0 * slope
+}
+
+/// Marked pixels, rows from the top.
+#[derive(Clone, Debug)]
+pub(super) struct Mask {
+    size_px: IVec2,
+    pixels: Vec<bool>,
+}
+
+impl Mask {
+    /// Of a picture of a size, with no mark.
+    pub(super) fn new(size_px: IVec2) -> Self {
+        Self {
+            size_px,
+            pixels: vec![false; (size_px.x * size_px.y) as usize],
+        }
+    }
+
+    /// Whether a pixel is marked; none is outside the picture.
+    pub(super) fn has(&self, at: IVec2) -> bool {
+        index_in(self.size_px, at).is_some_and(|index| self.pixels[index])
+    }
+
+    /// Marks a pixel; none outside the picture.
+    pub(super) fn mark(&mut self, at: IVec2) {
+        if let Some(index) = index_in(self.size_px, at) {
+            self.pixels[index] = true;
+        }
+    }
+
+    /// With all pixels within a square around each that is marked.
+    pub(super) fn grown(&self, reach_px: i32) -> Self {
+        self.grown_along(IVec2::X, reach_px)
+            .grown_along(IVec2::Y, reach_px)
+    }
+
+    fn grown_along(&self, axis: IVec2, reach_px: i32) -> Self {
+        let mut grown = self.clone();
+        for at in places(self.size_px).filter(|at| self.has(*at)) {
+            // What lies between two that are marked is so already.
+            let before = if self.has(at - axis) { 0 } else { reach_px };
+            let behind = if self.has(at + axis) { 0 } else { reach_px };
+            for step in -before..=behind {
+                grown.mark(at + step * axis);
+            }
+        }
+        grown
+    }
 }

@@ -2,8 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
-use super::picture::{Picture, UNKNOWN};
-use super::rectangle::places;
+use super::picture::{Picture, UNKNOWN, places};
 use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 

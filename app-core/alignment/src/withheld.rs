@@ -3,7 +3,7 @@
 use glam::{DVec2, UVec2};
 
 use super::lights::flat_shadows;
-use super::mask::Mask;
+use super::picture::Mask;
 use super::raster::{Rasterizer, project};
 use super::receivers::SeenReceiver;
 use super::shape::Shape;

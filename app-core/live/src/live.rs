@@ -14,7 +14,7 @@ use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
-use app_pipeline::governor::{BALANCED_FRONT, Governor, Measured};
+use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Governor, Measured};
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
 use app_scene::camera_frame::Display;
@@ -248,7 +248,7 @@ impl Live {
     /// The governor of the preset that is used.
     fn govern_preset(&mut self) {
         let target_fps = self.target_fps.filter(|_| self.preset == Preset::Balanced);
-        self.governor = target_fps.map(|fps| Governor::new(BALANCED_FRONT, fps));
+        self.governor = target_fps.map(|fps| Governor::new(BALANCED_QUALITY_LADDER, fps));
     }
 
     /// Has the device draw its test picture, once for each driver and version of this crate.
@@ -278,7 +278,7 @@ impl Live {
             thermal: self.app.thermal(),
         });
         if turned.is_some() {
-            self.core.turn_down(governor.turned_down())?;
+            self.core.set_quality_reductions(governor.turned_down())?;
         }
         Ok(())
     }
@@ -302,7 +302,7 @@ impl Live {
                     self.core.set_scene(Arc::clone(scene), self.preset)?;
                     self.scene = Some(Arc::clone(scene));
                     if let Some(governor) = &self.governor {
-                        self.core.turn_down(governor.turned_down())?;
+                        self.core.set_quality_reductions(governor.turned_down())?;
                     }
                 }
                 let (preset, app) = (self.preset, &self.app);

@@ -3,8 +3,8 @@
 //! Its entries are the passes of a [`FrameReport`], whose work a recorder counts from the descriptors that it records
 //! with; [`Core::counting`](crate::Core::counting) makes such reports without a device.
 
-use crate::frame::report::FrameReport;
-use crate::gpu::pass_run::{PassRun, Path};
+use crate::frame::FrameReport;
+use crate::gpu::pass_run::{PassRun, PassGroup};
 use crate::gpu::work::Work;
 
 /// Bytes of a mebibyte.
@@ -26,7 +26,7 @@ impl Ledger {
     #[must_use]
     pub fn new(report: &FrameReport, screen_px: [u32; 2], present: Option<Work>) -> Self {
         let shown = present.map(|work| PassRun {
-            path: Path::Frame,
+            path: PassGroup::Frame,
             pass: "screen",
             n_runs: 1,
             work,

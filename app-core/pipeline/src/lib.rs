@@ -20,8 +20,36 @@ mod stage;
 pub use crate::core::{Core, CoreError};
 pub use wgpu;
 
+use gpu::shader::{Mirrors, Shader};
+
+/// What the host shares of the parts that shaders import.
+const SHARED: &[&Mirrors] = &[
+    &baseline::uniform::BASELINE,
+    &model::capture::appearance::SOURCE,
+    &model::capture::fit::FIT_STEP,
+    &model::capture::pool::POOL,
+    &model::frame::coverage::COVERED,
+    &model::lighting::self_shadow::SELF_SHADOW_MAPS,
+    &model::state::grids::GRID,
+    &model::state::solution::FIT,
+    &model::state::tints::BETWEEN_TINTS,
+    &model::state::tints::TINT_CELL,
+    &model::state::tints::TINT_GRID,
+    &passes::globals::GLOBALS,
+    &passes::pictures::PLANES,
+];
+
+/// What the host shares of a shader: of the parts that it imports, and of its own file.
+#[must_use]
+pub fn mirrors(shader: &'static Shader) -> Vec<&'static Mirrors> {
+    let imports = shader.imports();
+    let shared = SHARED.iter().copied();
+    let imported = shared.filter(|mirrors| imports.contains(&mirrors.path));
+    imported.chain([&shader.mirrors]).collect()
+}
+
 /// Every shader of the registry.
-pub fn shaders() -> impl Iterator<Item = &'static gpu::shader::Shader> {
+pub fn shaders() -> impl Iterator<Item = &'static Shader> {
     let rooms = [
         model::lighting::SHADERS,
         model::capture::SHADERS,

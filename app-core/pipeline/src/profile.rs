@@ -17,7 +17,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::frame::report::FrameReport;
+use crate::frame::FrameReport;
 use crate::gpu::pass_run::PassTime;
 use crate::gpu::stages::StageTime;
 
@@ -163,11 +163,11 @@ impl Profile {
     pub fn add(&mut self, report: &FrameReport, frame: Frame<'_>) {
         let begin = frame.begin_ms;
         self.events
-            .push(scope(FRAME, PROCESSOR, (begin, frame.cpu_ms), frame.args));
+            .push(scope(FRAME, PROCESSOR, begin, frame.cpu_ms, frame.args));
         for stage in report.stages.iter().chain(frame.further_stages) {
-            let span = (stage.begin_ms, stage.cpu_ms);
+            let (begin_ms, ms) = (stage.begin_ms, stage.cpu_ms);
             self.events
-                .push(scope(stage.stage, PROCESSOR, span, Args::default()));
+                .push(scope(stage.stage, PROCESSOR, begin_ms, ms, Args::default()));
         }
         let mut at_ms = begin;
         for time in frame.pass_times {
@@ -181,7 +181,7 @@ impl Profile {
                 ..Args::default()
             };
             self.events
-                .push(scope(time.pass, DEVICE, (at_ms, time.gpu_ms), args));
+                .push(scope(time.pass, DEVICE, at_ms, time.gpu_ms, args));
             at_ms += time.gpu_ms;
         }
     }
@@ -226,7 +226,7 @@ impl Profile {
     }
 }
 
-fn scope(name: &str, tid: u32, (begin_ms, ms): (f64, f64), args: Args) -> Event {
+fn scope(name: &str, tid: u32, begin_ms: f64, ms: f64, args: Args) -> Event {
     Event {
         name: name.to_owned(),
         ph: "X".to_owned(),

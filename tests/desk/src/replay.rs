@@ -9,7 +9,7 @@ use app_core::alignment::{AlignError, LensAlignment};
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
-use app_core::governor::Step;
+use app_core::governor::QualityStep;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use app_core::session::{GroundTruth, Session, SessionError, SessionFrame, Truth};
@@ -41,7 +41,7 @@ pub struct Options {
     /// How much work a frame may cost: all frames with each, and no two the same.
     pub presets: Vec<Preset>,
     /// What is turned down of the presets, as the governor does it.
-    pub turned_down: &'static [Step],
+    pub turned_down: &'static [QualityStep],
     /// The frames to replay, all without it.
     pub frames: Option<Range<usize>>,
     /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
@@ -304,7 +304,7 @@ impl<'a> Run<'a> {
 
     fn set_scene(&mut self, scene: Scene) -> Result<(), CoreError> {
         self.core.set_scene(scene, self.preset)?;
-        self.core.turn_down(self.turned_down)
+        self.core.set_quality_reductions(self.turned_down)
     }
 
     fn frame(&mut self, shot: &Shot<'_>) -> Result<FrameEntry, ReplayError> {

@@ -2,7 +2,7 @@
 //! order in the file, and a number that is not finite is null there.
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
-use app_core::frame::{FrameReport, PassTime, Path};
+use app_core::frame::{FrameReport, PassGroup, PassTime};
 use app_core::scene::MAX_LIGHTS;
 use app_pipeline::model::state::solution::Fit;
 use serde::Serialize;
@@ -165,7 +165,7 @@ impl FrameEntry {
     /// Whether nothing was learned anew, so that its times are those of a frame in the long run.
     #[must_use]
     pub fn is_steady(&self) -> bool {
-        self.report.region.is_some() && self.report.ran.iter().all(|run| run.path != Path::Capture)
+        self.report.region.is_some() && self.report.ran.iter().all(|run| run.path != PassGroup::Capture)
     }
 }
 

@@ -12,7 +12,7 @@ use std::ops::Range;
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
-use app_core::governor::Step;
+use app_core::governor::QualityStep;
 use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
 use app_pipeline::core::inspect::Inspect;
@@ -130,7 +130,7 @@ fn compare_with_paper(rows: &mut [Row]) {
 fn measure(
     session: &Capture,
     core: &mut Core,
-    (preset, turned_down): (Preset, &'static [Step]),
+    (preset, turned_down): (Preset, &'static [QualityStep]),
     (options, alignments): (&Options, &mut Alignments),
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
@@ -160,7 +160,7 @@ fn measure(
 fn times(
     session: &Capture,
     core: &mut Core,
-    (preset, turned_down): (Preset, &[Step]),
+    (preset, turned_down): (Preset, &[QualityStep]),
     (options, inputs): (&Options, &[FrameInput]),
 ) -> Result<Vec<KindTimes>, ReplayError> {
     let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
@@ -168,7 +168,7 @@ fn times(
             let inputs = inputs.iter().take(kinds::MOST_INPUTS);
             let scene = sized_scene(session.scene(), size_px);
             core.set_scene(scene.clone(), preset)?;
-            core.turn_down(turned_down)?;
+            core.set_quality_reductions(turned_down)?;
             (scene, inputs.map(|input| sized_input(input, size_px)).collect())
         }
         None => (session.scene().clone(), inputs.to_vec()),

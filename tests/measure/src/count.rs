@@ -3,7 +3,7 @@
 use app_core::camera_frame::Display;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
-use app_core::governor::Step;
+use app_core::governor::QualityStep;
 use app_core::ledger::Ledger;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
@@ -37,13 +37,13 @@ impl Counted {
 /// When the core takes no such scene or frame.
 pub fn count(
     scene: &Scene,
-    (preset, turned_down): (Preset, &[Step]),
+    (preset, turned_down): (Preset, &[QualityStep]),
     input: &FrameInput,
 ) -> Result<Vec<Counted>, CoreError> {
     let of_kind = |kind: FrameKind| {
         let mut core = Core::counting();
         core.set_scene(scene.clone(), preset)?;
-        core.turn_down(turned_down)?;
+        core.set_quality_reductions(turned_down)?;
         core.draw_every_pose()?;
         let others = [input.clone(), with_new(input, kind)];
         for known in &others {

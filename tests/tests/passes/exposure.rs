@@ -1,7 +1,7 @@
 //! The published method's plate is at the exposure of the frame, whatever its own.
 
 use app_core::core::Core;
-use app_core::frame::Path;
+use app_core::frame::PassGroup;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
 use app_pipeline::core::inspect::Inspect;
@@ -69,7 +69,7 @@ fn plates_of_the_published_method_follow_each_picture() {
                 let mut core = core_on(with_plates.clone(), preset).unwrap();
                 for (index, (frame, gain)) in frames.iter().zip(GAINS).enumerate() {
                     let report = core.frame(&input(&here, frame)).unwrap();
-                    let path = if index == 0 { Path::Capture } else { Path::Frame };
+                    let path = if index == 0 { PassGroup::Capture } else { PassGroup::Frame };
                     assert!(
                         report
                             .ran

@@ -1,7 +1,7 @@
 //! Visibility from outside: the device's own changes nothing, another is what is drawn.
 
 use app_core::core::CoreError;
-use app_core::frame::Path;
+use app_core::frame::PassGroup;
 use app_core::preset::Preset;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::inject::InjectedVisibility;
@@ -42,7 +42,7 @@ fn injected_visibility_takes_the_place_of_the_devices_own() {
             core.read_picture().unwrap() == before,
             "{preset}: the same map, another picture"
         );
-        let learned = report.ran.iter().any(|run| run.path == Path::Capture);
+        let learned = report.ran.iter().any(|run| run.path == PassGroup::Capture);
         assert!(learned, "{preset}: nothing was learned again");
 
         let dark = FloatMap {

@@ -1,7 +1,7 @@
 //! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
 
 use app_core::governor::{
-    BALANCED_FRONT, Governor, Thermal, Knob, Measured, SETTLE_FRAMES, Turned, UP_FRAMES, WINDOW,
+    BALANCED_QUALITY_LADDER, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned, UP_FRAMES, WINDOW,
 };
 
 /// A screen's frame at 60 Hz.
@@ -32,7 +32,7 @@ struct Phone {
 impl Phone {
     fn new(full_ms: f64) -> Self {
         Self {
-            governor: Governor::new(BALANCED_FRONT, 60),
+            governor: Governor::new(BALANCED_QUALITY_LADDER, 60),
             full_ms,
             truth: 1.0,
             noise: 0.05,
@@ -57,7 +57,7 @@ impl Phone {
     /// A frame's time on the device: the steps that are taken, noise and spikes.
     fn time_ms(&mut self) -> f64 {
         let taken = self.governor.turned_down().iter();
-        let cost = taken.filter(|step| step.knob != Knob::FramesPerSecond);
+        let cost = taken.filter(|step| step.setting != QualitySetting::FramesPerSecond);
         let gain: f64 = cost.map(|step| step.gain.powf(self.truth)).product();
         let normal: f64 = (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0;
         let spike = if self.uniform() < self.spikes { 3.0 } else { 1.0 };
@@ -165,7 +165,7 @@ fn whatever_the_load_it_comes_to_rest() {
             phone.run(10 * MINUTE);
             let late: Vec<_> = phone.turns.iter().filter(|(at, _)| *at > before).collect();
             assert!(late.len() <= 1, "{truth} at {percent} %: {late:?}");
-            let is_at_end = phone.level() == BALANCED_FRONT.len();
+            let is_at_end = phone.level() == BALANCED_QUALITY_LADDER.len();
             assert!(
                 phone.late_share(MINUTE) < 0.05 || is_at_end,
                 "{truth} at {percent} %"
@@ -254,8 +254,8 @@ fn thirty_frames_a_second_are_the_last_resort_and_a_frame_then_has_twice_the_tim
     phone.run(MINUTE);
     assert_eq!(phone.governor.frames_per_second(), 30);
     assert_eq!(
-        phone.governor.turned_down().last().unwrap().knob,
-        Knob::FramesPerSecond
+        phone.governor.turned_down().last().unwrap().setting,
+        QualitySetting::FramesPerSecond
     );
     assert!(phone.late_share(MINUTE / 2) < 0.05);
 }

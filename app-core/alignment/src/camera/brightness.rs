@@ -2,8 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
-use crate::mask::Mask;
-use crate::rectangle::{index_in, places};
+use crate::picture::{Mask, index_in, places};
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Image, Intrinsics};
 

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use super::mask::Mask;
+use super::picture::Mask;
 use super::receivers::nearest;
 use super::report::CameraAlignment;
 use app_scene::scene::{Camera, Image, Plate, PoseUncertainty, Receiver, check};

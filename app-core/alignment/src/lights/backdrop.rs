@@ -6,10 +6,9 @@
 use glam::{DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
 
-use crate::picture::{Color, Level};
+use crate::picture::{Color, Level, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
-use crate::rectangle::places;
 
 /// Coefficients of polynomials of the second and of the fourth degree in two variables.
 pub(super) const QUADRATIC: usize = 6;

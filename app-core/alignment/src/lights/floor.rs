@@ -3,10 +3,9 @@
 use glam::{DVec3, IVec2};
 
 use super::backdrop::{Backdrop, QUADRATIC, polynomial};
-use crate::picture::{Color, Level, noise_deviation};
+use crate::picture::{Color, Level, noise_deviation, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
-use crate::rectangle::places;
 
 /// Pixels as near to the toy may mix with it.
 const CLEAR_PX: i32 = 2;

@@ -6,10 +6,9 @@
 use glam::{DMat4, DVec3};
 
 use super::backdrop::{Backdrop, QUARTIC};
-use crate::picture::{Level, Picture, Pyramid, UNKNOWN};
+use crate::picture::{Level, Picture, Pyramid, UNKNOWN, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
-use crate::rectangle::places;
 use crate::shape::Shape;
 use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
 use app_scene::scene::{Camera, Image, Plate, Receiver};

@@ -7,9 +7,8 @@ use glam::{DVec2, IVec2};
 
 use super::contour::Element;
 use super::motion::Measured;
-use crate::picture::{Color, Level, noise_deviation};
+use crate::picture::{Color, Level, index_in, noise_deviation, places};
 use crate::raster::Coverage;
-use crate::rectangle::{index_in, places};
 
 /// What colours that are carried across the band are wrong by, over the contrast.
 const CARRIED: f32 = 0.05;

@@ -2,9 +2,8 @@
 
 use glam::IVec2;
 
-use crate::picture::{Color, Level};
+use crate::picture::{Color, Level, index_in, places};
 use crate::raster::Coverage;
-use crate::rectangle::{index_in, places};
 
 /// Linear light below which noise alone tells values apart.
 const FLOOR: f32 = 0.004;

@@ -2,24 +2,17 @@
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::search::TERM_FORMAT;
-use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::baseline::uniform::{SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Attachment, Recorder, cleared, loaded};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, TextureLayers, TextureView};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::FULLSCREEN;
 use app_scene::scene::MAX_LIGHTS;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &BASELINE,
-    &FULLSCREEN,
-    &part!("baseline/box_filter", structs: [Summed]),
-]);
+pub(crate) const SHADER: Shader = shader!("baseline/box_filter", structs: [Summed]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Summed>(), Slot::Texture];
 
 shared_struct! {

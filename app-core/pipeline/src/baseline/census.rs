@@ -3,18 +3,16 @@
 use wgpu::BufferUsages;
 
 use crate::baseline::plan::BaselinePlan;
-use crate::baseline::uniform::BASELINE;
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::Texture;
-use crate::passes::globals::GLOBALS;
 use app_scene::scene::MAX_RECEIVERS;
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &part!("baseline/census")]);
+pub(crate) const SHADER: Shader = shader!("baseline/census");
 const SLOTS: &[Slot] = &[Slot::WholeNumbers, Slot::ReadWrite];
 /// Invocations of a workgroup along each side.
 const WORKGROUP_PX: u32 = 16;

@@ -3,18 +3,15 @@
 use wgpu::TextureFormat;
 
 use crate::baseline::plan::BaselinePlan;
-use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::baseline::uniform::{SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::FULLSCREEN;
 
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/eligible")]);
+pub(crate) const SHADER: Shader = shader!("baseline/eligible");
 const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture];
 /// Format of the masks: r is 3c as a label of receiver and lights, g is 3b.
 const FORMAT: TextureFormat = TextureFormat::Rg8Uint;

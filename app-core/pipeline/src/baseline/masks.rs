@@ -8,12 +8,12 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::Texture;
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::passes::globals::GLOBALS_GROUP;
 use crate::passes::toy_mesh::ToyMesh;
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &part!("baseline/masks")]);
+pub(crate) const SHADER: Shader = shader!("baseline/masks");
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 

@@ -1,27 +1,24 @@
 //! The baseline: the published method on one scene, as good as the papers allow.
 
-mod order;
 pub(crate) mod plan;
 mod readback;
 pub mod uniform;
 mod unseen;
 
-use crate::baseline::order::{Pose, Step, order};
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, Scene};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::pass_run::Path;
+use crate::gpu::pass_run::PassGroup;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::frame::Picture;
+use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
-use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
-use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, News};
+use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
+use crate::plan::{Change, FrameDelta};
 use crate::readback::FloatMap;
 use crate::readback::inject::{Injected, InjectedVisibility, upload};
 
@@ -30,7 +27,6 @@ passes!(BaselinePlan: masks, warp, pcss, eligible, census, search, box_filter, r
 /// The baseline of one scene: plan, targets and passes.
 pub(crate) struct Baseline {
     pub(crate) plan: BaselinePlan,
-    order: [Vec<(Path, Step)>; Change::ALL.len()],
     globals: Buffer,
     uniform: Buffer,
     plate: Texture,
@@ -38,12 +34,6 @@ pub(crate) struct Baseline {
     injected: Injected,
     passes: Passes,
     plate_pass: plate::Pass,
-}
-
-/// The passes that run for `change`, `box_filter` several times.
-pub fn planned(plan: &BaselinePlan, change: Change) -> Vec<(Path, &'static str)> {
-    let steps = order(plan, change).into_iter();
-    steps.map(|(path, step)| (path, step.pass())).collect()
 }
 
 impl Baseline {
@@ -57,7 +47,6 @@ impl Baseline {
             injected: Injected::default(),
             passes: Passes::new(gpu),
             plate_pass: plate::Pass::new(gpu),
-            order: Change::ALL.map(|change| order(&plan, change)),
             plan,
         }
     }
@@ -73,7 +62,6 @@ impl Baseline {
         }
         gpu.write(&self.globals, &[*globals]);
         gpu.write(&self.uniform, &[*uniform]);
-        self.order = Change::ALL.map(|change| order(&plan, change));
         self.plan = plan;
     }
 
@@ -88,14 +76,36 @@ impl Baseline {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        delta: FrameDelta,
     ) {
-        let steps = self.order[news.change as usize].iter();
-        for (path, step) in steps.filter(|(_, step)| step.is_due(news)) {
-            recorder.path = *path;
-            self.encode_step(recorder, (toy, pictures), *step);
+        let (passes, targets, scene) = (&self.passes, &self.targets, self.scene());
+        if delta.change >= Change::View {
+            recorder.group = PassGroup::Capture;
+            self.encode_plate(recorder, pictures);
+            passes.masks.encode(recorder, &self.globals, toy, &targets.masks);
+            self.encode_shadow(recorder, toy, &toy.physical, self.injected.physical.as_ref());
+            let inputs = eligible::Inputs {
+                scene,
+                mask: &targets.masks.mask.view,
+                visibility: &targets.pcss.visibility.view,
+            };
+            passes.eligible.encode(recorder, &inputs, &targets.eligible);
+            if census::is_needed(&self.plan) {
+                let labels = &targets.eligible.labels;
+                passes.census.encode(recorder, labels, &targets.census);
+            }
         }
-        recorder.path = Path::Frame;
+        recorder.group = PassGroup::Frame;
+        if delta.change == Change::Picture {
+            // The plate is brought to the exposure of the new picture.
+            self.encode_plate(recorder, pictures);
+        }
+        if !delta.keeps_pose() {
+            self.encode_shadow(recorder, toy, &toy.shown, self.injected.shown.as_ref());
+        }
+        if !delta.keeps_picture() {
+            self.encode_picture(recorder, toy, pictures);
+        }
     }
 
     /// Replaces visibilities from the next frame on.
@@ -108,60 +118,48 @@ impl Baseline {
         };
     }
 
-    fn encode_step(
+    /// Warps and visibility of a pose.
+    fn encode_shadow(
         &self,
         recorder: &mut Recorder<'_>,
-        (toy, pictures): (&ToyMesh, &Pictures<'_>),
-        step: Step,
+        toy: &ToyMesh,
+        pose: &PoseBuffers,
+        injected: Option<&Texture>,
     ) {
-        let (passes, targets, scene) = (&self.passes, &self.targets, self.scene());
-        match step {
-            Step::Plate => self.encode_plate(recorder, pictures),
-            Step::Masks => passes.masks.encode(recorder, &self.globals, toy, &targets.masks),
-            Step::Warp(pose, light) => {
-                let inputs = self.warp_inputs(toy, pose, light);
-                passes.warp.encode(recorder, &inputs, &targets.warp);
-            }
-            Step::Pcss(pose) => {
-                passes
-                    .pcss
-                    .encode(recorder, scene, &targets.warp.maps.view, &targets.pcss);
-                let injected = match pose {
-                    Pose::Physical => &self.injected.physical,
-                    Pose::Shown => &self.injected.shown,
-                };
-                if let Some(injected) = injected {
-                    recorder.copy(injected, &targets.pcss.visibility);
-                }
-            }
-            Step::Eligible => {
-                let inputs = eligible::Inputs {
-                    scene,
-                    mask: &targets.masks.mask.view,
-                    visibility: &targets.pcss.visibility.view,
-                };
-                passes.eligible.encode(recorder, &inputs, &targets.eligible);
-            }
-            Step::Census => passes
-                .census
-                .encode(recorder, &targets.eligible.labels, &targets.census),
-            Step::Search => {
-                let inputs = self.search_inputs(pictures);
-                passes.search.encode(recorder, &inputs, &targets.search);
-            }
-            Step::BoxFilter => {
-                let inputs = box_filter::Inputs {
-                    scene,
-                    terms: &targets.search.terms.view,
-                    n_receivers: self.plan.n_receivers,
-                };
-                passes.box_filter.encode(recorder, &inputs, &targets.box_filter);
-            }
-            Step::Retarget => {
-                let inputs = self.retarget_inputs(toy, pictures);
-                passes.retarget.encode(recorder, &inputs, &targets.retarget);
-            }
+        let (passes, targets) = (&self.passes, &self.targets);
+        for light in 0..self.plan.n_lights {
+            let inputs = warp::Inputs {
+                globals: &self.globals,
+                toy,
+                pose,
+                light,
+                n_receivers: self.plan.n_receivers,
+            };
+            passes.warp.encode(recorder, &inputs, &targets.warp);
         }
+        let maps = &targets.warp.maps.view;
+        passes.pcss.encode(recorder, self.scene(), maps, &targets.pcss);
+        if let Some(injected) = injected {
+            recorder.copy(injected, &targets.pcss.visibility);
+        }
+    }
+
+    fn encode_picture(&self, recorder: &mut Recorder<'_>, toy: &ToyMesh, pictures: &Pictures<'_>) {
+        let (passes, targets) = (&self.passes, &self.targets);
+        if search::is_needed(&self.plan) {
+            let inputs = self.search_inputs(pictures);
+            passes.search.encode(recorder, &inputs, &targets.search);
+        }
+        if box_filter::is_needed(&self.plan) {
+            let inputs = box_filter::Inputs {
+                scene: self.scene(),
+                terms: &targets.search.terms.view,
+                n_receivers: self.plan.n_receivers,
+            };
+            passes.box_filter.encode(recorder, &inputs, &targets.box_filter);
+        }
+        let inputs = self.retarget_inputs(toy, pictures);
+        passes.retarget.encode(recorder, &inputs, &targets.retarget);
     }
 
     fn encode_plate(&self, recorder: &mut Recorder<'_>, pictures: &Pictures<'_>) {
@@ -172,19 +170,6 @@ impl Baseline {
             is_same_view: pictures.is_same_view,
         };
         self.plate_pass.encode(recorder, &inputs, &self.plate);
-    }
-
-    fn warp_inputs<'a>(&'a self, toy: &'a ToyMesh, pose: Pose, light: u32) -> warp::Inputs<'a> {
-        warp::Inputs {
-            globals: &self.globals,
-            toy,
-            pose: match pose {
-                Pose::Physical => &toy.physical,
-                Pose::Shown => &toy.shown,
-            },
-            light,
-            n_receivers: self.plan.n_receivers,
-        }
     }
 
     fn search_inputs<'a>(&'a self, pictures: &Pictures<'a>) -> search::Inputs<'a> {

@@ -3,18 +3,16 @@
 use wgpu::TextureFormat;
 
 use crate::baseline::plan::BaselinePlan;
-use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::baseline::uniform::{SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView, half_float};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::FULLSCREEN;
 use app_scene::scene::MAX_LIGHTS;
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/pcss")]);
+pub(crate) const SHADER: Shader = shader!("baseline/pcss");
 const SLOTS: &[Slot] = &[Slot::Layers];
 
 pub(crate) struct Pass {

@@ -1,37 +1,36 @@
 //! The plan of the baseline.
 
 use crate::geometry::rect::PixelRect;
-use crate::plan::{LeftOut, SceneFacts};
+use crate::plan::{SkippedWork, SceneFacts};
 use crate::preset::BaselineSettings;
 use app_scene::scene::MAX_LIGHTS;
 
 /// A plan of the baseline.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BaselinePlan {
+pub(crate) struct BaselinePlan {
     /// The work region.
-    pub region: PixelRect,
+    pub(crate) region: PixelRect,
     /// Lights whose shadows are moved, at most four.
-    pub n_lights: u32,
+    pub(crate) n_lights: u32,
     /// Receivers that they are moved on, each by itself.
-    pub n_receivers: u32,
+    pub(crate) n_receivers: u32,
     /// Non-empty sets of these lights: where its shadows overlap, each has an appearance of its own.
-    pub n_sets: u32,
+    pub(crate) n_sets: u32,
     /// Whether the shadow is of constant strength, rather than sampled.
-    pub is_constant: bool,
+    pub(crate) is_constant: bool,
     /// Work that the scene does not need.
-    pub left_out: Vec<LeftOut>,
+    pub(crate) skipped: Vec<SkippedWork>,
 }
 
 impl BaselinePlan {
     /// Plans a scene. Lights beyond the fourth are left out.
-    #[must_use]
-    pub fn new(facts: &SceneFacts, settings: &BaselineSettings) -> Self {
+    pub(crate) fn new(facts: &SceneFacts, settings: &BaselineSettings) -> Self {
         let is_constant = settings.constant_ratio.is_some();
-        let mut left_out = Vec::new();
+        let mut skipped = Vec::new();
         if is_constant {
-            left_out.push(LeftOut {
+            skipped.push(SkippedWork {
                 what: "samples of the real shadow",
-                why: "the preset's shadow is constant",
+                reason: "the preset's shadow is constant",
             });
         }
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
@@ -42,7 +41,7 @@ impl BaselinePlan {
             n_receivers: facts.n_receivers,
             n_sets: (1 << n_lights) - 1,
             is_constant,
-            left_out,
+            skipped,
         }
     }
 }

@@ -3,21 +3,18 @@
 use wgpu::{CompareFunction, DepthStencilState, StoreOp, TextureFormat, VertexFormat};
 
 use crate::baseline::plan::BaselinePlan;
-use crate::baseline::uniform::{BASELINE, SCENE_SLOTS, Scene};
+use crate::baseline::uniform::{SCENE_SLOTS, Scene};
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, resolved};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::frame::Picture;
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::FULLSCREEN;
+use crate::passes::pictures::Picture;
 use crate::passes::present::REGION_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;
 
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&GLOBALS, &BASELINE, &FULLSCREEN, &part!("baseline/retarget")]);
+pub(crate) const SHADER: Shader = shader!("baseline/retarget");
 const SLOTS: &[Slot] = &[
     Slot::Filtered,
     Slot::Texture,

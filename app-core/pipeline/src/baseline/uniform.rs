@@ -3,7 +3,7 @@
 use crate::geometry::scene_layout::SceneLayout;
 use crate::gpu::bindings::{Resource, Slot};
 use crate::gpu::buffer::Buffer;
-use crate::gpu::shader::{Part, part};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
 use crate::preset::BaselineSettings;
@@ -11,7 +11,7 @@ use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Surface};
 
 /// WGSL part of the uniform.
-pub(crate) const BASELINE: Part = part!("common/baseline", structs: [Baseline]);
+pub(crate) const BASELINE: Mirrors = mirrors!("common/baseline", structs: [Baseline]);
 /// Slots that the baseline's passes share: the globals and the settings.
 pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::uniform::<Baseline>()];
 

@@ -3,20 +3,18 @@
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::baseline::plan::BaselinePlan;
-use crate::baseline::uniform::BASELINE;
 use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, cleared};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureLayers};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::parts::FLATTEN;
+use crate::passes::globals::GLOBALS_GROUP;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use app_scene::scene::MAX_RECEIVERS;
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &BASELINE, &FLATTEN, &part!("baseline/warp")]);
+pub(crate) const SHADER: Shader = shader!("baseline/warp");
 /// The shown pose, which is drawn, and the physical one.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
 /// Format of the warp: source position and height need more precision than f16.

@@ -2,8 +2,7 @@
 
 use super::inspect::Inspect;
 use super::{Core, CoreError};
-use crate::frame::mismatch::Mismatch;
-use crate::frame::warning::{Outlier, Warning};
+use crate::frame::warning::{Mismatch, Outlier, Warning};
 use crate::model::diagnostics::conditioning::light_conditioning;
 use crate::model::diagnostics::evidence::{Evidence, PixelEvidence, linear_colors};
 use crate::model::diagnostics::outliers::outliers;

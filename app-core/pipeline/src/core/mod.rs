@@ -9,8 +9,8 @@ mod window;
 
 use std::sync::Arc;
 
-use crate::frame::report::FrameReport;
-use crate::governor::Step;
+use crate::frame::FrameReport;
+use crate::governor::QualityStep;
 use crate::gpu::DeviceHandle;
 use crate::gpu::context::{AdapterChoice, Gpu, GpuError};
 use crate::gpu::pass_run::PassTime;
@@ -20,7 +20,7 @@ use crate::gpu::texture::Texture;
 use crate::gpu::timer::Timer;
 use crate::gpu::work::Work;
 use crate::model::Model;
-use crate::passes::finished::Finished;
+use crate::passes::pictures::ComposedFrame;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;
 use crate::preset::Preset;
@@ -177,8 +177,7 @@ impl Core {
         let Some(window) = &mut self.window else {
             return Ok(());
         };
-        let on = (&*self.gpu, self.timer.as_mut());
-        Ok(window.present(on, picture, display, paint)?)
+        Ok(window.present(&self.gpu, self.timer.as_mut(), picture, display, paint)?)
     }
 
     /// A target of the caller's with the core's device, to be painted on as by [`Core::present_with`]; none where the core only
@@ -219,7 +218,7 @@ impl Core {
         let (gpu, timer) = (&*self.gpu, self.timer.as_mut());
         gpu.guarded(|| {
             let screen = screen::Pass::new(gpu, target.format());
-            window::show((gpu, timer), &screen, (&picture, display), target);
+            window::show(Recorder::new(gpu, timer), &screen, &picture, display, target);
         })?;
         Ok(())
     }
@@ -260,8 +259,8 @@ impl Core {
     ///
     /// # Errors
     /// When there is no scene.
-    pub fn turn_down(&mut self, steps: &[Step]) -> Result<(), CoreError> {
-        self.stage.as_mut().ok_or(CoreError::NoScene)?.turn_down(steps);
+    pub fn set_quality_reductions(&mut self, steps: &[QualityStep]) -> Result<(), CoreError> {
+        self.stage.as_mut().ok_or(CoreError::NoScene)?.set_quality_reductions(steps);
         Ok(())
     }
 
@@ -301,7 +300,7 @@ impl Core {
     /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
     #[must_use]
     pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
-        let picture = self.stage.as_ref()?.finished(&self.gpu);
+        let picture = self.stage.as_ref()?.composed(&self.gpu);
         Some(window::count(&picture, screen_px, display))
     }
 
@@ -401,9 +400,9 @@ fn drop_preview(gpu: &Gpu, preview: &mut Option<Preview>) {
 }
 
 /// The picture that was made or taken last.
-fn latest<'a>(gpu: &Gpu, preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<Finished<'a>> {
-    let of_stage = || stage.map(|stage| stage.finished(gpu));
-    preview.map(|preview| preview.finished(gpu)).or_else(of_stage)
+fn latest<'a>(gpu: &Gpu, preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<ComposedFrame<'a>> {
+    let of_stage = || stage.map(|stage| stage.composed(gpu));
+    preview.map(|preview| preview.composed(gpu)).or_else(of_stage)
 }
 
 fn check_size(what: &'static str, scene: &Scene, image: &CameraImage) -> Result<(), CoreError> {

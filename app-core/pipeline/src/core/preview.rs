@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::gpu::context::Gpu;
-use crate::passes::finished::Finished;
+use crate::passes::pictures::ComposedFrame;
 use crate::stage::camera_texture::CameraTexture;
 use app_scene::camera_frame::CameraImage;
 
@@ -30,8 +30,8 @@ impl Preview {
         self.texture.take(gpu, image);
     }
 
-    pub(super) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
-        Finished {
+    pub(super) fn composed(&self, gpu: &Gpu) -> ComposedFrame<'_> {
+        ComposedFrame {
             frame: self.texture.frame(gpu),
             region: None,
             size_px: self.size_px.into(),

@@ -7,7 +7,7 @@ use crate::gpu::recorder::{Recorded, Recorder};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::gpu::timer::Timer;
 use crate::gpu::work::Work;
-use crate::passes::finished::Finished;
+use crate::passes::pictures::ComposedFrame;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;
 use app_scene::camera_frame::Display;
@@ -77,8 +77,9 @@ impl Window {
     /// Shows `picture`, or black.
     pub(super) fn present(
         &mut self,
-        (gpu, timer): (&Gpu, Option<&mut Timer>),
-        picture: Option<Finished<'_>>,
+        gpu: &Gpu,
+        timer: Option<&mut Timer>,
+        picture: Option<ComposedFrame<'_>>,
         display: Display,
         paint: impl FnOnce(&Canvas<'_>),
     ) -> Result<(), GpuError> {
@@ -97,7 +98,8 @@ impl Window {
         };
         match picture {
             Some(picture) => {
-                show((gpu, timer), &self.screen, (&picture, display), &texture.texture);
+                let recorder = Recorder::new(gpu, timer);
+                show(recorder, &self.screen, &picture, display, &texture.texture);
             }
             None => blacken(gpu, &texture.texture),
         }
@@ -113,34 +115,35 @@ impl Window {
 
 /// Draws a picture on a target that takes sRGB codes as they are.
 pub(super) fn show(
-    (gpu, timer): (&Gpu, Option<&mut Timer>),
+    recorder: Recorder<'_>,
     screen: &screen::Pass,
-    (picture, display): (&Finished<'_>, Display),
+    picture: &ComposedFrame<'_>,
+    display: Display,
     target: &wgpu::Texture,
 ) -> Recorded {
-    let target = TextureView::of_other(gpu, target);
-    show_on((gpu, timer), screen, (picture, display), &target)
+    let target = TextureView::of_other(recorder.gpu, target);
+    show_on(recorder, screen, picture, display, &target)
 }
 
 /// What that costs.
-pub(super) fn count(picture: &Finished<'_>, screen_px: [u32; 2], display: Display) -> Work {
+pub(super) fn count(picture: &ComposedFrame<'_>, screen_px: [u32; 2], display: Display) -> Work {
     let gpu = Gpu::default();
     let target = Texture::target(&gpu, "", screen_px.into(), OUTPUT_FORMAT);
     let screen = screen::Pass::new(&gpu, OUTPUT_FORMAT);
-    let recorded = show_on((&gpu, None), &screen, (picture, display), &target.view);
+    let recorded = show_on(Recorder::new(&gpu, None), &screen, picture, display, &target.view);
     recorded.ran.iter().map(|run| run.work).sum()
 }
 
 fn show_on(
-    (gpu, timer): (&Gpu, Option<&mut Timer>),
+    mut recorder: Recorder<'_>,
     screen: &screen::Pass,
-    (picture, display): (&Finished<'_>, Display),
+    picture: &ComposedFrame<'_>,
+    display: Display,
     target: &TextureView,
 ) -> Recorded {
     let screen_px = target.size_px().to_array();
     let image_from_screen = display.image_from_screen(picture.size_px.to_array(), screen_px);
-    let mut recorder = Recorder::new(gpu, timer);
-    screen.encode(&mut recorder, (picture, &image_from_screen), target);
+    screen.encode(&mut recorder, picture, &image_from_screen, target);
     recorder.submit()
 }
 

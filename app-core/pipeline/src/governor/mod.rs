@@ -1,27 +1,27 @@
-//! The governor: keeps a frame's time within that of a screen's by moving along a front of settings.
+//! The governor: keeps a frame's time within that of a screen's by moving along a ladder of quality steps.
 //!
 //! It has no clock: each frame it is told how long the device took, or else how long the frame was shown, and how warm the
 //! phone is. It looks at the *load*, which is that time over what a frame may take.
 //!
-//! - **Down**: where the median load of [`WINDOW`] frames is above [`HIGH`], it takes as many steps at once as are expected
-//!   to bring it to [`AIM`].
-//! - **Up**: one step, where the load that is expected then has been below [`AIM`] for [`UP_FRAMES`] frames. What a step
-//!   brings is learned when it is taken. A step up that is taken back within [`TRIAL_FRAMES`] frames is tried again only
-//!   after twice as long, up to [`MAX_WAIT_FRAMES`]: a load that lies between two steps ends in the cheaper one.
+//! - **Down**: where the median load of `WINDOW` frames is above `HIGH`, it takes as many steps at once as are expected
+//!   to bring it to `AIM`.
+//! - **Up**: one step, where the load that is expected then has been below `AIM` for `UP_FRAMES` frames. What a step
+//!   brings is learned when it is taken. A step up that is taken back within `TRIAL_FRAMES` frames is tried again only
+//!   after twice as long, up to `MAX_WAIT_FRAMES`: a load that lies between two steps ends in the cheaper one.
 //! - **Without device times** a frame that is ready early looks like any other, so that only frames that come late tell
-//!   anything: a step down where one in five of [`LATE_WINDOW`] is late, two where half of them are. A step up is a trial,
-//!   after [`BLIND_UP_FRAMES`] frames of which hardly one was late.
-//! - **Heat** narrows what a frame may take at once, and widens it only after [`COOL_FRAMES`] frames; there is no step up
+//!   anything: a step down where one in five of `LATE_WINDOW` is late, two where half of them are. A step up is a trial,
+//!   after `BLIND_UP_FRAMES` frames of which hardly one was late.
+//! - **Heat** narrows what a frame may take at once, and widens it only after `COOL_FRAMES` frames; there is no step up
 //!   above [`Thermal::Fair`].
 //!
 //! From a sudden load of twice the time it is back within 40 frames, whether steps bring half or one and a half times of
 //! what is expected; without device times after a window of late frames for each step or two. Back at its best it is after
-//! [`UP_FRAMES`] and a window for each step. Simulations hold all of that.
+//! `UP_FRAMES` and a window for each step. Simulations hold all of that.
 
-mod front;
+mod ladder;
 mod window;
 
-pub use front::{BALANCED_FRONT, Knob, Step};
+pub use ladder::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
 use window::Window;
 
 /// Frames whose median load decides.
@@ -29,21 +29,21 @@ pub const WINDOW: usize = 15;
 /// Frames after a change that still show what was before.
 pub const SETTLE_FRAMES: u32 = 4;
 /// Median load above which a step is taken down.
-pub const HIGH: f64 = 0.9;
+const HIGH: f64 = 0.9;
 /// Load that steps aim at.
-pub const AIM: f64 = 0.75;
+const AIM: f64 = 0.75;
 /// Frames of a low load before a step up.
 pub const UP_FRAMES: u32 = 120;
 /// Frames within which a step up has failed if it is taken back.
-pub const TRIAL_FRAMES: u32 = 600;
+const TRIAL_FRAMES: u32 = 600;
 /// Most frames that a step up waits for after failures.
-pub const MAX_WAIT_FRAMES: u32 = 9600;
+const MAX_WAIT_FRAMES: u32 = 9600;
 /// Frames of which late ones are counted, without device times.
-pub const LATE_WINDOW: usize = 30;
+const LATE_WINDOW: usize = 30;
 /// Frames before a trial, without device times.
-pub const BLIND_UP_FRAMES: u32 = 600;
+const BLIND_UP_FRAMES: u32 = 600;
 /// Frames that a phone must be cooler for until it counts.
-pub const COOL_FRAMES: u32 = 3600;
+const COOL_FRAMES: u32 = 3600;
 
 /// Interval over that of the screen from which a frame is late.
 const LATE: f64 = 1.4;
@@ -94,16 +94,16 @@ pub struct Measured {
 /// Steps that were taken.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// Steps of the front before.
+    /// Steps of the ladder before.
     pub from: usize,
-    /// Steps of the front from now on.
+    /// Steps of the ladder from now on.
     pub to: usize,
 }
 
-/// Moves along a front of settings.
+/// Moves along a ladder of quality steps.
 #[derive(Clone, Debug)]
 pub struct Governor {
-    front: Vec<Step>,
+    ladder: Vec<QualityStep>,
     frames_per_second: u32,
     /// Steps taken.
     level: usize,
@@ -128,11 +128,11 @@ pub struct Governor {
 impl Governor {
     /// At its best, for a screen of so many frames a second.
     #[must_use]
-    pub fn new(front: &[Step], frames_per_second: u32) -> Self {
+    pub fn new(ladder: &[QualityStep], frames_per_second: u32) -> Self {
         Self {
-            gains: front.iter().map(|step| step.gain).collect(),
-            waits: vec![0; front.len()],
-            front: front.to_vec(),
+            gains: ladder.iter().map(|step| step.gain).collect(),
+            waits: vec![0; ladder.len()],
+            ladder: ladder.to_vec(),
             frames_per_second: frames_per_second.max(1),
             level: 0,
             loads: Window::new(WINDOW),
@@ -146,18 +146,18 @@ impl Governor {
         }
     }
 
-    /// The steps that are taken: what is turned down, each over those of the same knob before it.
+    /// The steps that are taken: what is turned down, each over those of the same setting before it.
     #[must_use]
-    pub fn turned_down(&self) -> &[Step] {
-        &self.front[..self.level]
+    pub fn turned_down(&self) -> &[QualityStep] {
+        &self.ladder[..self.level]
     }
 
-    /// The value of a knob; none where it is not turned down.
+    /// The value of a setting; none if it is not reduced.
     #[must_use]
-    pub fn value(&self, knob: Knob) -> Option<u32> {
+    pub fn value(&self, setting: QualitySetting) -> Option<u32> {
         let steps = self.turned_down().iter().rev();
         steps
-            .filter(|step| step.knob == knob)
+            .filter(|step| step.setting == setting)
             .map(|step| step.value)
             .next()
     }
@@ -165,7 +165,7 @@ impl Governor {
     /// Frames a second that are to be shown.
     #[must_use]
     pub fn frames_per_second(&self) -> u32 {
-        self.value(Knob::FramesPerSecond)
+        self.value(QualitySetting::FramesPerSecond)
             .map_or(self.frames_per_second, |limit| limit.min(self.frames_per_second))
     }
 
@@ -210,7 +210,7 @@ impl Governor {
     fn by_load(&mut self) -> Option<usize> {
         let load = self.loads.median()?;
         self.learn(load);
-        if load > HIGH && self.level < self.front.len() {
+        if load > HIGH && self.level < self.ladder.len() {
             return Some(self.down_to(load));
         }
         let above = self.level.checked_sub(1)?;
@@ -227,7 +227,7 @@ impl Governor {
             expected *= gain;
             expected <= AIM
         });
-        n_steps.map_or(self.front.len(), |last| self.level + last + 1)
+        n_steps.map_or(self.ladder.len(), |last| self.level + last + 1)
     }
 
     /// Learns what the steps bring that were taken last.
@@ -245,9 +245,9 @@ impl Governor {
         }
         #[allow(clippy::cast_precision_loss, reason = "a handful of steps")]
         let each = (whole / expected).max(0.0).powf(1.0 / steps.len() as f64);
-        for (gain, step) in steps.iter_mut().zip(&self.front[low..high]) {
+        for (gain, step) in steps.iter_mut().zip(&self.ladder[low..high]) {
             // The rate of frames brings what it says.
-            if step.knob != Knob::FramesPerSecond {
+            if step.setting != QualitySetting::FramesPerSecond {
                 *gain = (*gain * each).clamp(GAINS[0], GAINS[1]);
             }
         }
@@ -258,8 +258,8 @@ impl Governor {
         let n_steps = MANY_LATE.iter().filter(|part| late >= **part).count();
         // Heat alone asks for steps as well, where no time tells of it.
         let n_steps = n_steps.max(usize::from(self.is_too_warm()));
-        if n_steps > 0 && self.level < self.front.len() {
-            return Some((self.level + n_steps).min(self.front.len()));
+        if n_steps > 0 && self.level < self.ladder.len() {
+            return Some((self.level + n_steps).min(self.ladder.len()));
         }
         let above = self.level.checked_sub(1)?;
         let is_low = late <= FEW_LATE && self.thermal <= Thermal::Fair;
@@ -269,7 +269,7 @@ impl Governor {
 
     /// Whether so few steps are taken that a phone this warm would not cool down by them, as far as they say themselves.
     fn is_too_warm(&self) -> bool {
-        let taken: f64 = self.front[..self.level].iter().map(|step| step.gain).product();
+        let taken: f64 = self.ladder[..self.level].iter().map(|step| step.gain).product();
         taken > self.thermal.part()
     }
 

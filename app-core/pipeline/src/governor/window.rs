@@ -1,8 +1,8 @@
-//! The latest of many numbers.
+//! Sliding window over the last N samples.
 
 use std::collections::VecDeque;
 
-/// So many of the latest numbers.
+/// Sliding window over the last `size` samples.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     size: usize,

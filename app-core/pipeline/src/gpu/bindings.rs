@@ -261,20 +261,21 @@ impl BindingCache {
     /// is on no device. One with a texture that is not the core's own lives no longer than its use.
     pub(crate) fn group(
         &self,
-        (device, uniforms): (&Device, &Uniforms),
+        device: &Device,
+        uniforms: &Uniforms,
         layout: &Layout,
         resources: &[Resource<'_>],
     ) -> Option<wgpu::BindGroup> {
         let held: Vec<Held> = resources.iter().map(Held::of).collect::<Option<_>>()?;
         if !resources.iter().all(Resource::is_own) {
-            return Some(make_group((device, uniforms), layout, &held));
+            return Some(make_group(device, uniforms, layout, &held));
         }
         let key = (layout.slots, held);
         let mut groups = locked(&self.groups);
         if let Some(group) = groups.get(&key) {
             return Some(group.clone());
         }
-        let group = make_group((device, uniforms), layout, &key.1);
+        let group = make_group(device, uniforms, layout, &key.1);
         groups.insert(key, group.clone());
         Some(group)
     }
@@ -292,7 +293,7 @@ impl BindingCache {
 }
 
 /// A group of what is held, in the order of the layout's slots.
-fn make_group((device, uniforms): (&Device, &Uniforms), layout: &Layout, held: &[Held]) -> wgpu::BindGroup {
+fn make_group(device: &Device, uniforms: &Uniforms, layout: &Layout, held: &[Held]) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(layout.slots.iter().zip(held))
         .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {

@@ -212,7 +212,7 @@ impl Gpu {
     /// The render pipeline of `spec`, compiled at the first call.
     pub(crate) fn draw(&self, spec: &DrawSpec) -> Draw {
         match &self.opened {
-            Some(opened) => opened.pipelines.draw((&opened.device, &opened.bindings), spec),
+            Some(opened) => opened.pipelines.draw(&opened.device, &opened.bindings, spec),
             None => Pipeline {
                 name: spec.shader.name,
                 slots: spec.groups,
@@ -224,7 +224,7 @@ impl Gpu {
     /// The compute pipeline of `spec`, compiled at the first call.
     pub(crate) fn compute(&self, spec: &ComputeSpec) -> Compute {
         match &self.opened {
-            Some(opened) => opened.pipelines.compute((&opened.device, &opened.bindings), spec),
+            Some(opened) => opened.pipelines.compute(&opened.device, &opened.bindings, spec),
             None => Pipeline {
                 name: spec.shader.name,
                 slots: spec.groups,
@@ -265,8 +265,8 @@ impl Opened {
 
     /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
     pub(super) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> Option<wgpu::BindGroup> {
-        let on = (&self.device, &self.uniforms);
-        self.bindings.group(on, layout, resources)
+        self.bindings
+            .group(&self.device, &self.uniforms, layout, resources)
     }
 }
 

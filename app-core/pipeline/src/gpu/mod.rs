@@ -4,6 +4,7 @@
 
 pub(crate) mod bindings;
 pub(crate) mod buffer;
+mod common;
 pub mod context;
 pub(crate) mod device;
 mod handle;

@@ -4,17 +4,17 @@ use serde::Serialize;
 
 use super::work::Work;
 
-/// Which of the two paths a pass belongs to.
+/// The path of a pass: what learns from the real toy, or what draws each picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Path {
+pub enum PassGroup {
     /// Updates of scene state from a view.
     Capture,
     /// Rendering of every picture.
     Frame,
 }
 
-impl Path {
+impl PassGroup {
     /// The name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -29,7 +29,7 @@ impl Path {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct PassRun {
     /// The path it ran on.
-    pub path: Path,
+    pub path: PassGroup,
     /// Its name.
     pub pass: &'static str,
     /// How often it ran.
@@ -42,7 +42,7 @@ pub struct PassRun {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassTime {
     /// The path it ran on.
-    pub path: Path,
+    pub path: PassGroup,
     /// The pass's name.
     pub pass: &'static str,
     /// Device time from its beginning to its end, over all its runs.

@@ -98,13 +98,13 @@ pub(crate) struct PipelineCache {
 
 impl PipelineCache {
     /// The render pipeline of `spec`, compiled at the first call.
-    pub(crate) fn draw(&self, on: (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
-        cached(&self.draws, spec, || self.compile_draw(on, spec))
+    pub(crate) fn draw(&self, device: &Device, bindings: &BindingCache, spec: &DrawSpec) -> Draw {
+        cached(&self.draws, spec, || self.compile_draw(device, bindings, spec))
     }
 
     /// The compute pipeline of `spec`, compiled at the first call.
-    pub(crate) fn compute(&self, on: (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
-        cached(&self.computes, spec, || self.compile_compute(on, spec))
+    pub(crate) fn compute(&self, device: &Device, bindings: &BindingCache, spec: &ComputeSpec) -> Compute {
+        cached(&self.computes, spec, || self.compile_compute(device, bindings, spec))
     }
 
     /// Drops everything, to be compiled anew.
@@ -114,8 +114,8 @@ impl PipelineCache {
         locked(&self.computes).clear();
     }
 
-    fn compile_draw(&self, (device, bindings): (&Device, &BindingCache), spec: &DrawSpec) -> Draw {
-        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+    fn compile_draw(&self, device: &Device, bindings: &BindingCache, spec: &DrawSpec) -> Draw {
+        let (layouts, layout) = pipeline_layout(device, bindings, spec.shader, spec.groups);
         let module = self.module(device, spec.shader);
         let constants = values(&spec.constants);
         let attributes: Vec<[VertexAttribute; 1]> = spec.streams.iter().map(attribute).collect();
@@ -158,8 +158,8 @@ impl PipelineCache {
         }
     }
 
-    fn compile_compute(&self, (device, bindings): (&Device, &BindingCache), spec: &ComputeSpec) -> Compute {
-        let (layouts, layout) = pipeline_layout((device, bindings), spec.shader, spec.groups);
+    fn compile_compute(&self, device: &Device, bindings: &BindingCache, spec: &ComputeSpec) -> Compute {
+        let (layouts, layout) = pipeline_layout(device, bindings, spec.shader, spec.groups);
         let raw = device.compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(spec.shader.name),
             layout: Some(&layout),
@@ -195,7 +195,8 @@ fn values(constants: &[(&'static str, u32)]) -> Vec<(&'static str, f64)> {
 }
 
 fn pipeline_layout(
-    (device, bindings): (&Device, &BindingCache),
+    device: &Device,
+    bindings: &BindingCache,
     shader: &Shader,
     groups: Groups,
 ) -> ([Option<Layout>; N_GROUPS], wgpu::PipelineLayout) {

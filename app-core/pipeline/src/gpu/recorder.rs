@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::bindings::{Resource, Slot};
 use super::buffer::Buffer;
 use super::context::Gpu;
-use super::pass_run::{PassRun, Path};
+use super::pass_run::{PassRun, PassGroup};
 use super::pipeline::{Compute, Draw, Pipeline};
 use super::stages::{StageTime, Stages};
 use super::texture::{Texture, TextureView};
@@ -18,8 +18,8 @@ use super::work::{Bound, Tally, Work};
 /// Commands being recorded, and counted; only counted where there is no device.
 pub(crate) struct Recorder<'g> {
     pub(crate) gpu: &'g Gpu,
-    /// The path to which passes are attributed.
-    pub(crate) path: Path,
+    /// The group to which passes are attributed.
+    pub(crate) group: PassGroup,
     /// Pixels of the pictures that are worked on: the most that a compute shader looks at.
     pub(crate) n_pixels: u64,
     pub(crate) stages: Stages,
@@ -63,7 +63,7 @@ impl<'g> Recorder<'g> {
     pub(crate) fn new(gpu: &'g Gpu, timer: Option<&'g mut Timer>) -> Self {
         Self {
             raw: gpu.opened.as_ref().map(|opened| opened.device.encoder()),
-            path: Path::Frame,
+            group: PassGroup::Frame,
             n_pixels: u64::MAX,
             stages: Stages::default(),
             uniforms: Written::default(),
@@ -107,10 +107,10 @@ impl<'g> Recorder<'g> {
         depth: Option<&TextureView>,
         keep_depth: wgpu::StoreOp,
     ) -> Render<'a> {
-        let (path, gpu) = (self.path, self.gpu);
-        let work = counted(&mut self.ran, path, pass);
+        let (group, gpu) = (self.group, self.gpu);
+        let work = counted(&mut self.ran, group, pass);
         let tally = tally(work, colors, depth.map(|view| (view, keep_depth)));
-        let stamps = self.timer.as_mut().and_then(|timer| timer.next(path, pass));
+        let stamps = self.timer.as_mut().and_then(|timer| timer.next(group, pass));
         let Some(encoder) = self.raw.as_mut().filter(|_| gpu.opened.is_some()) else {
             return Render { raw: None, tally };
         };
@@ -191,14 +191,14 @@ impl<'g> Recorder<'g> {
         [x, y, z]: [u32; 3],
         n_pixels: u64,
     ) {
-        let work = counted(&mut self.ran, self.path, compute.name);
+        let work = counted(&mut self.ran, self.group, compute.name);
         let mut tally = Tally::new(work, n_pixels);
         groups.iter().for_each(|group| tally.bind(&group.bound));
         tally.dispatch();
         let stamps = self
             .timer
             .as_mut()
-            .and_then(|timer| timer.next(self.path, compute.name));
+            .and_then(|timer| timer.next(self.group, compute.name));
         let (Some(encoder), Some(compiled)) = (&mut self.raw, &compute.compiled) else {
             return;
         };
@@ -276,11 +276,11 @@ fn bound(slots: &[Slot], resources: &[Resource<'_>]) -> Vec<Bound> {
 }
 
 /// The work of a pass, of which another run begins.
-fn counted<'a>(ran: &'a mut Vec<PassRun>, path: Path, pass: &'static str) -> &'a mut Work {
-    let known = ran.iter().position(|run| (run.path, run.pass) == (path, pass));
+fn counted<'a>(ran: &'a mut Vec<PassRun>, group: PassGroup, pass: &'static str) -> &'a mut Work {
+    let known = ran.iter().position(|run| (run.path, run.pass) == (group, pass));
     let index = known.unwrap_or_else(|| {
         ran.push(PassRun {
-            path,
+            path: group,
             pass,
             n_runs: 0,
             work: Work::default(),

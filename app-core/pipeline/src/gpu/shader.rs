@@ -1,45 +1,72 @@
-//! Shaders: WGSL joined from parts, each part with the host's mirrors of its declarations.
+//! Shaders: WGSL joined with the parts that it imports, and the host's mirrors of its declarations.
+//!
+//! A file names the parts that it needs in its head, each in a line `//#import common/x`; parts may import others. To WGSL these
+//! lines are comments.
 
 use std::hash::{Hash, Hasher};
 
+use super::common;
 use super::shared::Mirror;
 
-/// A file of WGSL, and the declarations that the host shares.
+/// What begins a line that imports a part.
+const IMPORT: &str = "//#import ";
+
+/// Declarations of a file of WGSL that the host shares.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
-    /// Path below `shaders`, without its ending.
+pub struct Mirrors {
+    /// Path of the file below `shaders`, without its ending.
     pub path: &'static str,
-    /// The WGSL.
-    pub text: &'static str,
     /// Host mirrors of structs that it declares.
     pub structs: &'static [Mirror],
     /// The host's values of constants that it declares.
     pub constants: &'static [(&'static str, f64)],
 }
 
-/// A pass's shader: its own part after those that it shares with others.
+/// A pass's shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
-    /// The pass's one name, that of its own part's file.
+    /// The pass's one name, that of its file.
     pub name: &'static str,
-    /// In the order in which they are joined.
-    pub parts: &'static [&'static Part],
+    /// The file's own WGSL.
+    pub text: &'static str,
+    /// What the host shares of it.
+    pub mirrors: Mirrors,
 }
 
 impl Shader {
-    /// A shader of parts, its own the last one.
-    pub(crate) const fn new(parts: &'static [&'static Part]) -> Self {
+    pub(crate) const fn new(text: &'static str, mirrors: Mirrors) -> Self {
         Self {
-            name: file_name(parts[parts.len() - 1].path),
-            parts,
+            name: file_name(mirrors.path),
+            text,
+            mirrors,
         }
     }
 
-    /// The joined WGSL.
+    /// Paths of the parts that it imports and that these import, each once and after those that it needs itself.
+    #[must_use]
+    pub fn imports(&self) -> Vec<&'static str> {
+        let mut paths = Vec::new();
+        add_imports(self.text, &mut Vec::new(), &mut paths);
+        paths
+    }
+
+    /// The WGSL of the imported parts, then its own. A part that does not exist is left out.
     #[must_use]
     pub fn source(&self) -> String {
-        let texts: Vec<&str> = self.parts.iter().map(|part| part.text).collect();
+        let parts = self.imports().into_iter().filter_map(common::text);
+        let texts: Vec<&str> = parts.chain([self.text]).collect();
         texts.join("\n")
+    }
+}
+
+/// Adds the parts that `text` imports to `paths`; those in `seen` are there, or are about to be.
+fn add_imports(text: &'static str, seen: &mut Vec<&'static str>, paths: &mut Vec<&'static str>) {
+    for path in text.lines().filter_map(|line| line.strip_prefix(IMPORT)) {
+        if !seen.contains(&path) {
+            seen.push(path);
+            add_imports(common::text(path).unwrap_or_default(), seen, paths);
+            paths.push(path);
+        }
     }
 }
 
@@ -66,17 +93,16 @@ const fn file_name(path: &'static str) -> &'static str {
     path.split_at(first).1
 }
 
-/// A file of WGSL below `shaders` as a [`Part`], with the host's structs and constants of the same names.
-macro_rules! part {
+/// The host's structs and constants of the same names as those of a file of WGSL below `shaders`.
+macro_rules! mirrors {
     (
         $path:literal
         $(, structs: [$($of:ty),* $(,)?])?
         $(, constants: [$($constant:ident),* $(,)?])?
         $(,)?
     ) => {
-        $crate::gpu::shader::Part {
+        $crate::gpu::shader::Mirrors {
             path: $path,
-            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/", $path, ".wgsl")),
             structs: &[$($(<$of as $crate::gpu::shared::Shared>::MIRROR),*)?],
             #[allow(clippy::cast_precision_loss, clippy::cast_lossless, reason = "small whole numbers, and f32")]
             constants: &[$($((stringify!($constant), $constant as f64)),*)?],
@@ -84,4 +110,14 @@ macro_rules! part {
     };
 }
 
-pub(crate) use part;
+/// The shader of a file of WGSL below `shaders`, with the host's structs and constants of the same names.
+macro_rules! shader {
+    ($path:literal $($mirrors:tt)*) => {
+        $crate::gpu::shader::Shader::new(
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/", $path, ".wgsl")),
+            $crate::gpu::shader::mirrors!($path $($mirrors)*),
+        )
+    };
+}
+
+pub(crate) use {mirrors, shader};

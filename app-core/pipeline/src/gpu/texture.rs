@@ -61,7 +61,7 @@ impl Texture {
             },
         );
         for (level, texels) in (0..).zip(levels) {
-            texture.write_part(gpu, (level, 0), texels.as_ref());
+            texture.write_part(gpu, level, 0, texels.as_ref());
         }
         texture
     }
@@ -127,10 +127,10 @@ impl Texture {
 
     /// Fills one picture of an array.
     pub(crate) fn write_layer(&self, gpu: &Gpu, layer: u32, texels: &[u8]) {
-        self.write_part(gpu, (0, layer), texels);
+        self.write_part(gpu, 0, layer, texels);
     }
 
-    fn write_part(&self, gpu: &Gpu, (level, layer): (u32, u32), texels: &[u8]) {
+    fn write_part(&self, gpu: &Gpu, level: u32, layer: u32, texels: &[u8]) {
         gpu.meter.upload(texels.len());
         let (Some(opened), Some(raw)) = (&gpu.opened, &self.raw) else {
             return;

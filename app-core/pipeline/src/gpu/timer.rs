@@ -1,7 +1,7 @@
 //! Time stamps: device time of each pass of the latest submission, on request.
 
 use super::context::{Gpu, GpuError, Opened};
-use super::pass_run::{PassTime, Path};
+use super::pass_run::{PassTime, PassGroup};
 
 /// Maximum number of timed passes of one submission.
 const MAX_TIMED: u32 = 512;
@@ -12,7 +12,7 @@ const STAMP_BYTES: u64 = 8;
 pub(crate) struct Timer {
     queries: wgpu::QuerySet,
     stamps: wgpu::Buffer,
-    passes: Vec<(Path, &'static str)>,
+    passes: Vec<(PassGroup, &'static str)>,
 }
 
 impl Timer {
@@ -44,11 +44,11 @@ impl Timer {
     }
 
     /// Query index of the first of the next pass's two stamps; none when all are taken.
-    pub(crate) fn next(&mut self, path: Path, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
+    pub(crate) fn next(&mut self, group: PassGroup, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
         let index = u32::try_from(self.passes.len())
             .ok()
             .filter(|index| *index < MAX_TIMED)?;
-        self.passes.push((path, pass));
+        self.passes.push((group, pass));
         Some((&self.queries, 2 * index))
     }
 

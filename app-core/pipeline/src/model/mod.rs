@@ -4,7 +4,6 @@ pub(crate) mod capture;
 pub mod diagnostics;
 pub(crate) mod frame;
 pub(crate) mod lighting;
-pub(crate) mod parts;
 pub mod plan;
 pub(crate) mod readback;
 pub(crate) mod region;
@@ -13,7 +12,7 @@ pub mod state;
 use glam::Vec4;
 
 use crate::gpu::context::Gpu;
-use crate::gpu::pass_run::Path;
+use crate::gpu::pass_run::PassGroup;
 use crate::gpu::recorder::Recorder;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::region_parts::{Marks, RegionParts};
@@ -22,12 +21,11 @@ use crate::model::lighting::{InjectedLights, LightMaps, Lighting};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
-use crate::passes::frame::Picture;
+use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::globals::Globals;
-use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, News};
+use crate::plan::{Change, FrameDelta};
 use crate::readback::FloatMap;
 use crate::readback::inject::InjectedVisibility;
 use app_scene::geometry::bounds::Sphere;
@@ -36,7 +34,6 @@ use app_scene::geometry::bounds::Sphere;
 pub(crate) struct Model {
     pub(crate) state: SceneState,
     pub(crate) region: Region,
-    order: Order,
     lighting: Lighting,
     captured: CaptureTargets,
     drawn: FrameTargets,
@@ -51,46 +48,12 @@ struct Passes {
     frame: frame::Passes,
 }
 
-/// The steps of both paths, by change.
-struct Order {
-    capture: [Vec<capture::order::Step>; Change::ALL.len()],
-    frame: Vec<frame::Step>,
-}
-
-impl Order {
-    fn new(plan: &Plan) -> Self {
-        Self {
-            capture: Change::ALL.map(|change| capture::order::order(plan, change)),
-            frame: frame::order(plan),
-        }
-    }
-
-    /// The capture steps that `change` needs after so many pictures.
-    fn captured(&self, change: Change, n_before: u32) -> impl Iterator<Item = capture::order::Step> {
-        let steps = self.capture[change as usize].iter().copied();
-        steps.filter(move |step| change != Change::Picture || step.is_due(n_before))
-    }
-}
-
-/// The passes that run for `change` and a new pose after so many pictures, each as often as it runs but for the steps of a fit.
-pub fn planned(plan: &Plan, change: Change, n_before: u32) -> Vec<(Path, &'static str)> {
-    let order = Order::new(plan);
-    let captured = order
-        .captured(change, n_before)
-        .flat_map(capture::order::Step::passes);
-    let drawn = order.frame.iter().flat_map(|step| step.passes());
-    captured
-        .map(|pass| (capture_path(change), *pass))
-        .chain(drawn.map(|pass| (Path::Frame, *pass)))
-        .collect()
-}
-
 /// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
-fn capture_path(change: Change) -> Path {
+fn capture_path(change: Change) -> PassGroup {
     if change >= Change::View {
-        Path::Capture
+        PassGroup::Capture
     } else {
-        Path::Frame
+        PassGroup::Frame
     }
 }
 
@@ -105,7 +68,6 @@ impl Model {
     ) -> Self {
         Self {
             state,
-            order: Order::new(&plan),
             lighting: Lighting::new(gpu, &plan, light_points),
             captured: CaptureTargets::new(gpu, &plan),
             drawn: FrameTargets::new(gpu, &plan),
@@ -128,7 +90,6 @@ impl Model {
         globals: &Globals,
         light_points: Vec<Vec<Vec4>>,
     ) -> Self {
-        self.order = Order::new(&plan);
         let is_alike = plan.has_sizes_of(&self.region.plan);
         if is_alike && self.captured.serves(&plan) {
             self.captured.light.injected = None;
@@ -143,7 +104,6 @@ impl Model {
         let Self {
             state,
             mut region,
-            order,
             lighting,
             captured,
             drawn,
@@ -160,7 +120,6 @@ impl Model {
         Self {
             state,
             region,
-            order,
             lighting,
             captured,
             drawn,
@@ -180,60 +139,56 @@ impl Model {
     }
 
     /// Looks for the toy and its shadows in the region, in the poses that are new.
-    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
-        if news.keeps_pose() {
+    pub(crate) fn update_coverage_tiles(&mut self, toy: &ToyMesh, delta: FrameDelta) {
+        if delta.keeps_pose() {
             return;
         }
-        let seen = (&self.region, &self.lighting);
+        let marks = |pose, maps| Marks::of(&self.region, &self.lighting, toy, pose, maps);
         let known = self.drawn.physical_marks.take();
         let physical = known
-            .filter(|_| news.change < Change::View)
-            .unwrap_or_else(|| Marks::of(seen, toy, (&toy.physical, &self.captured.light)));
-        let shown = Marks::of(seen, toy, (&toy.shown, &self.drawn.light));
+            .filter(|_| delta.change < Change::View)
+            .unwrap_or_else(|| marks(&toy.physical, &self.captured.light));
+        let shown = marks(&toy.shown, &self.drawn.light);
         let (plan, uniform) = (&self.region.plan, &self.region.uniform);
         self.drawn.shown_toy = toy.shown.seen_rect(&uniform.by_camera(), plan.toy_box.size_px);
         self.drawn.parts = RegionParts::new([&physical, &shown]);
         self.drawn.physical_marks = Some(physical);
     }
 
-    /// Encodes what of the frame path is due, and before it the capture steps that the change needs.
+    /// Encodes what the frame path cannot keep, and before it what the capture path learns of the change.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        delta: FrameDelta,
     ) {
-        let change = news.change;
-        let lighting = (&self.passes.light, &self.lighting);
         let capture = CapturePath {
             region: &self.region,
             captured: &self.captured,
             passes: &self.passes.capture,
             plate: &self.passes.plate,
-            lighting,
+            light: &self.passes.light,
+            lighting: &self.lighting,
             state: &self.state,
             toy,
             pictures,
         };
-        recorder.path = capture_path(change);
-        for step in self.order.captured(change, pictures.n_before) {
-            capture.encode(recorder, step);
-        }
+        recorder.group = capture_path(delta.change);
+        capture.encode(recorder, delta.change);
         let frame = FramePath {
             region: &self.region,
             captured: &self.captured,
             drawn: &self.drawn,
             passes: &self.passes.frame,
-            lighting,
+            light: &self.passes.light,
+            lighting: &self.lighting,
             state: &self.state,
             toy,
             frame: pictures.frame,
         };
-        recorder.path = Path::Frame;
-        for step in self.order.frame.iter().filter(|step| step.is_due(news)) {
-            frame.encode(recorder, *step);
-        }
+        recorder.group = PassGroup::Frame;
+        frame.encode(recorder, delta);
     }
 
     /// Replaces visibilities from the next frame on.
@@ -241,7 +196,7 @@ impl Model {
         let n_lights = self.region.plan.n_lights;
         let upload = |map: &Option<FloatMap>, light: &LightMaps| {
             let map = map.as_ref();
-            map.map(|map| InjectedLights::new(gpu, (map, n_lights), &light.visibility.lights))
+            map.map(|map| InjectedLights::new(gpu, map, n_lights, &light.visibility.lights))
         };
         self.captured.light.injected = upload(&maps.physical, &self.captured.light);
         self.drawn.light.injected = upload(&maps.shown, &self.drawn.light);

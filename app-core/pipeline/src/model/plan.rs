@@ -1,6 +1,4 @@
 //! The plan of a scene: numbers of points, sizes of maps, and what is left out. Pure data, made without a device.
-//!
-//! Both paths take their order from it (`capture::order`, `frame::order`).
 
 use glam::UVec2;
 use wgpu::TextureFormat;
@@ -8,8 +6,8 @@ use wgpu::TextureFormat;
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
-use crate::passes::toy_mesh::Detail;
-use crate::plan::{LeftOut, SceneFacts};
+use crate::passes::toy_mesh::CasterLod;
+use crate::plan::{SkippedWork, SceneFacts};
 use crate::preset::ModelSettings;
 use app_scene::scene::MAX_LIGHTS;
 
@@ -44,25 +42,25 @@ pub(crate) const MAX_FIT_ROWS: u32 = MAX_FIT_PIXELS / (FIT_WORKGROUP * FIT_PIXEL
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Casters {
     /// Of the lights, on receivers.
-    pub light: Detail,
+    pub light: CasterLod,
     /// The same on the toy itself.
-    pub self_shadow: Detail,
+    pub self_shadow: CasterLod,
     /// Of the ambient light.
-    pub ambient: Detail,
+    pub ambient: CasterLod,
 }
 
 impl Casters {
     fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         match settings.caster_px {
             Some(caster_px) => Self {
-                light: Detail::Within(f64::from(caster_px) * facts.pixel_in_object),
-                self_shadow: Detail::Within(SELF_CASTER_PX * facts.pixel_in_object),
-                ambient: Detail::AtMost(N_AMBIENT_TRIANGLES),
+                light: CasterLod::Within(f64::from(caster_px) * facts.pixel_in_object),
+                self_shadow: CasterLod::Within(SELF_CASTER_PX * facts.pixel_in_object),
+                ambient: CasterLod::AtMost(N_AMBIENT_TRIANGLES),
             },
             None => Self {
-                light: Detail::Own,
-                self_shadow: Detail::Own,
-                ambient: Detail::Own,
+                light: CasterLod::Own,
+                self_shadow: CasterLod::Own,
+                ambient: CasterLod::Own,
             },
         }
     }
@@ -121,7 +119,7 @@ pub struct Plan {
     /// That of the fit of gain and intensities.
     pub intensity_fit_stride_px: u32,
     /// Work that the scene does not need.
-    pub left_out: Vec<LeftOut>,
+    pub skipped: Vec<SkippedWork>,
 }
 
 impl Plan {
@@ -134,9 +132,9 @@ impl Plan {
         Self {
             region: facts.region,
             physical_toy: in_region(facts.physical_toy, &facts.region),
-            toy_box: box_in_region(facts.toy_box, (facts, settings)),
-            physical_box: box_in_region(facts.physical_box, (facts, settings)),
-            left_out: left_out(facts, n_lights),
+            toy_box: box_in_region(facts.toy_box, facts, settings),
+            physical_box: box_in_region(facts.physical_box, facts, settings),
+            skipped: skipped(facts, n_lights),
             n_ambient_directions: settings.n_ambient_directions,
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
@@ -221,7 +219,7 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
 }
 
 /// A box of the image as one of the region. A shadow that is withheld marks pixels all over that.
-fn box_in_region(of_image: Option<PixelRect>, (facts, settings): (&SceneFacts, &ModelSettings)) -> PixelRect {
+fn box_in_region(of_image: Option<PixelRect>, facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
     let whole = PixelRect {
         origin_px: UVec2::ZERO,
         size_px: facts.region.size_px,
@@ -263,25 +261,25 @@ fn stride_px(size_px: UVec2, most: u32) -> u32 {
         .unwrap_or(largest)
 }
 
-fn left_out(facts: &SceneFacts, n_lights: usize) -> Vec<LeftOut> {
-    let mut left_out = Vec::new();
+fn skipped(facts: &SceneFacts, n_lights: usize) -> Vec<SkippedWork> {
+    let mut skipped = Vec::new();
     if facts.is_plate_complete {
-        left_out.push(LeftOut {
+        skipped.push(SkippedWork {
             what: "estimate of the plate",
-            why: "plates show all of the region",
+            reason: "plates show all of the region",
         });
     }
     if facts.n_receivers < 2 {
-        left_out.push(LeftOut {
+        skipped.push(SkippedWork {
             what: "further receivers",
-            why: "one is listed",
+            reason: "one is listed",
         });
     }
     if n_lights < 2 {
-        left_out.push(LeftOut {
+        skipped.push(SkippedWork {
             what: "overlap of shadows",
-            why: "one light is listed",
+            reason: "one light is listed",
         });
     }
-    left_out
+    skipped
 }

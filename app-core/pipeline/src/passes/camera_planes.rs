@@ -7,13 +7,12 @@ use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::frame::{Encoding, FramePlanes, PLANES};
-use crate::passes::parts::FULLSCREEN;
+use crate::passes::pictures::{Encoding, FramePlanes};
 use app_scene::camera_frame::{PlanarImage, half_size_px};
 
-pub(crate) const SHADER: Shader = Shader::new(&[&FULLSCREEN, &PLANES, &part!("passes/camera_planes")]);
+pub(crate) const SHADER: Shader = shader!("passes/camera_planes");
 const SLOTS: &[Slot] = &[Slot::per_use::<Encoding>(), Slot::Texture, Slot::Texture];
 /// Format of what is written: codes of the frame.
 const CODES: TextureFormat = TextureFormat::Rgba8Unorm;

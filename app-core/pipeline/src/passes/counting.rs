@@ -16,12 +16,9 @@ use wgpu::{
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
 use crate::gpu::recorder::{Attachment, Group, Recorder, Render};
-use crate::gpu::shader::{Part, part};
 use crate::gpu::texture::Texture;
 use crate::passes::toy_mesh::{Corners, PoseBuffers};
 
-/// Tiles that are closed to what is drawn once.
-pub(crate) const TILES: Part = part!("common/tiles");
 
 /// Format of the depths that order the instances.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
@@ -104,7 +101,8 @@ impl CountingDraws {
         render: &mut Render<'_>,
         groups: &[Group],
         (corners, pose): (&Corners<'_>, &PoseBuffers),
-        (instances, n_plain): (Range<u32>, u32),
+        instances: Range<u32>,
+        n_plain: u32,
     ) {
         let sided = usize::from(corners.is_culled);
         if let Some(silhouette) = &corners.silhouette {

@@ -3,22 +3,21 @@
 use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
 
 use crate::geometry::anchored::AnchoredReceiver;
-use crate::geometry::facing::Viewers;
+use crate::geometry::silhouette::{ByCamera, OntoReceiver, Viewers};
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
-use crate::geometry::silhouette::{ByCamera, OntoReceiver};
 use crate::geometry::view::View;
-use crate::geometry::whole_shadow::Caster;
+use crate::geometry::seen::Caster;
 use crate::gpu::bindings::Slot;
 use crate::gpu::buffer::Buffer;
-use crate::gpu::shader::{Part, part};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::geometry::light_points::light_in_plane;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 
 /// WGSL part of the globals.
-pub(crate) const GLOBALS: Part = part!(
+pub(crate) const GLOBALS: Mirrors = mirrors!(
     "common/globals",
     structs: [ReceiverPlane, Globals],
     constants: [MAX_LIGHTS, MAX_RECEIVERS],

@@ -2,7 +2,7 @@
 
 use crate::gpu::context::Gpu;
 
-/// Targets of passes that write to those of others.
+/// For passes without render targets of their own.
 pub(crate) struct NoTargets;
 
 impl NoTargets {

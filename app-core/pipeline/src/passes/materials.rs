@@ -15,13 +15,10 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::recorder::{Group, Recorder};
 use crate::gpu::samplers::Sampler;
-use crate::gpu::shader::{Part, part};
 use crate::gpu::texture::{Texture, picture_sampler};
 use crate::passes::mips::mips;
 use app_scene::toy::{Material, Toy, Wrap};
 
-/// The WGSL of the group of a look.
-pub(crate) const MATERIAL: Part = part!("common/material");
 /// What the group holds.
 pub(crate) const MATERIAL_GROUP: &[Slot] = &[Slot::Read, Slot::Filtered, Slot::Sampler];
 

@@ -5,14 +5,10 @@
 
 pub(crate) mod camera_planes;
 pub(crate) mod counting;
-pub(crate) mod finished;
-pub(crate) mod frame;
 pub mod globals;
-pub(crate) mod in_parts;
 pub(crate) mod list;
 pub(crate) mod materials;
 mod mips;
-pub(crate) mod parts;
 pub(crate) mod pictures;
 pub mod plate;
 pub(crate) mod present;

@@ -1,8 +1,112 @@
-//! Pictures that a method reads: the camera frame and the scene's plates.
+//! Pictures that passes read: the camera frame in the form that it came in, the plates, and the picture that is shown in the end.
 
+use std::sync::OnceLock;
+
+use glam::UVec2;
+
+use crate::geometry::rect::PixelRect;
 use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::{Render, n_pixels};
+use crate::gpu::shader::{Mirrors, mirrors};
+use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::TextureView;
-use crate::passes::frame::Frame;
+use app_scene::camera_frame::YcbcrEncoding;
+
+/// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.
+pub(crate) const PLANES: Mirrors = mirrors!("common/planes", structs: [Encoding]);
+
+shared_struct! {
+    /// Map from the planes' codes to sRGB codes.
+    pub(crate) struct Encoding {
+        pub srgb_from_ycbcr: Mat3Columns,
+        pub origin: [f32; 3],
+        pub _pad: u32,
+    }
+}
+
+/// The camera image, in the form that it came in.
+#[derive(Clone, Copy)]
+pub(crate) enum Frame<'a> {
+    Picture(Picture<'a>),
+    Planes(FramePlanes<'a>),
+}
+
+/// Two views of an sRGB texture.
+#[derive(Clone, Copy)]
+pub(crate) struct Picture<'a> {
+    /// Decoded where it is read.
+    pub(crate) light: &'a TextureView,
+    /// Its codes.
+    pub(crate) codes: &'a TextureView,
+}
+
+/// Views of luma and of chroma, which may be the platform's, and what their codes mean.
+#[derive(Clone, Copy)]
+pub(crate) struct FramePlanes<'a> {
+    pub(crate) views: [&'a TextureView; 2],
+    pub(crate) encoding: YcbcrEncoding,
+}
+
+/// Pipelines by the form of the picture, which `common/frame` has as a constant: for planes, which phones deliver, compiled
+/// ahead, for pictures when the first comes.
+pub(crate) struct ByForm<T> {
+    of_planes: T,
+    of_picture: OnceLock<T>,
+    make: Box<Make<T>>,
+}
+
+/// Makes a pipeline with a value of the constant.
+type Make<T> = dyn Fn(&Gpu, (&'static str, u32)) -> T + Send + Sync;
+
+impl<T> ByForm<T> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        make: impl Fn(&Gpu, (&'static str, u32)) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            of_planes: make(gpu, ("IS_PLANAR", 1)),
+            of_picture: OnceLock::new(),
+            make: Box::new(make),
+        }
+    }
+
+    pub(crate) fn of(&self, gpu: &Gpu, frame: &Frame<'_>) -> &T {
+        match frame {
+            Frame::Planes(_) => &self.of_planes,
+            Frame::Picture(_) => self.of_picture.get_or_init(|| (self.make)(gpu, ("IS_PLANAR", 0))),
+        }
+    }
+}
+
+impl FramePlanes<'_> {
+    pub(crate) fn uniform(&self) -> Encoding {
+        let map = self.encoding.srgb_from_ycbcr();
+        Encoding {
+            srgb_from_ycbcr: [0, 1, 2].map(|index| map.matrix.col(index).extend(0.0).to_array()),
+            origin: map.origin.to_array(),
+            _pad: 0,
+        }
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// For `common/frame`.
+    pub(crate) fn uniform(&self) -> Encoding {
+        match self {
+            Self::Picture(_) => bytemuck::Zeroable::zeroed(),
+            Self::Planes(planes) => planes.uniform(),
+        }
+    }
+
+    /// The picture, which stands in for the chroma that it does not have; or both planes.
+    pub(crate) fn views(&self) -> [&'a TextureView; 2] {
+        match self {
+            Self::Picture(picture) => [picture.light; 2],
+            Self::Planes(planes) => planes.views,
+        }
+    }
+}
 
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
@@ -16,4 +120,36 @@ pub(crate) struct Pictures<'a> {
     pub(crate) plate_views: &'a Buffer,
     /// Whether the first plate was taken from this very camera.
     pub(crate) is_same_view: bool,
+}
+
+/// The picture that is shown: the camera image, and the region's picture to lay over it.
+#[derive(Clone, Copy)]
+pub(crate) struct ComposedFrame<'a> {
+    pub(crate) frame: Frame<'a>,
+    /// None if the camera image passes through.
+    pub(crate) region: Option<RegionOverlay<'a>>,
+    /// Of the camera image.
+    pub(crate) size_px: UVec2,
+}
+
+/// The region's picture over the camera image.
+#[derive(Clone, Copy)]
+pub(crate) struct RegionOverlay<'a> {
+    pub(crate) picture: Picture<'a>,
+    pub(crate) rect: PixelRect,
+    /// Part of it that is shown, the rest being the camera image: from 0 to 1.
+    pub(crate) effect: f32,
+}
+
+/// Pixels of disjoint rectangles.
+pub(crate) fn n_pixels_of(parts: &[PixelRect]) -> u64 {
+    parts.iter().map(|part| n_pixels(part.size_px)).sum()
+}
+
+/// Fills disjoint rectangles of a target by the fullscreen pipeline that is set.
+pub(crate) fn fill_parts(render: &mut Render<'_>, parts: &[PixelRect]) {
+    for part in parts {
+        render.clip((part.origin_px, part.size_px));
+        render.draw(0..3, 0..1);
+    }
 }

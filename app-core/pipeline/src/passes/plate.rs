@@ -7,18 +7,13 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::parts::FULLSCREEN;
+use crate::passes::globals::GLOBALS_GROUP;
 use app_scene::scene::MAX_RECEIVERS;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FULLSCREEN,
-    &part!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]),
-]);
+pub(crate) const SHADER: Shader = shader!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]);
 const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
 /// Format of a plate that is finer than codes, as where gains have been applied; alpha marks photographed pixels.
 pub(crate) const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;

@@ -8,15 +8,12 @@ use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::Laid;
-use crate::passes::frame::Picture;
-use crate::passes::parts::{FULLSCREEN, SRGB};
+use crate::passes::pictures::{Picture, RegionOverlay};
 
-pub(crate) const SHADER: Shader =
-    Shader::new(&[&SRGB, &FULLSCREEN, &part!("passes/present", structs: [Placement])]);
+pub(crate) const SHADER: Shader = shader!("passes/present", structs: [Placement]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Placement>(), Slot::Texture, Slot::Texture];
 /// Format of the region's picture.
 pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
@@ -54,16 +51,17 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (frame, region): (Picture<'_>, Option<Laid<'_>>),
+        frame: Picture<'_>,
+        region: Option<RegionOverlay<'_>>,
         target: &TextureView,
     ) {
-        let placement = region.map_or(Placement::zeroed(), |laid| Placement {
-            origin_px: laid.rect.origin_px.to_array(),
-            size_px: laid.rect.size_px.to_array(),
-            effect: laid.effect,
+        let placement = region.map_or(Placement::zeroed(), |overlay| Placement {
+            origin_px: overlay.rect.origin_px.to_array(),
+            size_px: overlay.rect.size_px.to_array(),
+            effect: overlay.effect,
             unused: 0.0,
         });
-        let region = region.map_or(frame, |laid| laid.picture);
+        let region = region.map_or(frame, |overlay| overlay.picture);
         let resources = [Resource::PerUse, frame.codes.into(), region.codes.into()];
         let own = recorder.bind_with(&self.draw, GROUP_PASS, &placement, &resources);
         recorder.fullscreen(&self.draw, &[own], &[target]);

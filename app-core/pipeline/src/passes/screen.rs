@@ -9,20 +9,12 @@ use crate::gpu::bindings::{GROUP_DRAW, GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Group, Recorder, cleared};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
-use crate::passes::finished::{Finished, Laid};
-use crate::passes::frame::{Encoding, Frame, PLANES};
-use crate::passes::in_parts::{fill, n_pixels_of};
-use crate::passes::parts::{FULLSCREEN, SRGB};
+use crate::passes::pictures::{ComposedFrame, Encoding, Frame, RegionOverlay, fill_parts, n_pixels_of};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &SRGB,
-    &FULLSCREEN,
-    &PLANES,
-    &part!("passes/screen", structs: [ScreenMap]),
-]);
+pub(crate) const SHADER: Shader = shader!("passes/screen", structs: [ScreenMap]);
 const SLOTS: &[Slot] = &[Slot::per_use::<ScreenMap>(), Slot::Sampler];
 /// Of a picture, and of luma and chroma.
 const FRAME_SLOTS: [&[Slot]; 2] = [&[Slot::Filtered], &[Slot::Filtered, Slot::Filtered]];
@@ -48,26 +40,26 @@ shared_struct! {
 }
 
 impl ScreenMap {
-    fn new(image_from_screen: &DAffine2, finished: &Finished<'_>) -> Self {
+    fn new(image_from_screen: &DAffine2, composed: &ComposedFrame<'_>) -> Self {
         let axes = image_from_screen.matrix2;
         let pair = |pair: DVec2| pair.as_vec2().to_array();
         let map = Self {
             x_axis: pair(axes.x_axis),
             y_axis: pair(axes.y_axis),
             origin_px: pair(image_from_screen.translation),
-            picture_px: pair(finished.size_px.as_dvec2()),
-            chroma_px: finished.frame.views()[1].size_px().as_vec2().to_array(),
-            encoding: finished.frame.uniform(),
+            picture_px: pair(composed.size_px.as_dvec2()),
+            chroma_px: composed.frame.views()[1].size_px().as_vec2().to_array(),
+            encoding: composed.frame.uniform(),
             ..Self::zeroed()
         };
-        map.with_region(finished.region)
+        map.with_region(composed.region)
     }
 
-    fn with_region(self, region: Option<Laid<'_>>) -> Self {
-        region.map_or(self, |laid| Self {
-            region_origin_px: laid.rect.origin_px.as_vec2().to_array(),
-            region_px: laid.rect.size_px.as_vec2().to_array(),
-            effect: laid.effect,
+    fn with_region(self, region: Option<RegionOverlay<'_>>) -> Self {
+        region.map_or(self, |overlay| Self {
+            region_origin_px: overlay.rect.origin_px.as_vec2().to_array(),
+            region_px: overlay.rect.size_px.as_vec2().to_array(),
+            effect: overlay.effect,
             ..self
         })
     }
@@ -106,39 +98,40 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (finished, image_from_screen): (&Finished<'_>, &DAffine2),
+        composed: &ComposedFrame<'_>,
+        image_from_screen: &DAffine2,
         screen: &TextureView,
     ) {
-        let map = ScreenMap::new(image_from_screen, finished);
+        let map = ScreenMap::new(image_from_screen, composed);
         let all = PixelRect {
             origin_px: UVec2::ZERO,
             size_px: screen.size_px(),
         };
-        let region = finished.region.filter(|laid| laid.effect > 0.0);
+        let region = composed.region.filter(|overlay| overlay.effect > 0.0);
         let inside =
-            region.and_then(|laid| Some((laid, shown_rect(&laid.rect, image_from_screen)?.common(&all)?)));
+            region.and_then(|overlay| Some((overlay, shown_rect(&overlay.rect, image_from_screen)?.common(&all)?)));
         let beside = inside.map_or_else(|| vec![all], |(_, inside)| all.beside(&inside).collect());
-        let frame = &finished.frame;
+        let frame = &composed.frame;
         let of_frame = by_form(&self.frame, frame);
         let sampler = &recorder.gpu.samplers.linear;
         let to_picture = recorder.bind_with(of_frame, GROUP_PASS, &map, &[Resource::PerUse, sampler.into()]);
         let seen = bind_frame(recorder, of_frame, frame);
-        let over = inside.map(|(laid, inside)| (self.of_region(recorder, frame, &laid), inside));
+        let over = inside.map(|(overlay, inside)| (self.of_region(recorder, frame, &overlay), inside));
         let mut render = recorder.render(SHADER.name, &[Some(cleared(screen))], None, StoreOp::Discard);
         render.set(&to_picture);
         if let Some(((draw, groups), inside)) = over {
             render.begin(draw, &groups);
-            fill(&mut render, &[inside]);
+            fill_parts(&mut render, &[inside]);
         }
         render.narrow(n_pixels_of(&beside));
         render.begin(of_frame, &[seen]);
-        fill(&mut render, &beside);
+        fill_parts(&mut render, &beside);
     }
 
     /// What draws the region, and what it reads.
-    fn of_region(&self, recorder: &Recorder<'_>, frame: &Frame<'_>, laid: &Laid<'_>) -> (&Draw, Vec<Group>) {
-        let bind = |draw| recorder.bind(draw, GROUP_REGION, &[laid.picture.light.into()]);
-        if laid.effect < 1.0 {
+    fn of_region(&self, recorder: &Recorder<'_>, frame: &Frame<'_>, overlay: &RegionOverlay<'_>) -> (&Draw, Vec<Group>) {
+        let bind = |draw| recorder.bind(draw, GROUP_REGION, &[overlay.picture.light.into()]);
+        if overlay.effect < 1.0 {
             let draw = by_form(&self.mixed, frame);
             return (draw, vec![bind(draw), bind_frame(recorder, draw, frame)]);
         }

@@ -9,10 +9,9 @@ use std::sync::OnceLock;
 use glam::{UVec2, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
-use crate::geometry::facing::Viewers;
+use crate::geometry::silhouette::{Edges, Projection, Shape, Viewers, find_silhouette};
 use crate::geometry::rect::PixelRect;
 use crate::geometry::seen::{mark_seen, seen_rect};
-use crate::geometry::silhouette::{Edges, Projection, Shape, find_silhouette};
 use crate::geometry::tiles::Tiles;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
@@ -86,9 +85,9 @@ impl PoseBuffers {
     }
 }
 
-/// Which of the shapes near the toy's casts a shadow.
+/// Level of detail of the shadow caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Detail {
+pub enum CasterLod {
     /// The toy's own.
     Own,
     /// The coarsest that is as near, in units of the toy's file.
@@ -114,6 +113,25 @@ impl CasterRange {
     }
 }
 
+/// How a method draws the toy's shadows.
+pub(crate) struct Casting<'a> {
+    /// Shapes that may cast shadows in place of the toy's own.
+    pub(crate) simplified: &'a [Caster],
+    /// Whether triangles that face away are left out.
+    pub(crate) is_culled: bool,
+}
+
+/// The toy in a pose, as points look at it.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenToy<'a> {
+    pub(crate) pose: &'a PoseBuffers,
+    /// Which list of the pose is the points' own.
+    pub(crate) side: Option<Side>,
+    /// Homogeneous, in anchor space.
+    pub(crate) points: &'a [Vec4],
+    pub(crate) lod: CasterLod,
+}
+
 /// The toy's buffers.
 pub(crate) struct ToyMesh {
     indices: Buffer,
@@ -135,20 +153,19 @@ pub(crate) struct ToyMesh {
 }
 
 impl ToyMesh {
-    /// `simplified` are shapes that may cast shadows in place of the toy's; with `lists` what faces away is left out.
     pub(crate) fn new(
         gpu: &Gpu,
         toy: &Toy,
         physical: &PosedMesh,
-        (simplified, lists): (&[Caster], bool),
+        casting: &Casting<'_>,
     ) -> Self {
         let materials = Materials::new(gpu, toy);
-        let (casters, shadow_indices) = casters(toy, simplified);
+        let (casters, shadow_indices) = casters(toy, casting.simplified);
         let shape = toy.shadow_indices();
         let (runs, indices) = runs(toy, &materials);
         // Only of closed pieces is anything left out, and shadows of others have no silhouette that pays; the toy's own shape
         // has the most triangles.
-        let n_lists = match lists {
+        let n_lists = match casting.is_culled {
             true if shape.n_closed > 0 => 1 + MAX_LIGHTS,
             true if shape.indices.len() <= MAX_SILHOUETTE_CORNERS => 1,
             _ => 0,
@@ -186,16 +203,21 @@ impl ToyMesh {
         self.materials.bind(recorder, pipeline)
     }
 
-    /// Corners of a shape to draw as points see it, homogeneous and in anchor space. Of closed pieces, and from outside, what faces
+    /// Corners of a shape to draw as points see it. Of closed pieces, and from outside, what faces
     /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs. Then the
     /// silhouette is looked for as well, where it is asked for.
     pub(crate) fn corners<'a>(
         &'a self,
         gpu: &Gpu,
-        (pose, side): (&'a PoseBuffers, Option<Side>),
-        (points, detail): (&[Vec4], Detail),
+        seen: &SeenToy<'a>,
         target: Option<SilhouetteTarget<'_>>,
     ) -> Corners<'a> {
+        let SeenToy {
+            pose,
+            side,
+            points,
+            lod,
+        } = *seen;
         let is_inside = points.iter().any(|point| pose.around.holds(point.as_dvec4()));
         let is_culled = self.is_closed && !is_inside;
         let viewers = Viewers::around(points).filter(|_| !is_inside);
@@ -203,18 +225,18 @@ impl ToyMesh {
         let Some((viewers, lists)) = listed else {
             return Corners {
                 is_culled,
-                ..self.shape(detail)
+                ..self.shape(lod)
             };
         };
-        let (closed, open) = self.split_caster(detail);
+        let (closed, open) = self.split_caster(lod);
         let mut facing = viewers.facing(&pose.mesh.positions, closed);
         facing.extend(open);
         gpu.write(&lists.facing, &facing);
         let worth_it = target.filter(|target| target.saves.pays(facing.len(), self.is_closed));
         let silhouette = worth_it.and_then(|target| {
-            let shape = self.small_shape(pose, detail)?;
-            let seen = (&viewers, target.projection);
-            let silhouette = find_silhouette(shape, seen, &facing, target.part.size_px)?;
+            let shape = self.small_shape(pose, lod)?;
+            let silhouette =
+                find_silhouette(shape, &viewers, target.projection, &facing, target.part.size_px)?;
             lists.silhouette(gpu, &silhouette, target.part.origin_px.as_vec2())
         });
         Corners {
@@ -229,18 +251,20 @@ impl ToyMesh {
     pub(crate) fn mark_seen(
         &self,
         tiles: &mut Tiles,
-        (pose, detail): (&PoseBuffers, Detail),
-        (projection, reach_px): (&dyn Projection, f32),
+        pose: &PoseBuffers,
+        lod: CasterLod,
+        projection: &dyn Projection,
+        reach_px: f32,
     ) {
-        let (closed, open) = self.split_caster(detail);
+        let (closed, open) = self.split_caster(lod);
         for corners in [closed, open] {
-            mark_seen(tiles, (&pose.mesh.positions, corners), projection, reach_px);
+            mark_seen(tiles, &pose.mesh.positions, corners, projection, reach_px);
         }
     }
 
     /// A shape in a pose, if it is small enough to look for its silhouette.
-    fn small_shape<'a>(&'a self, pose: &'a PoseBuffers, detail: Detail) -> Option<Shape<'a>> {
-        let caster = self.caster(detail)?;
+    fn small_shape<'a>(&'a self, pose: &'a PoseBuffers, lod: CasterLod) -> Option<Shape<'a>> {
+        let caster = self.caster(lod)?;
         let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
         let corners = self.shadow_corners.get(start..end)?;
         (corners.len() <= MAX_SILHOUETTE_CORNERS).then(|| Shape {
@@ -251,10 +275,10 @@ impl ToyMesh {
     }
 
     /// Corners of a whole shape.
-    pub(crate) fn shape(&self, detail: Detail) -> Corners<'_> {
+    pub(crate) fn shape(&self, lod: CasterLod) -> Corners<'_> {
         Corners {
             buffer: &self.shadow_indices,
-            indices: self.corners_of(detail),
+            indices: self.corners_of(lod),
             is_culled: false,
             silhouette: None,
         }
@@ -264,12 +288,12 @@ impl ToyMesh {
     pub(crate) fn draw_positions(&self, render: &mut Render<'_>, positions: &Buffer, instances: Range<u32>) {
         render.set_vertices(0, positions);
         render.set_indices(&self.shadow_indices);
-        render.draw_indexed(self.corners_of(Detail::Own), instances);
+        render.draw_indexed(self.corners_of(CasterLod::Own), instances);
     }
 
     /// Corners of a shape: those of closed pieces, and those of open ones.
-    fn split_caster(&self, detail: Detail) -> (&[u32], &[u32]) {
-        let corners = self.caster(detail).and_then(|caster| {
+    fn split_caster(&self, lod: CasterLod) -> (&[u32], &[u32]) {
+        let corners = self.caster(lod).and_then(|caster| {
             let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
             self.shadow_corners
                 .get(start..end)?
@@ -278,17 +302,17 @@ impl ToyMesh {
         corners.unwrap_or_default()
     }
 
-    /// Corners of the shape of a detail, within all.
-    fn corners_of(&self, detail: Detail) -> Range<u32> {
-        self.caster(detail).map_or(0..0, |caster| caster.indices.clone())
+    /// Corners of the shape of a level of detail, within all.
+    fn corners_of(&self, lod: CasterLod) -> Range<u32> {
+        self.caster(lod).map_or(0..0, |caster| caster.indices.clone())
     }
 
-    fn caster(&self, detail: Detail) -> Option<&CasterRange> {
+    fn caster(&self, lod: CasterLod) -> Option<&CasterRange> {
         let mut casters = self.casters.iter();
-        match detail {
-            Detail::Own => casters.next(),
-            Detail::Within(error) => casters.take_while(|caster| caster.error <= error).last(),
-            Detail::AtMost(n) => casters
+        match lod {
+            CasterLod::Own => casters.next(),
+            CasterLod::Within(error) => casters.take_while(|caster| caster.error <= error).last(),
+            CasterLod::AtMost(n) => casters
                 .find(|caster| caster.n_triangles() <= n)
                 .or(self.casters.last()),
         }

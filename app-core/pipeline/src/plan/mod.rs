@@ -1,4 +1,4 @@
-//! Common parts of both methods' plans: facts of a scene, how much changed, and what is left out. Pure data, made
+//! Common parts of both methods' plans: facts of a scene, how much changed, and which work is skipped. Pure data, made
 //! without a device.
 //!
 //! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
@@ -48,13 +48,13 @@ impl SceneFacts {
     }
 }
 
-/// Work that a scene does not need.
+/// Work that a frame or a scene does not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct LeftOut {
-    /// What is left out.
+pub struct SkippedWork {
+    /// The work that is skipped.
     pub what: &'static str,
-    /// Why.
-    pub why: &'static str,
+    /// The reason in words.
+    pub reason: &'static str,
 }
 
 /// What changed since the frame before; each includes those before it.
@@ -87,15 +87,15 @@ impl Change {
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }
 
-/// What a frame brings.
+/// What changed since the previous frame; selects the passes to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct News {
+pub(crate) struct FrameDelta {
     pub(crate) change: Change,
     /// Whether another pose is shown than in the frame before.
     pub(crate) is_pose_new: bool,
 }
 
-impl News {
+impl FrameDelta {
     /// Whether what is drawn of the shown pose alone, such as its shadows, can stay.
     pub(crate) fn keeps_pose(self) -> bool {
         !self.is_pose_new && self.change < Change::View

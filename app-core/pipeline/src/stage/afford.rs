@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, DVec4, Vec4};
 use super::Stage;
 use super::footprint::Footprint;
 use crate::frame::warning::Warning;
-use crate::governor::{BALANCED_FRONT, Step};
+use crate::governor::{BALANCED_QUALITY_LADDER, QualityStep};
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::texture::Texture;
@@ -13,11 +13,10 @@ use crate::model::Model;
 use crate::model::plan::Plan;
 use crate::model::state::SceneState;
 use crate::model::state::grids::grids_over;
-use crate::passes::frame::{Frame, Picture};
+use crate::passes::pictures::{Frame, Picture, Pictures};
 use crate::passes::globals::globals;
-use crate::passes::pictures::Pictures;
 use crate::passes::present::REGION_FORMAT;
-use crate::plan::{Change, News};
+use crate::plan::{Change, FrameDelta};
 use crate::preset::ModelSettings;
 
 /// Most triangles of a new view that are drawn: with one light 90,000 of a toy stay below it with the settings of
@@ -57,19 +56,19 @@ impl Stage {
         self.cost_warning = None;
         let facts = self.facts(footprint, (footprint.region, None));
         let covered = self.covered(footprint);
-        let mut steps = BALANCED_FRONT.iter();
+        let mut steps = BALANCED_QUALITY_LADDER.iter();
         let mut first = None;
         loop {
             let settings = self.settings(settings);
             let plan = Plan::new(&facts, &settings);
-            let cost = self.cost(&plan, footprint, (&covered, settings.ambient_divisor));
+            let cost = self.cost(&plan, footprint, &covered, settings.ambient_divisor);
             let Cost {
                 triangles,
                 covered_px,
             } = *first.get_or_insert(cost);
             if !cost.is_too_much() {
                 if !self.turned_down.is_empty() {
-                    let what = self.turned_down.iter().map(|step: &Step| step.what).collect();
+                    let what = self.turned_down.iter().map(|step: &QualityStep| step.what).collect();
                     self.cost_warning = Some(Warning::TurnedDown {
                         what,
                         triangles,
@@ -90,7 +89,7 @@ impl Stage {
     }
 
     /// Counts what a scene's first frame would have the device do.
-    fn cost(&self, plan: &Plan, footprint: &Footprint, (covered, divisor): (&Covered, u32)) -> Cost {
+    fn cost(&self, plan: &Plan, footprint: &Footprint, covered: &Covered, divisor: u32) -> Cost {
         let gpu = Gpu::default();
         let globals = globals(&footprint.view, &plan.region, &self.layout())
             .with_boxes(&plan.toy_box, &plan.physical_box);
@@ -110,12 +109,12 @@ impl Stage {
             is_same_view: footprint.choice.is_same_view,
         };
         let mut recorder = Recorder::new(&gpu, None);
-        let news = News {
+        let delta = FrameDelta {
             change: Change::View,
             is_pose_new: true,
         };
-        model.look_for_toy(&self.toy, news);
-        model.encode(&mut recorder, &self.toy, &pictures, news);
+        model.update_coverage_tiles(&self.toy, delta);
+        model.encode(&mut recorder, &self.toy, &pictures, delta);
         #[allow(clippy::cast_precision_loss, reason = "at most 64")]
         let count = |n: usize| n as f64;
         let by_lights = plan.n_light_points.iter().zip(&covered.by_lights_px);

@@ -13,7 +13,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::camera_planes;
 use crate::passes::camera_planes::Planes;
-use crate::passes::frame::{Frame, FramePlanes, Picture};
+use crate::passes::pictures::{Frame, FramePlanes, Picture};
 use app_scene::camera_frame::{CameraImage, PlanarImage};
 
 pub(crate) struct CameraTexture {

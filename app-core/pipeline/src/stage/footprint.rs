@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Stage;
-use crate::frame::report::FrameReport;
+use crate::frame::FrameReport;
 use crate::frame::warning::Warning;
 use crate::geometry::clip_reach::ClipReach;
 use crate::geometry::rect::{PixelRect, PlaneRect};
@@ -13,7 +13,7 @@ use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::passes::globals::BORDER_PX;
 use crate::passes::plate::PlateViews;
-use crate::plan::LeftOut;
+use crate::plan::SkippedWork;
 use crate::plates::choice::{PlateChoice, choose, covered_fraction, plate_views};
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
@@ -59,7 +59,7 @@ pub(super) enum PassThrough {
 
 impl PassThrough {
     pub(super) fn tell(self, report: &mut FrameReport) {
-        let why = match self {
+        let reason = match self {
             Self::PhysicalPose => "the shown pose is the physical pose",
             Self::NoEffect => "nothing of the effect is shown",
             Self::Warned(warning) => {
@@ -67,9 +67,9 @@ impl PassThrough {
                 "see the warnings"
             }
         };
-        report.skipped.push(LeftOut {
+        report.skipped.push(SkippedWork {
             what: "every pass but present",
-            why,
+            reason,
         });
     }
 }

@@ -9,11 +9,10 @@ use crate::gpu::recorder::Recorder;
 use crate::model;
 use crate::model::Model;
 use crate::passes;
-use crate::passes::frame::Picture;
+use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::list::WarmUp;
-use crate::passes::pictures::Pictures;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{LeftOut, News};
+use crate::plan::{SkippedWork, FrameDelta};
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
@@ -61,10 +60,10 @@ impl Method {
         needed.is_none_or(|needed| known.contains(&needed))
     }
 
-    pub(crate) fn left_out(&self) -> &[LeftOut] {
+    pub(crate) fn skipped(&self) -> &[SkippedWork] {
         match self {
-            Self::Model(model) => &model.region.plan.left_out,
-            Self::Baseline(baseline) => &baseline.plan.left_out,
+            Self::Model(model) => &model.region.plan.skipped,
+            Self::Baseline(baseline) => &baseline.plan.skipped,
         }
     }
 
@@ -85,9 +84,9 @@ impl Method {
     }
 
     /// Looks for the toy in the picture, where the method goes by that.
-    pub(crate) fn look_for_toy(&mut self, toy: &ToyMesh, news: News) {
+    pub(crate) fn update_coverage_tiles(&mut self, toy: &ToyMesh, delta: FrameDelta) {
         match self {
-            Self::Model(model) => model.look_for_toy(toy, news),
+            Self::Model(model) => model.update_coverage_tiles(toy, delta),
             Self::Baseline(_) => {}
         }
     }
@@ -98,11 +97,11 @@ impl Method {
         recorder: &mut Recorder<'_>,
         toy: &ToyMesh,
         pictures: &Pictures<'_>,
-        news: News,
+        delta: FrameDelta,
     ) {
         match self {
-            Self::Model(model) => model.encode(recorder, toy, pictures, news),
-            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, news),
+            Self::Model(model) => model.encode(recorder, toy, pictures, delta),
+            Self::Baseline(baseline) => baseline.encode(recorder, toy, pictures, delta),
         }
     }
 

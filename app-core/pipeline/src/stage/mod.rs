@@ -12,7 +12,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DMat4, DVec3, UVec2};
 
-use crate::frame::report::FrameReport;
+use crate::frame::FrameReport;
 use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::clip_reach::ClipReach;
@@ -20,17 +20,15 @@ use crate::geometry::outline::Outline;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
-use crate::governor::Step;
+use crate::governor::QualityStep;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::recorder::{Recorder, n_pixels};
 use crate::gpu::texture::Texture;
-use crate::passes::finished::{Finished, Laid};
-use crate::passes::frame::Frame;
-use crate::passes::pictures::Pictures;
+use crate::passes::pictures::{ComposedFrame, Frame, Pictures, RegionOverlay};
 use crate::passes::present;
 use crate::passes::present::OUTPUT_FORMAT;
-use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::{Change, LeftOut, News};
+use crate::passes::toy_mesh::{Casting, ToyMesh};
+use crate::plan::{Change, SkippedWork, FrameDelta};
 use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
@@ -40,7 +38,7 @@ use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Camera, Image, Scene};
 use app_scene::toy;
-use app_scene::toy::{Caster, PosedMesh, Toy, ToyError};
+use app_scene::toy::{PosedMesh, Toy, ToyError};
 
 use camera_texture::CameraTexture;
 use footprint::Footprint;
@@ -70,11 +68,11 @@ pub(crate) struct Stage {
     is_shadow_withheld: bool,
     /// A pose that is shown again counts as a new one.
     is_every_pose_new: bool,
-    /// Settings that the caller turns down.
-    asked_down: Vec<Step>,
-    /// Those that are turned down since the scene would cost too much.
-    turned_down: Vec<Step>,
-    /// What there is to say of that.
+    /// Quality steps that the caller asks for.
+    asked_down: Vec<QualityStep>,
+    /// Quality steps that are applied because the scene exceeds the cost budget.
+    turned_down: Vec<QualityStep>,
+    /// The warning for it.
     cost_warning: Option<Warning>,
     /// What the clip shown last reaches, with the poses shown so far.
     reach: Option<ClipReach>,
@@ -115,11 +113,18 @@ struct MethodState {
     is_placement_outdated: bool,
 }
 
-/// Shapes that cast shadows in place of the toy's; none with a preset that takes none.
-fn simplified(toy: &Toy, preset: Preset) -> &[Caster] {
-    match preset.settings() {
-        Settings::Model(settings) if settings.caster_px.is_some() => toy.casters(),
-        _ => &[],
+/// How a preset draws the toy's shadows: the baseline draws whole shapes, as published.
+fn casting(toy: &Toy, preset: Preset) -> Casting<'_> {
+    let settings = match preset.settings() {
+        Settings::Model(settings) => Some(settings),
+        Settings::Baseline(_) => None,
+    };
+    Casting {
+        simplified: match settings {
+            Some(settings) if settings.caster_px.is_some() => toy.casters(),
+            _ => &[],
+        },
+        is_culled: settings.is_some(),
     }
 }
 
@@ -148,8 +153,6 @@ impl Stage {
             .toy
             .pose(&scene.physical_pose, &anchor_from_object, &mut posed)?;
         let size_px = UVec2::new(scene.width_px, scene.height_px);
-        // The baseline draws whole shapes, as published.
-        let is_model = matches!(preset.settings(), Settings::Model(_));
         Ok(Self {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
@@ -158,7 +161,7 @@ impl Stage {
                 gpu,
                 &scene.toy,
                 &posed,
-                (simplified(&scene.toy, preset), is_model),
+                &casting(&scene.toy, preset),
             ),
             posed,
             camera: CameraTexture::new(size_px),
@@ -201,16 +204,16 @@ impl Stage {
     }
 
     /// The latest picture, of which the region's part still has to be laid over the camera image.
-    pub(crate) fn finished(&self, gpu: &Gpu) -> Finished<'_> {
-        Finished {
+    pub(crate) fn composed(&self, gpu: &Gpu) -> ComposedFrame<'_> {
+        ComposedFrame {
             frame: self.camera.frame(gpu),
-            region: self.laid(),
+            region: self.overlay(),
             size_px: self.size_px(),
         }
     }
 
-    fn laid(&self) -> Option<Laid<'_>> {
-        self.method().zip(self.effect).map(|(method, effect)| Laid {
+    fn overlay(&self) -> Option<RegionOverlay<'_>> {
+        self.method().zip(self.effect).map(|(method, effect)| RegionOverlay {
             picture: method.picture(),
             rect: method.region(),
             #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
@@ -226,7 +229,7 @@ impl Stage {
         let mut recorder = Recorder::new(gpu, None);
         let frame = self.camera.decoded(&mut recorder);
         self.present
-            .encode(&mut recorder, (frame, self.laid()), &output.view);
+            .encode(&mut recorder, frame, self.overlay(), &output.view);
         recorder.submit();
         output
     }
@@ -381,8 +384,8 @@ impl Stage {
             state.exposure = input.exposure;
             state.image = Some(input.image.clone());
         }
-        let news = News { change, is_pose_new };
-        state.method.look_for_toy(&self.toy, news);
+        let delta = FrameDelta { change, is_pose_new };
+        state.method.update_coverage_tiles(&self.toy, delta);
         let Some(MethodState { method, .. }) = &self.state else {
             return;
         };
@@ -407,20 +410,20 @@ impl Stage {
             plate_views: &self.plates.views,
             is_same_view: footprint.choice.is_same_view,
         };
-        method.encode(recorder, &self.toy, &pictures, news);
-        if news.keeps_pose() {
-            report.skipped.push(LeftOut {
+        method.encode(recorder, &self.toy, &pictures, delta);
+        if delta.keeps_pose() {
+            report.skipped.push(SkippedWork {
                 what: "shadows of the shown pose",
-                why: "it is the one that is there",
+                reason: "it is the one that is there",
             });
         }
         if change < Change::View {
-            report.skipped.push(LeftOut {
+            report.skipped.push(SkippedWork {
                 what: "capture path",
-                why: "scene, pose and camera are known",
+                reason: "scene, pose and camera are known",
             });
         }
-        report.skipped.extend_from_slice(method.left_out());
+        report.skipped.extend_from_slice(method.skipped());
         report.region = Some(method.region());
         report.change = Some(change);
         report.warnings.extend(self.plate_warning(footprint));

@@ -14,7 +14,7 @@ use crate::baseline::uniform::{Baseline as Uniform, uniform};
 use crate::frame::warning::Warning;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
-use crate::governor::Step;
+use crate::governor::QualityStep;
 use crate::gpu::context::Gpu;
 use crate::model::Model;
 use crate::model::plan::Plan;
@@ -199,7 +199,7 @@ impl Stage {
     }
 
     /// Turns settings down from the next frame on, or up again; what was learned stays.
-    pub(crate) fn turn_down(&mut self, steps: &[Step]) {
+    pub(crate) fn set_quality_reductions(&mut self, steps: &[QualityStep]) {
         if self.asked_down != steps {
             self.asked_down = steps.to_vec();
             if let Some(state) = &mut self.state {

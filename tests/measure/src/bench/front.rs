@@ -6,7 +6,7 @@ use plotters::prelude::{
     WHITE,
 };
 
-use app_core::governor::{BALANCED_FRONT, Knob, Step};
+use app_core::governor::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
 use app_core::preset::Preset;
 
 use super::{FRAME_KINDS, FrameKind, Row};
@@ -28,16 +28,16 @@ pub struct Point {
 }
 
 /// What the governor turns down of preset `balanced`, more with each; the rate of frames costs no error.
-pub(super) fn turned_down() -> impl Iterator<Item = &'static [Step]> {
-    let n_steps = BALANCED_FRONT
+pub(super) fn turned_down() -> impl Iterator<Item = &'static [QualityStep]> {
+    let n_steps = BALANCED_QUALITY_LADDER
         .iter()
-        .take_while(|step| step.knob != Knob::FramesPerSecond)
+        .take_while(|step| step.setting != QualitySetting::FramesPerSecond)
         .count();
-    (1..=n_steps).map(|n| &BALANCED_FRONT[..n])
+    (1..=n_steps).map(|n| &BALANCED_QUALITY_LADDER[..n])
 }
 
 /// Name of a row.
-pub(super) fn named(preset: Preset, steps: &[Step]) -> String {
+pub(super) fn named(preset: Preset, steps: &[QualityStep]) -> String {
     match steps.len() {
         0 => preset.name().to_owned(),
         n => format!("{preset}-{n}"),

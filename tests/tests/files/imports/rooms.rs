@@ -16,7 +16,6 @@ const ROOMS: &[&str] = &[
     "model::lighting",
     "model::region",
     "model::plan",
-    "model::parts",
     "model::diagnostics",
     "model::state",
     "baseline",

@@ -1,7 +1,7 @@
 //! The shaders' side of the contract: everything that is demanded of one joined module, as a list of what is wrong.
 
 use app_pipeline::gpu::context::phone_limits;
-use app_pipeline::gpu::shader::Part;
+use app_pipeline::gpu::shader::Mirrors;
 use app_pipeline::gpu::shared::{Member, Mirror, NumberKind};
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
 use naga::{
@@ -31,16 +31,16 @@ pub(crate) fn validate(module: &Module, capabilities: Capabilities) -> Result<Mo
         .map_err(|error| format!("is not valid for the device: {:?}", error.into_inner()))
 }
 
-/// What is wrong with `source`, which is joined of `parts`, perhaps with a fault in it.
-pub(crate) fn problems(source: &str, parts: &[&Part]) -> Vec<String> {
+/// What is wrong with `source`, of which the host shares `shared`, perhaps with a fault in it.
+pub(crate) fn problems(source: &str, shared: &[&Mirrors]) -> Vec<String> {
     let checked = parse(source).and_then(|module| Ok((validate(&module, REQUESTED)?, module)));
     let (info, module) = match checked {
         Ok(checked) => checked,
         Err(problem) => return vec![problem],
     };
-    let mirrors: Vec<&Mirror> = parts.iter().flat_map(|part| part.structs).collect();
+    let mirrors: Vec<&Mirror> = shared.iter().flat_map(|shared| shared.structs).collect();
     let mut problems = struct_problems(&module, &mirrors);
-    let constants = parts.iter().flat_map(|part| part.constants);
+    let constants = shared.iter().flat_map(|shared| shared.constants);
     problems.extend(constants.filter_map(|constant| constant_problem(&module, constant)));
     problems.extend(entry_point_problems(&module));
     problems.extend(struct_values(&module, &info));

@@ -4,6 +4,9 @@ mod backends;
 mod check;
 mod fragment;
 
+use std::fs;
+use std::path::Path;
+
 use app_core::preset::BALANCED;
 use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::gpu::context::phone_limits;
@@ -12,7 +15,7 @@ use app_pipeline::model::plan::Plan;
 use app_pipeline::model::state::grids::{MAX_CELLS, grids_over};
 use app_pipeline::model::state::solution::N_COLUMNS;
 use app_pipeline::plan::SceneFacts;
-use app_pipeline::shaders;
+use app_pipeline::{mirrors, shaders};
 use glam::{DVec2, UVec2};
 use naga::Module;
 use naga::valid::Capabilities;
@@ -37,13 +40,30 @@ fn number(module: &Module, name: &str) -> u32 {
 fn every_shader_keeps_the_contract() {
     let wrong: Vec<String> = shaders()
         .flat_map(|shader| {
-            let problems = problems(&shader.source(), shader.parts);
+            let problems = problems(&shader.source(), &mirrors(shader));
             problems
                 .into_iter()
                 .map(|problem| format!("{}: {problem}", shader.name))
         })
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A part comes once, after those that it imports itself, and there is a file of each.
+#[test]
+fn shaders_import_parts_that_exist() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders");
+    for shader in shaders() {
+        let imports = shader.imports();
+        for (index, path) in imports.iter().enumerate() {
+            let text = fs::read_to_string(folder.join(format!("{path}.wgsl"))).expect(path);
+            assert_eq!(shader.source().matches(&text).count(), 1, "{}: {path}", shader.name);
+            let needed = text.lines().filter_map(|line| line.strip_prefix("//#import "));
+            for needed in needed {
+                assert!(imports[..index].contains(&needed), "{}: {path} needs {needed}", shader.name);
+            }
+        }
+    }
 }
 
 #[test]
@@ -203,7 +223,7 @@ fn faults_in_a_shader_are_found() {
         let sound = shader.source();
         let faulty = sound.replace(from, to);
         assert_ne!(faulty, sound, "{name} has no \"{from}\"");
-        assert_found(&problems(&faulty, shader.parts), &words, to);
+        assert_found(&problems(&faulty, &mirrors(shader)), &words, to);
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a shell may hand over by mistake: it is refused by name, and nothing that was learned is lost.
 
 use app_core::CoreError;
-use app_core::frame::{FrameInput, Path};
+use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::Preset;
 use app_core::scene::{Light, Pose, Scene};
 use glam::{DMat4, DVec3};
@@ -96,7 +96,7 @@ fn values_that_cannot_be_are_refused_by_name() {
         assert!(refused.starts_with(&format!("{field}: ")), "{field}: {refused}");
     }
     let report = core.frame(&good).unwrap();
-    assert!(report.ran.iter().all(|run| run.path == Path::Frame), "{report:?}");
+    assert!(report.ran.iter().all(|run| run.path == PassGroup::Frame), "{report:?}");
     assert!(core.read_picture().unwrap().rgba8 == expected);
 
     let mut tilted = scene;

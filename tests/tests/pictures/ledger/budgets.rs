@@ -2,7 +2,7 @@
 
 use app_core::Core;
 use app_core::frame::{Change, FrameInput, FrameReport, Warning};
-use app_core::governor::{BALANCED_FRONT, Knob, Step};
+use app_core::governor::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
 use app_core::preset::Preset;
 use app_core::scene::{Light, Scene};
 use app_core::toy::Toy;
@@ -189,8 +189,8 @@ fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
     core.set_scene(scene, Preset::Balanced).unwrap();
     core.draw_every_pose().unwrap();
     core.frame(&input).unwrap();
-    let mut triangles = |steps: &[Step]| -> (Option<Change>, u64) {
-        core.turn_down(steps).unwrap();
+    let mut triangles = |steps: &[QualityStep]| -> (Option<Change>, u64) {
+        core.set_quality_reductions(steps).unwrap();
         let first = core.frame(&input).unwrap().change;
         let steady = core.frame(&input).unwrap();
         assert_eq!(steady.change, Some(Change::Pose), "it settles at once");
@@ -198,10 +198,10 @@ fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
     };
     let (_, full) = triangles(&[]);
     let mut before = full;
-    for n_steps in 1..=BALANCED_FRONT.len() {
-        let step = BALANCED_FRONT[n_steps - 1];
-        let (first, now) = triangles(&BALANCED_FRONT[..n_steps]);
-        let is_fewer = !matches!(step.knob, Knob::AmbientDivisor | Knob::FramesPerSecond);
+    for n_steps in 1..=BALANCED_QUALITY_LADDER.len() {
+        let step = BALANCED_QUALITY_LADDER[n_steps - 1];
+        let (first, now) = triangles(&BALANCED_QUALITY_LADDER[..n_steps]);
+        let is_fewer = !matches!(step.setting, QualitySetting::AmbientDivisor | QualitySetting::FramesPerSecond);
         assert_eq!(now < before, is_fewer, "{}: {before}, {now}", step.what);
         assert_eq!(first, Some(Change::View), "{}: nothing is forgotten", step.what);
         before = now;

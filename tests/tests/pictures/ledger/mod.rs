@@ -160,7 +160,7 @@ fn a_screen_costs_what_a_device_is_given() {
         let given = traced.given();
         let work = core.count_present([width, height], Display::default()).unwrap();
         let on_screen = PassRun {
-            path: frame::Path::Frame,
+            path: frame::PassGroup::Frame,
             pass: "screen",
             n_runs: 1,
             work,

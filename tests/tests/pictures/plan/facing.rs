@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use app_pipeline::geometry::facing::Viewers;
+use app_pipeline::geometry::silhouette::Viewers;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// A closed ball about the origin, of radius 1: positions, and corners counter-clockwise seen from outside.

@@ -1,12 +1,16 @@
 //! Which passes a plan runs on which path, with which sizes and formats.
 
-use app_core::frame::Path;
-use app_core::preset::BALANCED;
+use app_core::Core;
+use app_core::frame::{FrameInput, PassGroup};
+use app_core::preset::{BALANCED, Preset};
+use app_core::session::{Capture, Session};
+use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::plan::Plan;
-use app_pipeline::model::planned as planned_by_model;
 use app_pipeline::plan::{Change, SceneFacts};
+use desk::files::{BUNDLED_SESSION, Folder};
 use glam::UVec2;
+use measure::bench::{FrameKind, with_new};
 
 /// Sizes of regions, from a pixel to more than any camera.
 const SIZES_PX: [[u32; 2]; 12] = [
@@ -51,58 +55,140 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
 }
 
 fn leaves_out(plan: &Plan, what: &str) -> bool {
-    assert!(plan.left_out.iter().all(|left_out| !left_out.why.is_empty()));
-    plan.left_out.iter().any(|left_out| left_out.what == what)
+    assert!(plan.skipped.iter().all(|skipped| !skipped.reason.is_empty()));
+    plan.skipped.iter().any(|skipped| skipped.what == what)
+}
+
+/// A frame's change, and the passes of the capture path and of the frame path.
+type Ran = (Option<Change>, [String; 2]);
+
+/// The passes in the order of their first runs.
+fn ran(core: &mut Core, input: &FrameInput) -> Ran {
+    let report = core.frame(input).unwrap();
+    let of = |path| {
+        let runs = report.ran.iter().filter(|run| run.path == path);
+        runs.map(|run| run.pass).collect::<Vec<_>>().join(" ")
+    };
+    (report.change, [PassGroup::Capture, PassGroup::Frame].map(of))
+}
+
+/// A core that counts frames of the bundled session, and the first of them.
+fn counting(preset: Preset, has_plates: bool) -> (Core, FrameInput) {
+    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let mut scene = session.scene().clone();
+    if !has_plates {
+        scene.plates.clear();
+    }
+    let mut core = Core::counting();
+    core.set_scene(scene, preset).unwrap();
+    (core, FrameInput::from(&session.frame(0).unwrap()))
+}
+
+/// What runs for a new scene, then for two views, a pose, two pictures and a view, one new after the other; each pose is drawn.
+fn runs(preset: Preset, has_plates: bool) -> Vec<Ran> {
+    use FrameKind::{Picture, Pose, View};
+    let (mut core, mut input) = counting(preset, has_plates);
+    core.draw_every_pose().unwrap();
+    let first = ran(&mut core, &input);
+    let others = [View, View, Pose, Picture, Picture, View].map(|kind| {
+        input = with_new(&input, kind);
+        ran(&mut core, &input)
+    });
+    [first].into_iter().chain(others).collect()
+}
+
+fn expected(change: Change, capture: &str, frame: &str) -> Ran {
+    (Some(change), [capture.to_owned(), frame.to_owned()])
+}
+
+/// Passes of the model that each pose needs.
+const DRAWN: &str = "occlusion self_shadow moved_mask toy coverage composite";
+
+#[test]
+fn the_model_runs_its_passes_in_this_order() {
+    let observed = "self_shadow gbuffer validity occlusion plate";
+    let means = "residual fill tint tint_fill appearance";
+    let scene = format!("{observed} lit fill fit fit_solve estimate residual tint tint_fill appearance");
+    let view = format!("{observed} fit fit_solve lit fill estimate residual tint tint_fill appearance");
+    let [residual, tint] = ["residual fill", "tint tint_fill"].map(|mean| format!("fit fit_solve {mean} {DRAWN}"));
+    assert_eq!(
+        runs(Preset::Balanced, false),
+        [
+            expected(Change::Scene, &scene, DRAWN),
+            expected(Change::View, &view, DRAWN),
+            expected(Change::View, &view, DRAWN),
+            expected(Change::Pose, "", DRAWN),
+            expected(Change::Picture, "", &tint),
+            expected(Change::Picture, "", &residual),
+            expected(Change::View, &view, DRAWN),
+        ]
+    );
+    let shown = format!("{observed} fit fit_solve {means}");
+    assert_eq!(
+        runs(Preset::Balanced, true)[0],
+        expected(Change::Scene, &shown, DRAWN)
+    );
+    let detailed = shown.replace("fill tint", "fill detail tint");
+    assert_eq!(
+        runs(Preset::Best, true)[0],
+        expected(Change::Scene, &detailed, DRAWN)
+    );
 }
 
 #[test]
-fn a_new_pose_costs_the_frame_path_alone() {
-    let plan = plan([640, 360], 2);
-    // Both lights at once, and the ambient light.
-    let light = ["occlusion"; 2];
-    let drawn = ["self_shadow", "moved_mask", "toy", "coverage", "composite"];
-    let frame = light.into_iter().chain(drawn);
-    let frame: Vec<_> = frame.map(|pass| (Path::Frame, pass)).collect();
-    assert_eq!(planned_by_model(&plan, Change::Pose, 0), frame);
-    for change in Change::ALL {
-        let planned = planned_by_model(&plan, change, 0);
-        assert!(planned.ends_with(&frame), "{change:?}: {planned:?}");
-        let before = &planned[..planned.len() - frame.len()];
-        assert!(
-            before
-                .iter()
-                .all(|(path, _)| (*path == Path::Capture) == (change >= Change::View))
-        );
+fn the_published_method_runs_its_passes_in_this_order() {
+    let learned = "plate masks warp pcss eligible census";
+    let drawn = "warp pcss search box_filter retarget";
+    let scaled = format!("plate {drawn}");
+    assert_eq!(
+        runs(Preset::Paper, true),
+        [
+            expected(Change::Scene, learned, drawn),
+            expected(Change::View, learned, drawn),
+            expected(Change::View, learned, drawn),
+            expected(Change::Pose, "", drawn),
+            expected(Change::Picture, "", &scaled),
+            expected(Change::Picture, "", &scaled),
+            expected(Change::View, learned, drawn),
+        ]
+    );
+    let ran = runs(Preset::Flat, true);
+    assert_eq!(
+        ran[0],
+        expected(Change::Scene, "plate masks warp pcss eligible", "warp pcss retarget")
+    );
+}
+
+/// A new picture changes the colours alone; if that is the same, too, nothing runs.
+#[test]
+fn a_paused_toy_is_not_drawn_again() {
+    for (preset, colours) in [
+        (
+            Preset::Balanced,
+            "fit fit_solve tint tint_fill toy composite",
+        ),
+        (Preset::Paper, "plate search box_filter retarget"),
+    ] {
+        let (mut core, input) = counting(preset, true);
+        ran(&mut core, &input);
+        assert_eq!(ran(&mut core, &input), expected(Change::Pose, "", ""));
+        let next = with_new(&input, FrameKind::Picture);
+        assert_eq!(ran(&mut core, &next), expected(Change::Picture, "", colours));
     }
 }
 
-/// Each pass comes after those whose results it reads.
+/// Plate and light are estimated from one another three times; `fill` follows `lit` each time, and `residual`.
 #[test]
-fn the_capture_path_reads_what_was_made_before() {
-    let plan = plan([640, 360], 1);
-    for change in [Change::View, Change::Scene] {
-        let planned = planned_by_model(&plan, change, 0);
-        let place = |name: &str| planned.iter().position(|(_, pass)| *pass == name).unwrap();
-        for order in [
-            &[
-                "self_shadow",
-                "gbuffer",
-                "validity",
-                "fit",
-                "fit_solve",
-                "appearance",
-            ][..],
-            &["occlusion", "fit", "fit_solve", "residual", "tint"],
-            &["plate", "lit", "fill", "estimate", "residual"],
-            &["plate", "lit"],
-            &["tint", "tint_fill"],
-        ] {
-            assert!(
-                order.is_sorted_by_key(|name| place(name)),
-                "{order:?} in {planned:?}"
-            );
-        }
-    }
+fn a_new_scene_without_plates_is_estimated_in_rounds() {
+    let (mut core, input) = counting(Preset::Balanced, false);
+    let [first, second] = [input.clone(), with_new(&input, FrameKind::View)].map(|input| {
+        let report = core.frame(&input).unwrap();
+        ["lit", "fill", "estimate", "residual"].map(|pass| {
+            let runs = report.ran.iter().filter(|run| run.pass == pass);
+            runs.map(|run| run.n_runs).sum::<u32>()
+        })
+    });
+    assert_eq!([first, second], [[3, 4, 1, 1], [1, 2, 1, 1]]);
 }
 
 #[test]

@@ -1,10 +1,7 @@
 //! Tiles that no silhouette comes near, against rays: there all points see the same, and what meets the others covers as much
 //! of them as the whole shape.
 
-use app_pipeline::geometry::facing::Viewers;
-use app_pipeline::geometry::silhouette::{
-    ByCamera, Edges, OntoReceiver, Projection, Shape, Silhouette, find_silhouette,
-};
+use app_pipeline::geometry::silhouette::{ByCamera, Edges, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette};
 use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use measure::ball::ball_mesh;
 
@@ -70,7 +67,7 @@ impl Look<'_> {
             edges,
         };
         let silhouette =
-            find_silhouette(shape, (&viewers, self.projection), corners, SIZE_PX).expect("bounds");
+            find_silhouette(shape, &viewers, self.projection, corners, SIZE_PX).expect("bounds");
         (facing, silhouette)
     }
 
@@ -283,7 +280,7 @@ fn a_shadow_without_bounds_has_no_outline() {
         corners: &mesh.1,
         edges: &edges,
     };
-    assert!(find_silhouette(shape, (&viewers, &projection), &mesh.1, SIZE_PX).is_none());
+    assert!(find_silhouette(shape, &viewers, &projection, &mesh.1, SIZE_PX).is_none());
 }
 
 /// Where a line from each point of a lamp through a corner meets a shelf that is lifted and tilted.

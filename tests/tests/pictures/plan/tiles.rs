@@ -46,7 +46,7 @@ fn positions(unused_z: f32) -> Vec<Vec3> {
 
 fn marked(reach_px: f32, positions: &[Vec3]) -> Tiles {
     let mut tiles = Tiles::over(SIZE_PX, TILE_PX);
-    mark_seen(&mut tiles, (positions, &CORNERS), &Straight, reach_px);
+    mark_seen(&mut tiles, positions, &CORNERS, &Straight, reach_px);
     tiles
 }
 

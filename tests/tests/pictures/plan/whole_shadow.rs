@@ -1,6 +1,6 @@
 //! Whether nothing of a shadow is cut off, against the shadows of many points of a ball.
 
-use app_pipeline::geometry::whole_shadow::Caster as ShadowCaster;
+use app_pipeline::geometry::seen::Caster as ShadowCaster;
 use glam::{DVec3, DVec4, Vec3, Vec4};
 
 const NEAR_M: f32 = 0.05;

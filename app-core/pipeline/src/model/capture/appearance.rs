@@ -8,25 +8,16 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared, cleared_to};
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer;
 use crate::model::capture::gbuffer::{BASE_FORMAT, RECEIVED_FORMAT};
-use crate::model::parts::HEMISPHERES;
 use crate::model::plan::Plan;
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::parts::{DEPTH, FULLSCREEN};
+use crate::passes::globals::GLOBALS_GROUP;
 
 /// Numbers of the pixels that colours are from.
-pub(crate) const SOURCE: Part = part!("common/source", constants: [REACH_PX, N_IN_ROW]);
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &HEMISPHERES,
-    &DEPTH,
-    &FULLSCREEN,
-    &SOURCE,
-    &part!("capture/appearance"),
-]);
+pub(crate) const SOURCE: Mirrors = mirrors!("common/source", constants: [REACH_PX, N_IN_ROW]);
+pub(crate) const SHADER: Shader = shader!("capture/appearance");
 const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Depth,

@@ -6,29 +6,14 @@ use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::observed::Observed;
-use crate::model::parts::MODEL;
+use crate::model::capture::Observed;
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{ByForm, FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::passes::pictures::ByForm;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &MODEL,
-    &PIXEL,
-    &CHANNELS,
-    &FULLSCREEN,
-    &MARKS,
-    &part!("capture/detail"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/detail");
 const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,

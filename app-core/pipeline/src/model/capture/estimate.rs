@@ -5,34 +5,16 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::observed::Observed;
-use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, MODEL};
+use crate::model::capture::Observed;
 use crate::model::plan::Plan;
-use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{ByForm, FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, SRGB};
+use crate::model::state::grids::Grids;
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::passes::pictures::ByForm;
 use crate::passes::plate::FINE_FORMAT;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &MODEL,
-    &CHANNELS,
-    &GRID,
-    &BETWEEN_CELLS,
-    &CELLS,
-    &COMPLETED,
-    &FULLSCREEN,
-    &MARKS,
-    &part!("capture/estimate"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/estimate");
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,

@@ -5,12 +5,11 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
-use crate::model::parts::BETWEEN_CELLS;
-use crate::model::state::grids::{GRID, Grids};
+use crate::gpu::shader::{Shader, shader};
+use crate::model::state::grids::Grids;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GRID, &BETWEEN_CELLS, &part!("capture/fill")]);
+pub(crate) const SHADER: Shader = shader!("capture/fill");
 const SLOTS: &[Slot] = &[Slot::uniform::<Grids>(), Slot::ReadWrite];
 
 pub(crate) struct Pass {

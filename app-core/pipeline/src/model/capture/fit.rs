@@ -7,46 +7,23 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::{Recorder, n_pixels};
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
-use crate::model::capture::observed::Observed;
-use crate::model::parts::{BETWEEN_CELLS, CELLS, COMPLETED, HEMISPHERES, MODEL, TOY_RADIANCE};
+use crate::model::capture::Observed;
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
-use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{ByForm, FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{MARKS, PIXEL, SRGB};
+use crate::model::state::grids::Grids;
+use crate::model::state::solution::{N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
+use crate::passes::pictures::ByForm;
 
 /// One step of the iteratively reweighted least squares.
-pub(crate) const FIT_STEP: Part = part!(
+pub(crate) const FIT_STEP: Mirrors = mirrors!(
     "common/fit_step",
     structs: [FitStep],
     constants: [SUBJECT_RECEIVER, SUBJECT_TOY, SUBJECT_INTENSITIES],
 );
-/// Sums of normal equations.
-const FIT_SUMS: Part = part!("common/fit_sums");
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &FIT_STEP,
-    &MODEL,
-    &HEMISPHERES,
-    &TOY_RADIANCE,
-    &PIXEL,
-    &MARKS,
-    &GRID,
-    &BETWEEN_CELLS,
-    &CELLS,
-    &COMPLETED,
-    &FIT_SUMS,
-    &part!("capture/fit"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/fit");
 /// Grids and lit cells, of which a plate is completed.
 const LIT_SLOTS: &[Slot] = &[Slot::uniform::<Grids>(), Slot::Read];
 /// Group of all else.
@@ -110,6 +87,21 @@ pub(crate) struct Task {
 }
 
 impl Task {
+    /// Of the first receiver, with its plate as it is.
+    pub(crate) fn new(plan: &Plan, subject: Subject, is_first: bool) -> Self {
+        Self {
+            subject,
+            receiver: 0,
+            n_steps: match subject {
+                Subject::Intensities => plan.n_intensity_steps,
+                Subject::Receiver | Subject::Toy if is_first => plan.n_fit_steps,
+                Subject::Receiver | Subject::Toy => plan.n_refine_steps,
+            },
+            is_refinement: !is_first,
+            completes_plate: false,
+        }
+    }
+
     /// The uniform of step `index`, for a picture of `exposure_ratio` times the exposure of the one before.
     pub(crate) fn step(&self, plan: &Plan, index: u32, exposure_ratio: f32) -> FitStep {
         let is_first_of_picture = self.subject == Subject::Intensities && index == 0;
@@ -198,7 +190,8 @@ impl Pass {
         &self,
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
-        (task, step): (&Task, &FitStep),
+        task: &Task,
+        step: &FitStep,
         targets: &Targets,
     ) {
         let gbuffer = inputs.gbuffer;

@@ -5,22 +5,14 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
-use crate::model::capture::fit::{FIT_STEP, FitStep};
-use crate::model::parts::{HEMISPHERES, RECEIVER_LIGHT};
+use crate::gpu::shader::{Shader, shader};
+use crate::model::capture::fit::FitStep;
 use crate::model::state::SceneState;
-use crate::model::state::solution::{FIT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
+use crate::model::state::solution::{PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};
+use crate::passes::globals::GLOBALS_GROUP;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &FIT_STEP,
-    &HEMISPHERES,
-    &RECEIVER_LIGHT,
-    &part!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION]),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION]);
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
     Slot::Read,

@@ -8,26 +8,16 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
 use crate::gpu::recorder::{Recorder, cleared};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::Texture;
 use crate::model::lighting::self_shadow;
-use crate::model::lighting::self_shadow::{
-    GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
-};
+use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
-use crate::passes::parts::BEHIND;
+use crate::passes::globals::GLOBALS_GROUP;
+use crate::passes::materials::MATERIAL_GROUP;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &TOY_LIGHT,
-    &SELF_SHADOW_MAPS,
-    &MATERIAL,
-    &BEHIND,
-    &part!("capture/gbuffer"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/gbuffer");
 /// Format of the base colour, whose alpha is the toy's coverage.
 pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the normals.

@@ -1,15 +1,11 @@
 //! The capture path: steps that update scene state from one view of the real toy and its real shadow.
 
-pub(crate) mod observed;
-pub(crate) mod order;
 pub(crate) mod pool;
 
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::fit::Task;
-use crate::model::capture::observed::Observed;
-use crate::model::capture::order::Step;
+use crate::model::capture::fit::{Subject, Task};
 use crate::model::capture::pool::{PoolGrids, Taken};
 use crate::model::lighting;
 use crate::model::lighting::{LightMaps, Lighting, Posed};
@@ -23,10 +19,14 @@ use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;
+use crate::plan::Change;
 
 passes!(Plan:
     gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
 );
+
+/// Rounds in which plate and light are estimated from one another.
+const N_ESTIMATE_ROUNDS: u32 = 3;
 
 /// Targets of the capture path for one region.
 pub(crate) struct CaptureTargets {
@@ -55,67 +55,107 @@ impl CaptureTargets {
     }
 }
 
+/// Maps of the region that passes which learn from the receivers read, each pixel by pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct Observed<'a> {
+    pub(crate) validity: &'a TextureView,
+    /// Of each light, in the physical pose.
+    pub(crate) visibility: &'a TextureView,
+    /// Of the ambient light; smaller, and filtered.
+    pub(crate) ambient: &'a TextureView,
+}
+
 /// Inputs and targets of the capture path.
 pub(crate) struct CapturePath<'a> {
     pub(crate) region: &'a Region,
     pub(crate) captured: &'a CaptureTargets,
     pub(crate) passes: &'a Passes,
     pub(crate) plate: &'a plate::Pass,
-    pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
+    pub(crate) light: &'a lighting::Passes,
+    pub(crate) lighting: &'a Lighting,
     pub(crate) state: &'a SceneState,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pictures: &'a Pictures<'a>,
 }
 
 impl CapturePath<'_> {
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
+    /// Learns what `change` asks for: nothing of a new pose.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, change: Change) {
+        match change {
+            Change::Pose => return,
+            Change::Picture => self.fit_intensities(recorder, false),
+            Change::View => self.learn_view(recorder),
+            Change::Scene => self.learn_scene(recorder),
+        }
         let (passes, of) = (self.passes, &self.captured.by_pass);
-        match step {
-            Step::Forget => self.state.forget(recorder),
-            Step::ForgetSums => self.state.forget_sums(recorder),
-            Step::Lighting(step) => self.light(recorder, step),
-            Step::Gbuffer => passes
-                .gbuffer
-                .encode(recorder, &self.gbuffer_inputs(), &of.gbuffer),
-            Step::Validity => passes
-                .validity
-                .encode(recorder, &self.validity_inputs(), &of.validity),
-            Step::Plate => self.plate(recorder),
-            Step::Withhold => {
-                let marks = &of.validity.marks;
-                passes
-                    .withhold
-                    .encode(recorder, &self.withhold_inputs(), &of.withhold, marks);
-            }
-            Step::Lit => passes.lit.encode(recorder, &self.lit_inputs()),
-            Step::FillLit => self.fill(recorder, &self.state.lit),
-            Step::Estimate => self.estimate(recorder),
-            Step::Fit(task) => self.fit(recorder, task),
-            Step::Residual { is_first } => {
-                let inputs = self.residual_inputs(is_first);
-                passes.residual.encode(recorder, &inputs);
-            }
-            Step::FillResidual => self.fill(recorder, &self.state.residual),
-            Step::Detail => passes.detail.encode(recorder, &self.detail_inputs(), &of.detail),
-            Step::Tint => passes
-                .tint
-                .encode(recorder, &self.tint_inputs(), &self.state.tints),
-            Step::TintFill => passes.tint_fill.encode(recorder, &self.state.tints),
-            Step::Appearance => {
-                let inputs = self.appearance_inputs();
-                passes.appearance.encode(recorder, &inputs, &of.appearance);
-            }
+        let is_view_new = change >= Change::View;
+        // For a new picture of a known view, the two means over several pictures take turns.
+        let is_residual_next = self.pictures.n_before.is_multiple_of(2);
+        if is_view_new || is_residual_next {
+            let inputs = self.residual_inputs(change >= Change::Scene);
+            passes.residual.encode(recorder, &inputs);
+            self.fill(recorder, &self.state.residual);
+        }
+        if detail::is_needed(&self.region.plan) {
+            passes.detail.encode(recorder, &self.detail_inputs(), &of.detail);
+        }
+        if is_view_new || !is_residual_next {
+            let tints = &self.state.tints;
+            passes.tint.encode(recorder, &self.tint_inputs(), tints);
+            passes.tint_fill.encode(recorder, tints);
+        }
+        if is_view_new {
+            let inputs = self.appearance_inputs();
+            passes.appearance.encode(recorder, &inputs, &of.appearance);
         }
     }
 
-    fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
-        let (passes, lighting) = self.lighting;
+    /// Refines what is known of the scene by another view.
+    fn learn_view(&self, recorder: &mut Recorder<'_>) {
+        self.observe(recorder);
+        self.withhold(recorder);
+        self.fit_intensities(recorder, estimate::is_needed(&self.region.plan));
+        self.fit_receivers(recorder, false);
+        self.estimate(recorder);
+        self.fit_toy(recorder, false);
+    }
+
+    /// Learns a scene of which nothing is known.
+    fn learn_scene(&self, recorder: &mut Recorder<'_>) {
+        self.state.forget(recorder);
+        self.observe(recorder);
+        self.fit_receivers(recorder, true);
+        if estimate::is_needed(&self.region.plan) {
+            // The first estimate was pooled with the prior's direct fractions.
+            for _ in 1..N_ESTIMATE_ROUNDS {
+                self.state.forget_sums(recorder);
+                self.fit_receivers(recorder, true);
+            }
+        }
+        // The first fits need the real shadow.
+        self.withhold(recorder);
+        self.estimate(recorder);
+        self.fit_toy(recorder, true);
+    }
+
+    /// Draws the inputs of the fits: geometry and light of the physical pose, and the plate.
+    fn observe(&self, recorder: &mut Recorder<'_>) {
+        let (passes, of) = (self.passes, &self.captured.by_pass);
+        let (light, maps) = (self.light, &self.captured.light);
         let posed = Posed {
             globals: self.region.globals_on_device(),
             toy: self.toy,
             pose: &self.toy.physical,
         };
-        lighting.encode(recorder, passes, step, (posed, &self.captured.light));
+        self.lighting.encode_self_shadow(recorder, light, posed, maps);
+        passes
+            .gbuffer
+            .encode(recorder, &self.gbuffer_inputs(), &of.gbuffer);
+        passes
+            .validity
+            .encode(recorder, &self.validity_inputs(), &of.validity);
+        self.lighting.encode_visibility(recorder, light, posed, maps);
+        self.plate(recorder);
     }
 
     fn plate(&self, recorder: &mut Recorder<'_>) {
@@ -125,17 +165,23 @@ impl CapturePath<'_> {
             plates: self.pictures.plates,
             is_same_view: self.pictures.is_same_view,
         };
-        // If `estimate` completes the plate, it reads this photographed one, and so do the fits before it.
-        let is_completed = estimate::is_needed(&self.region.plan);
-        let photographed = self.captured.by_pass.estimate.photographed.as_ref();
-        let target = photographed
-            .filter(|_| is_completed)
-            .unwrap_or(&self.captured.plate);
+        // The fits before `estimate` read the photographed plate, too.
+        let target = self.photographed().unwrap_or(&self.captured.plate);
         self.plate.encode(recorder, &inputs, target);
     }
 
+    fn withhold(&self, recorder: &mut Recorder<'_>) {
+        if withhold::is_needed(&self.region.plan) {
+            let of = &self.captured.by_pass;
+            let inputs = self.withhold_inputs();
+            self.passes
+                .withhold
+                .encode(recorder, &inputs, &of.withhold, &of.validity.marks);
+        }
+    }
+
     fn estimate(&self, recorder: &mut Recorder<'_>) {
-        let Some(photographed) = &self.captured.by_pass.estimate.photographed else {
+        let Some(photographed) = self.photographed() else {
             return;
         };
         let inputs = estimate::Inputs {
@@ -150,10 +196,42 @@ impl CapturePath<'_> {
             .encode(recorder, &inputs, &self.captured.plate.view);
     }
 
+    /// Fits each receiver in turn, the first as prior of the others; before it, what they look like in the light where plates
+    /// are missing.
+    fn fit_receivers(&self, recorder: &mut Recorder<'_>, is_first: bool) {
+        let plan = &self.region.plan;
+        if lit::is_needed(plan) {
+            self.passes.lit.encode(recorder, &self.lit_inputs());
+            self.fill(recorder, &self.state.lit);
+        }
+        for receiver in 0..plan.n_receivers {
+            let task = Task {
+                receiver,
+                completes_plate: estimate::is_needed(plan),
+                ..Task::new(plan, Subject::Receiver, is_first)
+            };
+            self.fit(recorder, task);
+        }
+    }
+
+    /// Fits the light on the toy.
+    fn fit_toy(&self, recorder: &mut Recorder<'_>, is_first: bool) {
+        self.fit(recorder, Task::new(&self.region.plan, Subject::Toy, is_first));
+    }
+
+    /// Fits exposure and intensities of this picture. A jump of the exposure makes every pixel an outlier, so that
+    /// weights start anew.
+    fn fit_intensities(&self, recorder: &mut Recorder<'_>, completes_plate: bool) {
+        let task = Task {
+            completes_plate,
+            ..Task::new(&self.region.plan, Subject::Intensities, true)
+        };
+        self.fit(recorder, task);
+    }
+
     fn fit(&self, recorder: &mut Recorder<'_>, task: Task) {
         let (captured, targets) = (self.captured, &self.captured.by_pass.fit);
-        let photographed = captured.by_pass.estimate.photographed.as_ref();
-        let photographed = photographed.filter(|_| task.completes_plate);
+        let photographed = self.photographed().filter(|_| task.completes_plate);
         let inputs = fit::Inputs {
             seen: self.seen(),
             grids: &self.state.grids,
@@ -168,7 +246,7 @@ impl CapturePath<'_> {
         };
         for index in 0..task.n_steps {
             let step = task.step(&self.region.plan, index, self.pictures.exposure_ratio);
-            self.passes.fit.encode(recorder, &inputs, (&task, &step), targets);
+            self.passes.fit.encode(recorder, &inputs, &task, &step, targets);
             self.passes
                 .fit_solve
                 .encode(recorder, &to_solve, &step, self.state);
@@ -181,6 +259,12 @@ impl CapturePath<'_> {
             n_receivers: self.region.plan.n_receivers,
         };
         self.passes.fill.encode(recorder, &inputs, &cells.cells);
+    }
+
+    /// The plate as it was photographed, if `estimate` is to complete it.
+    fn photographed(&self) -> Option<&Texture> {
+        let photographed = self.captured.by_pass.estimate.photographed.as_ref();
+        photographed.filter(|_| estimate::is_needed(&self.region.plan))
     }
 
     fn gbuffer_inputs(&self) -> gbuffer::Inputs<'_> {

@@ -5,15 +5,15 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shader::{Mirrors, Shader, mirrors};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
-use crate::passes::frame::ByForm;
+use crate::passes::pictures::ByForm;
 
 /// Sample points of a cell, and its accumulation.
-pub(crate) const POOL: Part = part!("common/pool", structs: [Taken], constants: [N_POINTS]);
+pub(crate) const POOL: Mirrors = mirrors!("common/pool", structs: [Taken], constants: [N_POINTS]);
 /// Points of a cell along each side.
 const N_POINTS: u32 = 8;
 /// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.

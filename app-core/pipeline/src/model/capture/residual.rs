@@ -3,32 +3,14 @@
 use crate::gpu::bindings::Slot;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::TextureView;
-use crate::model::capture::observed::Observed;
-use crate::model::capture::pool::{POOL, Pool, PoolGrids, Taken};
-use crate::model::parts::{ACCUMULATED, MODEL};
-use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::FIT;
-use crate::passes::frame::{FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
+use crate::model::capture::Observed;
+use crate::model::capture::pool::{Pool, PoolGrids, Taken};
+use crate::model::state::grids::Grids;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{MARKS, PIXEL, SRGB};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &MODEL,
-    &PIXEL,
-    &GRID,
-    &ACCUMULATED,
-    &POOL,
-    &MARKS,
-    &part!("capture/residual"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/residual");
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::ReadWrite,

@@ -4,33 +4,16 @@ use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::{Recorder, n_pixels};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
-use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::model::state::tints::{TINT_CELL, TINT_GRID, TintGrid, Tints};
-use crate::passes::frame::{ByForm, FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::model::state::tints::{TintGrid, Tints};
+use crate::passes::pictures::ByForm;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::{CHANNELS, MARKS, PIXEL, SRGB};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &HEMISPHERES,
-    &TOY_RADIANCE,
-    &PIXEL,
-    &CHANNELS,
-    &TINT_GRID,
-    &TINT_CELL,
-    &MARKS,
-    &part!("capture/tint"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/tint");
 /// The sampling stride, in region pixels; then the grid, the sums and their inputs.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<u32>(),

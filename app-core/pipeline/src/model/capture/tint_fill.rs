@@ -4,19 +4,11 @@ use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
-use crate::model::parts::ACCUMULATED;
-use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, Tints};
+use crate::gpu::shader::{Shader, shader};
+use crate::model::state::tints::Tints;
 pub(crate) use crate::passes::list::NoTargets as Targets;
-use crate::passes::parts::PIXEL;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &PIXEL,
-    &ACCUMULATED,
-    &TINT_CELL,
-    &BETWEEN_TINTS,
-    &part!("capture/tint_fill"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/tint_fill");
 const SLOTS: &[Slot] = &[Slot::Read, Slot::ReadWrite, Slot::ReadWrite];
 
 pub(crate) struct Pass {

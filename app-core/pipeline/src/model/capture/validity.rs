@@ -6,16 +6,11 @@ use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared_to};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::plan::Plan;
-use crate::passes::parts::{DEPTH, FULLSCREEN};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &DEPTH,
-    &FULLSCREEN,
-    &part!("capture/validity", constants: [BLEED_PX]),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [BLEED_PX]);
 const SLOTS: &[Slot] = &[Slot::Depth];
 /// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;

@@ -4,23 +4,13 @@ use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
-use crate::model::parts::MODEL;
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SCENE_SLOTS, Scene};
-use crate::passes::globals::GLOBALS;
-use crate::passes::parts::{CHANNELS, FULLSCREEN};
+use crate::model::state::solution::{SCENE_SLOTS, Scene};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &MODEL,
-    &CHANNELS,
-    &FULLSCREEN,
-    &part!("capture/withhold"),
-]);
+pub(crate) const SHADER: Shader = shader!("capture/withhold");
 const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture, Slot::Filtered, Slot::Sampler];
 
 /// Only on request.

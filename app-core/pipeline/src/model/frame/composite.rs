@@ -8,41 +8,20 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::samplers::Sampler;
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
-use crate::model::frame::coverage::COVERED;
 use crate::model::frame::region_parts::RegionParts;
 use crate::model::frame::toy;
 use crate::model::lighting::LightMaps;
-use crate::model::parts::{BETWEEN_CELLS, CELLS, MODEL};
 use crate::model::plan::Plan;
-use crate::model::state::grids::{GRID, Grids};
-use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::passes::frame::{ByForm, FRAME, PLANES, Picture};
-use crate::passes::globals::GLOBALS;
-use crate::passes::in_parts::{fill, n_pixels_of};
-use crate::passes::parts::{CHANNELS, FULLSCREEN, MARKS, PIXEL, SRGB};
+use crate::model::state::grids::Grids;
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::passes::pictures::{ByForm, Picture, fill_parts, n_pixels_of};
 use crate::passes::present::REGION_FORMAT;
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &MODEL,
-    &PIXEL,
-    &GRID,
-    &BETWEEN_CELLS,
-    &CELLS,
-    &CHANNELS,
-    &COVERED,
-    &FULLSCREEN,
-    &MARKS,
-    &part!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]),
-]);
+pub(crate) const SHADER: Shader = shader!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]);
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,
@@ -160,13 +139,13 @@ impl Pass {
         let (target, parts) = (&targets.picture.view, inputs.parts);
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
         render.begin(open, &of_open);
-        fill(&mut render, &parts.open);
+        fill_parts(&mut render, &parts.open);
         render.narrow(n_pixels_of(&parts.shadowed) + n_pixels_of(&parts.near));
         render.begin(beside, &[shadowed]);
-        fill(&mut render, &parts.shadowed);
+        fill_parts(&mut render, &parts.shadowed);
         render.narrow(n_pixels_of(&parts.near));
         render.begin(near_toy, &[of_toy]);
-        fill(&mut render, &parts.near);
+        fill_parts(&mut render, &parts.near);
     }
 }
 

@@ -6,25 +6,18 @@ use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared};
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
-use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, ordered};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::parts::BEHIND;
-use crate::passes::toy_mesh::{Detail, Saves, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::counting::{CountingDraws, InstanceOrder, counting, ordered};
+use crate::passes::globals::GLOBALS_GROUP;
+use crate::passes::toy_mesh::{CasterLod, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh};
 
 /// Counting of a pixel's covered positions.
-pub(crate) const COVERED: Part = part!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &BEHIND,
-    &COVERED,
-    &TILES,
-    &part!("frame/coverage", structs: [Positions]),
-]);
+pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
+pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Positions of the lattice within a pixel that the toy's coverage is counted over.
@@ -97,13 +90,18 @@ impl Pass {
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
         let camera = inputs.camera_in_anchor.extend(1.0);
-        let seen = (pose, Some(Side::Camera));
+        let seen = SeenToy {
+            pose,
+            side: Some(Side::Camera),
+            points: &[camera],
+            lod: CasterLod::Own,
+        };
         let target = SilhouetteTarget {
             projection: &inputs.region.uniform.by_camera(),
             part: inputs.region.plan.toy_box,
             saves: Saves::Pixels,
         };
-        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), Some(target));
+        let corners = toy.corners(recorder.gpu, &seen, Some(target));
         let globals = [(&inputs.region.globals).into()];
         let is_half = inputs.region.plan.n_coverage_positions < N_POSITIONS;
         let positions = if is_half { HALF } else { ALL };
@@ -124,6 +122,6 @@ impl Pass {
             0
         };
         self.draws
-            .count(&mut render, &groups, drawn, (0..n_positions, n_plain));
+            .count(&mut render, &groups, drawn, 0..n_positions, n_plain);
     }
 }

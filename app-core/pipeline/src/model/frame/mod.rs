@@ -13,53 +13,12 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::model::state::solution::{Scene, SeenScene};
-use crate::passes::frame::Frame;
+use crate::passes::pictures::Frame;
 use crate::passes::list::passes;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::News;
+use crate::plan::FrameDelta;
 
 passes!(Plan: moved_mask, toy, coverage, composite);
-
-/// One step of the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
-    /// Visibility of the lights in the shown pose.
-    Lighting(lighting::Step),
-    MovedMask,
-    Toy,
-    Coverage,
-    Composite,
-}
-
-impl Step {
-    /// The passes that it runs, in order.
-    pub(crate) fn passes(self) -> &'static [&'static str] {
-        match self {
-            Self::Lighting(step) => step.passes(),
-            Self::MovedMask => &["moved_mask"],
-            Self::Toy => &["toy"],
-            Self::Coverage => &["coverage"],
-            Self::Composite => &["composite"],
-        }
-    }
-
-    /// Whether it runs: of a paused toy a new picture changes the colours alone.
-    pub(crate) fn is_due(self, news: News) -> bool {
-        match self {
-            Self::Toy | Self::Composite => !news.keeps_picture(),
-            Self::Lighting(_) | Self::MovedMask | Self::Coverage => !news.keeps_pose(),
-        }
-    }
-}
-
-/// The steps that run for every new pose.
-pub(crate) fn order(plan: &Plan) -> Vec<Step> {
-    lighting::Step::visibilities(plan)
-        .chain([lighting::Step::SelfShadow])
-        .map(Step::Lighting)
-        .chain([Step::MovedMask, Step::Toy, Step::Coverage, Step::Composite])
-        .collect()
-}
 
 /// Targets of the frame path for one region.
 pub(crate) struct FrameTargets {
@@ -93,41 +52,45 @@ pub(crate) struct FramePath<'a> {
     pub(crate) captured: &'a CaptureTargets,
     pub(crate) drawn: &'a FrameTargets,
     pub(crate) passes: &'a Passes,
-    pub(crate) lighting: (&'a lighting::Passes, &'a Lighting),
+    pub(crate) light: &'a lighting::Passes,
+    pub(crate) lighting: &'a Lighting,
     pub(crate) state: &'a SceneState,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) frame: Frame<'a>,
 }
 
 impl FramePath<'_> {
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, step: Step) {
-        let (passes, of) = (self.passes, &self.drawn.by_pass);
-        match step {
-            Step::Lighting(step) => self.light(recorder, step),
-            Step::MovedMask => {
-                let drawn = (self.region, self.toy);
-                passes.moved_mask.encode(recorder, drawn, &of.moved_mask);
-            }
-            Step::Toy => passes.toy.encode(recorder, &self.toy_inputs(), &of.toy),
-            Step::Coverage => passes
-                .coverage
-                .encode(recorder, &self.coverage_inputs(), &of.coverage),
-            Step::Composite => {
-                passes
-                    .composite
-                    .encode(recorder, &self.composite_inputs(), &of.composite);
-            }
+    /// Draws what cannot stay of the frame before: of a paused toy a new picture changes the colours alone.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
+        if delta.keeps_picture() {
+            return;
         }
+        let (passes, of) = (self.passes, &self.drawn.by_pass);
+        let is_shape_new = !delta.keeps_pose();
+        if is_shape_new {
+            self.encode_light(recorder);
+            passes
+                .moved_mask
+                .encode(recorder, self.region, self.toy, &of.moved_mask);
+        }
+        passes.toy.encode(recorder, &self.toy_inputs(), &of.toy);
+        if is_shape_new {
+            let inputs = self.coverage_inputs();
+            passes.coverage.encode(recorder, &inputs, &of.coverage);
+        }
+        let inputs = self.composite_inputs();
+        passes.composite.encode(recorder, &inputs, &of.composite);
     }
 
-    fn light(&self, recorder: &mut Recorder<'_>, step: lighting::Step) {
-        let (passes, lighting) = self.lighting;
+    fn encode_light(&self, recorder: &mut Recorder<'_>) {
+        let (light, maps) = (self.light, &self.drawn.light);
         let posed = Posed {
             globals: self.region.globals_on_device(),
             toy: self.toy,
             pose: &self.toy.shown,
         };
-        lighting.encode(recorder, passes, step, (posed, &self.drawn.light));
+        self.lighting.encode_visibility(recorder, light, posed, maps);
+        self.lighting.encode_self_shadow(recorder, light, posed, maps);
     }
 
     fn toy_inputs(&self) -> toy::Inputs<'_> {

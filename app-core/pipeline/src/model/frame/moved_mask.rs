@@ -7,15 +7,14 @@ use crate::gpu::bindings::GROUP_SCENE;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Recorder, sampled};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP};
-use crate::passes::parts::{BEHIND, MOVED};
-use crate::passes::toy_mesh::{Detail, Side, ToyMesh};
+use crate::passes::globals::GLOBALS_GROUP;
+use crate::passes::toy_mesh::{CasterLod, SeenToy, Side, ToyMesh};
 
-pub(crate) const SHADER: Shader = Shader::new(&[&GLOBALS, &MOVED, &BEHIND, &part!("frame/moved_mask")]);
+pub(crate) const SHADER: Shader = shader!("frame/moved_mask");
 /// Both poses: the physical one is drawn.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
 /// Format of the mask, a fraction of each pixel.
@@ -72,12 +71,18 @@ impl Pass {
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        (region, toy): (&Region, &ToyMesh),
+        region: &Region,
+        toy: &ToyMesh,
         targets: &Targets,
     ) {
-        let seen = (&toy.physical, Some(Side::Camera));
         let camera = Vec3::from(region.uniform.camera_in_anchor).extend(1.0);
-        let corners = toy.corners(recorder.gpu, seen, (&[camera], Detail::Own), None);
+        let seen = SeenToy {
+            pose: &toy.physical,
+            side: Some(Side::Camera),
+            points: &[camera],
+            lod: CasterLod::Own,
+        };
+        let corners = toy.corners(recorder.gpu, &seen, None);
         let samples = targets.samples.as_ref().map(|samples| &samples.view);
         let mask = sampled(samples, &targets.moved.view);
         let draws = if samples.is_some() {

@@ -8,7 +8,7 @@ use crate::geometry::tiles::Tiles;
 use crate::model::capture::detail;
 use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
 use crate::model::region::Region;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
 
 /// Farthest that the validity and what is drawn of a toy tell of it, in pixels beyond its triangles.
 const AROUND_TOY_PX: f32 = 10.0;
@@ -24,9 +24,11 @@ pub(crate) struct Marks {
 impl Marks {
     /// Of a pose, with the maps of its lights.
     pub(crate) fn of(
-        (region, lighting): (&Region, &Lighting),
+        region: &Region,
+        lighting: &Lighting,
         toy: &ToyMesh,
-        (pose, maps): (&PoseBuffers, &LightMaps),
+        pose: &PoseBuffers,
+        maps: &LightMaps,
     ) -> Self {
         let mut near = Tiles::over(region.plan.region.size_px, TILE_PX);
         let mut shadowed = near.clone();
@@ -39,13 +41,13 @@ impl Marks {
                 origin_px: Vec2::ZERO,
                 ..globals.uniform.by_camera()
             };
-            toy.mark_seen(&mut near, (pose, Detail::Own), (&camera, AROUND_TOY_PX));
+            toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, AROUND_TOY_PX);
         }
         if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {
             // Each pixel has its own residual, or the ambient light's change may be as large as a shadow.
             shadowed.mark_all();
         } else {
-            lighting.mark_shadows(&mut shadowed, (Posed { globals, toy, pose }, maps));
+            lighting.mark_shadows(&mut shadowed, Posed { globals, toy, pose }, maps);
         }
         Self { near, shadowed }
     }

@@ -8,46 +8,20 @@ use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
-use crate::model::capture::appearance::SOURCE;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow;
-use crate::model::lighting::self_shadow::{
-    GROUP_SELF_SHADOW, SELF_SHADOW_GROUP, SELF_SHADOW_MAPS, TOY_LIGHT,
-};
-use crate::model::parts::{HEMISPHERES, TOY_RADIANCE};
+use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
-use crate::model::state::solution::{FIT, SEEN_SLOTS, SeenScene};
-use crate::model::state::tints::{BETWEEN_TINTS, TINT_CELL, TINT_GRID, TintGrid, Tints};
-use crate::passes::frame::{ByForm, FRAME, PLANES};
-use crate::passes::globals::GLOBALS;
-use crate::passes::materials::{MATERIAL, MATERIAL_GROUP};
-use crate::passes::parts::{BEHIND, CHANNELS, DEPTH, MOVED, SRGB};
+use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
+use crate::model::state::tints::{TintGrid, Tints};
+use crate::passes::pictures::ByForm;
+use crate::passes::materials::MATERIAL_GROUP;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FIT,
-    &SRGB,
-    &PLANES,
-    &FRAME,
-    &TOY_LIGHT,
-    &HEMISPHERES,
-    &TOY_RADIANCE,
-    &SELF_SHADOW_MAPS,
-    &MATERIAL,
-    &DEPTH,
-    &MOVED,
-    &CHANNELS,
-    &TINT_GRID,
-    &TINT_CELL,
-    &BETWEEN_TINTS,
-    &BEHIND,
-    &SOURCE,
-    &part!("frame/toy"),
-]);
+pub(crate) const SHADER: Shader = shader!("frame/toy");
 /// The offset of a draw in pixels, then what it reads.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<Vec2>(),
@@ -171,9 +145,9 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            coded: sides(gpu, (CODED_FORMAT, N_SAMPLES)),
-            fine: sides(gpu, (FINE_FORMAT, N_SAMPLES)),
-            single: sides(gpu, (CODED_FORMAT, 1)),
+            coded: sides(gpu, CODED_FORMAT, N_SAMPLES),
+            fine: sides(gpu, FINE_FORMAT, N_SAMPLES),
+            single: sides(gpu, CODED_FORMAT, 1),
         }
     }
 
@@ -221,7 +195,7 @@ impl Pass {
 }
 
 /// Draws onto targets of a format and so many samples.
-fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32)) -> Sides {
+fn sides(gpu: &Gpu, format: TextureFormat, n_samples: u32) -> Sides {
     let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
     let is_coarse = ("IS_COARSE", u32::from(n_samples == 1));
     ByForm::new(gpu, move |gpu, form| {

@@ -10,42 +10,14 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
 use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
-use crate::passes::counting::InstanceOrder;
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, Side, ToyMesh};
+use crate::passes::toy_mesh::{PoseBuffers, Side, ToyMesh};
 use crate::readback::FloatMap;
 use crate::readback::inject::upload;
 use app_scene::geometry::light_points::ambient_directions;
 
 passes!(occlusion, self_shadow);
-
-/// One step of the visibility of lights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
-    /// The toy's shadow on itself.
-    SelfShadow,
-    /// Visibility of the lights.
-    Lights,
-    /// Visibility of the ambient light.
-    Ambient,
-}
-
-impl Step {
-    /// The steps that compute the visibilities of a plan's lights.
-    pub(crate) fn visibilities(plan: &Plan) -> impl Iterator<Item = Self> {
-        let lights = (plan.n_lights > 0).then_some(Self::Lights);
-        lights.into_iter().chain([Self::Ambient])
-    }
-
-    /// The passes that it runs, in order.
-    pub(crate) fn passes(self) -> &'static [&'static str] {
-        match self {
-            Self::SelfShadow => &["self_shadow"],
-            Self::Lights | Self::Ambient => &["occlusion"],
-        }
-    }
-}
 
 /// Pixels along each side of the tiles in which shadows, and the toy, are looked for.
 pub(crate) const TILE_PX: u32 = 16;
@@ -69,7 +41,7 @@ pub(crate) struct InjectedLights {
 
 impl InjectedLights {
     /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
-    pub(crate) fn new(gpu: &Gpu, (map, n_lights): (&FloatMap, usize), like: &Texture) -> Self {
+    pub(crate) fn new(gpu: &Gpu, map: &FloatMap, n_lights: usize, like: &Texture) -> Self {
         let size_px = UVec2::new(map.width, map.height);
         let mut shadowed = Tiles::over(size_px, TILE_PX);
         let rows = (0..map.height).flat_map(|y| (0..map.width).map(move |x| UVec2::new(x, y)));
@@ -151,7 +123,7 @@ impl Lighting {
     }
 
     /// Marks the tiles of the region, of `TILE_PX`, in which a toy in a pose may hide any part of any light.
-    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, (posed, maps): (Posed<'_>, &LightMaps)) {
+    pub(crate) fn mark_shadows(&self, tiles: &mut Tiles, posed: Posed<'_>, maps: &LightMaps) {
         if let Some(injected) = &maps.injected {
             tiles.join(&injected.shadowed);
         }
@@ -166,66 +138,54 @@ impl Lighting {
                 };
                 posed
                     .toy
-                    .mark_seen(tiles, (posed.pose, self.casters.light), (&onto, AROUND_SHADOW_PX));
+                    .mark_seen(tiles, posed.pose, self.casters.light, &onto, AROUND_SHADOW_PX);
             }
         }
     }
 
-    /// Encodes one step for a toy in a pose.
-    pub(crate) fn encode(
+    /// Draws the visibility of the lights, if there are any, and of the ambient light.
+    pub(crate) fn encode_visibility(
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
-        step: Step,
-        (posed, maps): (Posed<'_>, &LightMaps),
+        posed: Posed<'_>,
+        maps: &LightMaps,
     ) {
-        match step {
-            Step::SelfShadow => self.encode_self_shadow(recorder, passes, posed, maps),
-            Step::Lights => {
-                let lights: Vec<_> = self
-                    .lights
-                    .iter()
-                    .enumerate()
-                    .map(|(index, points)| Light {
-                        points,
-                        side: Some(Side::Light(index)),
-                    })
-                    .collect();
-                let onto = (&maps.visibility.lights, &self.orders.lights);
-                self.encode_visibility(recorder, passes, (posed, self.casters.light), (&lights, onto));
-                if let Some(injected) = &maps.injected {
-                    recorder.copy(&injected.visibility, &maps.visibility.lights);
-                }
-            }
-            Step::Ambient => {
-                let onto = (&maps.visibility.ambient, &self.orders.ambient);
-                let lights = [Light {
-                    points: &self.ambient,
-                    side: None,
-                }];
-                self.encode_visibility(recorder, passes, (posed, self.casters.ambient), (&lights, onto));
-            }
-        }
-    }
-
-    fn encode_visibility(
-        &self,
-        recorder: &mut Recorder<'_>,
-        passes: &Passes,
-        (posed, caster): (Posed<'_>, Detail),
-        (lights, onto): (&[Light<'_>], (&Texture, &InstanceOrder)),
-    ) {
-        let inputs = occlusion::Inputs {
+        let inputs = |caster| occlusion::Inputs {
             globals: posed.globals,
             n_receivers: self.n_receivers,
             toy: posed.toy,
             pose: posed.pose,
             caster,
         };
-        passes.occlusion.encode(recorder, &inputs, lights, onto);
+        if !self.lights.is_empty() {
+            let lights: Vec<_> = self
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(index, points)| Light {
+                    points,
+                    side: Some(Side::Light(index)),
+                })
+                .collect();
+            let inputs = inputs(self.casters.light);
+            let (map, order) = (&maps.visibility.lights, &self.orders.lights);
+            passes.occlusion.encode(recorder, &inputs, &lights, map, order);
+            if let Some(injected) = &maps.injected {
+                recorder.copy(&injected.visibility, &maps.visibility.lights);
+            }
+        }
+        let ambient = [Light {
+            points: &self.ambient,
+            side: None,
+        }];
+        let inputs = inputs(self.casters.ambient);
+        let (map, order) = (&maps.visibility.ambient, &self.orders.ambient);
+        passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
 
-    fn encode_self_shadow(
+    /// Draws the toy's shadow on itself.
+    pub(crate) fn encode_self_shadow(
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,

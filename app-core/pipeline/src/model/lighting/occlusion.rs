@@ -10,22 +10,16 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared_to};
-use crate::gpu::shader::{Shader, part};
+use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::{Texture, fractions, half_float};
 use crate::model::plan::Plan;
-use crate::passes::counting::{CountingDraws, InstanceOrder, TILES, counting, not_counting, ordered};
-use crate::passes::globals::{GLOBALS, GLOBALS_GROUP, GlobalsOnDevice};
-use crate::passes::parts::FLATTEN;
-use crate::passes::toy_mesh::{Corners, Detail, PoseBuffers, Saves, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::counting::{CountingDraws, InstanceOrder, counting, not_counting, ordered};
+use crate::passes::globals::{GLOBALS_GROUP, GlobalsOnDevice};
+use crate::passes::toy_mesh::{Corners, CasterLod, PoseBuffers, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh};
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &FLATTEN,
-    &TILES,
-    &part!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]),
-]);
+pub(crate) const SHADER: Shader = shader!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of points of one light.
@@ -247,7 +241,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
     /// What casts the shadow.
-    pub(crate) caster: Detail,
+    pub(crate) caster: CasterLod,
 }
 
 /// A light that is drawn from.
@@ -272,7 +266,8 @@ impl Pass {
         recorder: &mut Recorder<'_>,
         inputs: &Inputs<'_>,
         lights: &[Light<'_>],
-        (map, order): (&Texture, &InstanceOrder),
+        map: &Texture,
+        order: &InstanceOrder,
     ) {
         let Some((_, draws)) = self.of_formats.iter().find(|(format, _)| *format == map.format()) else {
             return;
@@ -301,7 +296,7 @@ impl Pass {
                 let drawn = (&corners, inputs.pose);
                 draws
                     .cover
-                    .count(&mut render, &groups, drawn, (instances, n_plain));
+                    .count(&mut render, &groups, drawn, instances, n_plain);
             }
         }
     }
@@ -309,7 +304,7 @@ impl Pass {
 
 impl<'a> Inputs<'a> {
     /// Corners to draw for a light onto a map of so many texels.
-    fn corners(&self, gpu: &Gpu, light: Light<'_>, map_px: UVec2) -> Corners<'a> {
+    fn corners(&self, gpu: &Gpu, light: Light<'a>, map_px: UVec2) -> Corners<'a> {
         let points = light.points.in_anchor();
         let projection = self.globals.uniform.onto_receiver(0, points);
         // Each receiver would have silhouettes of its own.
@@ -322,8 +317,13 @@ impl<'a> Inputs<'a> {
             },
             saves: Saves::Triangles,
         });
-        self.toy
-            .corners(gpu, (self.pose, light.side), (points, self.caster), target)
+        let seen = SeenToy {
+            pose: self.pose,
+            side: light.side,
+            points,
+            lod: self.caster,
+        };
+        self.toy.corners(gpu, &seen, target)
     }
 
     /// Points of a light, from the first on, whose shadows of the toy on a receiver need not be cut off.

@@ -9,26 +9,17 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Part, Shader, part};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
 use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
-use crate::passes::globals::GLOBALS;
-use crate::passes::toy_mesh::{Detail, PoseBuffers, ToyMesh};
+use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::scene::MAX_LIGHTS;
 
-/// Cosine of the toy's surface to a light.
-pub(crate) const TOY_LIGHT: Part = part!("common/toy_light");
 /// The maps, for passes that read them.
-pub(crate) const SELF_SHADOW_MAPS: Part =
-    part!("common/self_shadow", structs: [SelfShadow], constants: [MAX_TILES]);
-pub(crate) const SHADER: Shader = Shader::new(&[
-    &GLOBALS,
-    &TOY_LIGHT,
-    &SELF_SHADOW_MAPS,
-    &part!("lighting/self_shadow"),
-]);
+pub(crate) const SELF_SHADOW_MAPS: Mirrors = mirrors!("common/self_shadow", structs: [SelfShadow], constants: [MAX_TILES]);
+pub(crate) const SHADER: Shader = shader!("lighting/self_shadow");
 /// Group of the maps, in this pass and where they are read.
 pub(crate) const GROUP_SELF_SHADOW: usize = 3;
 /// Slots of the group where the maps are read.
@@ -116,7 +107,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) light_points: &'a [&'a [Vec4]],
     pub(crate) atlas: &'a ShadowAtlas,
     /// What casts the shadow.
-    pub(crate) caster: Detail,
+    pub(crate) caster: CasterLod,
 }
 
 impl Pass {

@@ -5,12 +5,12 @@ use wgpu::BufferUsages;
 use crate::geometry::rect::PlaneRect;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::shader::{Part, part};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
 use app_scene::scene::MAX_RECEIVERS;
 
 /// WGSL part of the grids.
-pub(crate) const GRID: Part = part!("common/grid", structs: [Grid, Grids], constants: [MAX_CELLS]);
+pub(crate) const GRID: Mirrors = mirrors!("common/grid", structs: [Grid, Grids], constants: [MAX_CELLS]);
 /// Maximum number of cells of a receiver's grid, at its finest level.
 pub const MAX_CELLS: usize = 64 * 64;
 /// Bytes of one cell.

@@ -4,14 +4,14 @@ use crate::gpu::bindings::{GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::recorder::{Group, Recorder};
-use crate::gpu::shader::{Part, part};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
-use crate::passes::frame::{Encoding, Frame};
+use crate::passes::pictures::{Encoding, Frame};
 use crate::passes::globals::Globals;
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
 /// WGSL part of the solution.
-pub(crate) const FIT: Part = part!("common/fit", structs: [ReceiverFit, Fit], constants: [N_COLUMNS]);
+pub(crate) const FIT: Mirrors = mirrors!("common/fit", structs: [ReceiverFit, Fit], constants: [N_COLUMNS]);
 /// Slots that the model's passes share: the globals and the fit.
 pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::Read];
 /// The same with the camera's picture.

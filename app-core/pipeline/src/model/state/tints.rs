@@ -4,17 +4,16 @@ use wgpu::BufferUsages;
 
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::{Gpu, GpuError};
-use crate::gpu::shader::{Part, part};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
 use app_scene::geometry::bounds::Sphere;
 
 /// WGSL part of the grids.
-pub(crate) const TINT_GRID: Part = part!("common/tint_grid", structs: [TintGrid]);
+pub(crate) const TINT_GRID: Mirrors = mirrors!("common/tint_grid", structs: [TintGrid]);
 /// WGSL part of their cells.
-pub(crate) const TINT_CELL: Part =
-    part!("common/tint_cells", constants: [TINT_SIDE, TINT_CELLS, N_TINT_SUMS]);
+pub(crate) const TINT_CELL: Mirrors = mirrors!("common/tint_cells", constants: [TINT_SIDE, TINT_CELLS, N_TINT_SUMS]);
 /// Trilinear interpolation between cells.
-pub(crate) const BETWEEN_TINTS: Part = part!("common/between_tints", constants: [TINT_PYRAMID]);
+pub(crate) const BETWEEN_TINTS: Mirrors = mirrors!("common/between_tints", constants: [TINT_PYRAMID]);
 
 /// Cells of a grid of tints along each side.
 pub const TINT_SIDE: usize = 16;

@@ -1,11 +1,11 @@
-//! The front: settings to be turned down, in the order in which least is lost for what is gained.
+//! The quality ladder: quality reductions in the order in which each adds the least error for the time it saves.
 
 use crate::preset::ModelSettings;
 
-/// A setting that can be turned down.
+/// A setting that a quality step reduces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Knob {
+pub enum QualitySetting {
     /// Region pixels per texel of the ambient map, along each side.
     AmbientDivisor,
     /// Directions of ambient light.
@@ -18,11 +18,11 @@ pub enum Knob {
     FramesPerSecond,
 }
 
-/// A step of the front.
+/// A quality step: one setting and its reduced value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// What is turned down.
-    pub knob: Knob,
+pub struct QualityStep {
+    /// The setting that is reduced.
+    pub setting: QualitySetting,
     /// Its value from there on.
     pub value: u32,
     /// Expected load after the step over the load before it, 0 to 1.
@@ -31,73 +31,73 @@ pub struct Step {
     pub what: &'static str,
 }
 
-/// The front of preset `balanced`.
+/// The quality ladder of preset `balanced`.
 ///
-/// The order is that in which least error is gained for what is saved. What a step is expected to bring is the mean of what
+/// The order is that in which least error is added for what is saved. What a step is expected to bring is the mean of what
 /// the ledger says of triangles and of bytes, for a new pose, one light with a wide penumbra and 10,000 triangles; where it was
 /// taken once, the governor knows better. The step to 32 points brings nothing where all lights have as many.
-pub const BALANCED_FRONT: &[Step] = &[
-    Step {
-        knob: Knob::AmbientDivisor,
+pub const BALANCED_QUALITY_LADDER: &[QualityStep] = &[
+    QualityStep {
+        setting: QualitySetting::AmbientDivisor,
         value: 8,
         gain: 0.99,
         what: "ambient shadow is drawn at an eighth of the resolution",
     },
-    Step {
-        knob: Knob::AmbientDirections,
+    QualityStep {
+        setting: QualitySetting::AmbientDirections,
         value: 32,
         gain: 0.90,
         what: "ambient shadow is drawn from 32 directions",
     },
-    Step {
-        knob: Knob::LightPoints,
+    QualityStep {
+        setting: QualitySetting::LightPoints,
         value: 32,
         gain: 0.88,
         what: "shadows are drawn from 32 points of each light",
     },
-    Step {
-        knob: Knob::LightPoints,
+    QualityStep {
+        setting: QualitySetting::LightPoints,
         value: 16,
         gain: 0.92,
         what: "shadows are drawn from 16 points of each light",
     },
-    Step {
-        knob: Knob::AmbientDirections,
+    QualityStep {
+        setting: QualitySetting::AmbientDirections,
         value: 16,
         gain: 0.91,
         what: "ambient shadow is drawn from 16 directions",
     },
-    Step {
-        knob: Knob::CoveragePositions,
+    QualityStep {
+        setting: QualitySetting::CoveragePositions,
         value: 16,
         gain: 0.95,
         what: "the toy's outline is drawn from 16 positions in each pixel",
     },
-    Step {
-        knob: Knob::FramesPerSecond,
+    QualityStep {
+        setting: QualitySetting::FramesPerSecond,
         value: 30,
         gain: 0.5,
         what: "30 frames are shown a second",
     },
 ];
 
-impl Step {
+impl QualityStep {
     /// Turns a setting down that is finer than this; the rate of frames is no setting.
     pub fn apply(&self, settings: &mut ModelSettings) {
         let points = self.value as usize;
-        match self.knob {
-            Knob::AmbientDivisor => settings.ambient_divisor = settings.ambient_divisor.max(self.value),
-            Knob::AmbientDirections => {
+        match self.setting {
+            QualitySetting::AmbientDivisor => settings.ambient_divisor = settings.ambient_divisor.max(self.value),
+            QualitySetting::AmbientDirections => {
                 settings.n_ambient_directions = settings.n_ambient_directions.min(points);
             }
-            Knob::LightPoints => {
+            QualitySetting::LightPoints => {
                 settings.n_light_points = settings.n_light_points.min(points);
                 settings.n_narrow_light_points = settings.n_narrow_light_points.min(points);
             }
-            Knob::CoveragePositions => {
+            QualitySetting::CoveragePositions => {
                 settings.n_coverage_positions = settings.n_coverage_positions.min(self.value);
             }
-            Knob::FramesPerSecond => {}
+            QualitySetting::FramesPerSecond => {}
         }
     }
 }

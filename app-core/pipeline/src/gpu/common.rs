@@ -1,0 +1,55 @@
+//! The parts of WGSL that shaders import: every file of `shaders/common`.
+
+/// Names each part's path below `shaders`, without its ending, and takes in its text.
+macro_rules! texts {
+    ($($name:literal),* $(,)?) => {
+        &[$((
+            concat!("common/", $name),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/common/", $name, ".wgsl")),
+        )),*]
+    };
+}
+
+const TEXTS: &[(&str, &str)] = texts![
+    "accumulated",
+    "baseline",
+    "behind",
+    "between_cells",
+    "between_tints",
+    "cells",
+    "channels",
+    "completed",
+    "covered",
+    "depth",
+    "fit",
+    "fit_step",
+    "fit_sums",
+    "flatten",
+    "frame",
+    "fullscreen",
+    "globals",
+    "grid",
+    "hemispheres",
+    "marks",
+    "material",
+    "model",
+    "moved",
+    "pixel",
+    "planes",
+    "pool",
+    "receiver_light",
+    "self_shadow",
+    "source",
+    "srgb",
+    "tiles",
+    "tint_cells",
+    "tint_grid",
+    "toy_light",
+    "toy_radiance",
+];
+
+/// The WGSL of a part; none if there is no such part.
+pub(super) fn text(path: &str) -> Option<&'static str> {
+    let part = TEXTS.iter().find(|(of, _)| *of == path);
+    part.map(|(_, text)| *text)
+}
