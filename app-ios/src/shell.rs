@@ -5,7 +5,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-use app_core::app::{ArSession, GraphicsState, LaunchHistory, Panics, Permission, PlatformCommand, ShellCommand, ShellEvent, Thermal};
+use app_core::app::{
+    ArSession, GraphicsState, LaunchHistory, Panics, Permission, PlatformCommand, ShellCommand, ShellEvent,
+    Thermal,
+};
 use app_core::interface::Screen;
 use app_shell::folders::Folders;
 use app_shell::starts;
@@ -230,32 +233,32 @@ impl Shell {
     }
 
     fn call_platform(&mut self, command: PlatformCommand) {
-            match command {
-                PlatformCommand::AskPermission => camera::ask_permission(),
-                PlatformCommand::OpenSettings => self.open_settings(),
-                PlatformCommand::RunTracking {
-                    finds_planes,
-                    is_new_world,
-                } => self.session.run(finds_planes, is_new_world),
-                PlatformCommand::PauseTracking => self.session.pause(),
-                PlatformCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
-                PlatformCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
-                PlatformCommand::Underexpose(false) => {
-                    if let Some(held) = self.held_exposure.take() {
-                        camera::restore(&held);
-                    }
+        match command {
+            PlatformCommand::AskPermission => camera::ask_permission(),
+            PlatformCommand::OpenSettings => self.open_settings(),
+            PlatformCommand::RunTracking {
+                finds_planes,
+                is_new_world,
+            } => self.session.run(finds_planes, is_new_world),
+            PlatformCommand::PauseTracking => self.session.pause(),
+            PlatformCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
+            PlatformCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
+            PlatformCommand::Underexpose(false) => {
+                if let Some(held) = self.held_exposure.take() {
+                    camera::restore(&held);
                 }
-                PlatformCommand::HoldAnchor {
-                    id,
-                    world_from_anchor,
-                } => self.session.hold(id, &world_from_anchor),
-                PlatformCommand::KeepAwake(is_kept) => {
-                    UIApplication::sharedApplication(self.main_thread).setIdleTimerDisabled(is_kept);
-                }
-                PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
-                PlatformCommand::ReopenDevice => self.wants_device = true,
-                PlatformCommand::Announce(_) => {}
             }
+            PlatformCommand::HoldAnchor {
+                id,
+                world_from_anchor,
+            } => self.session.hold(id, &world_from_anchor),
+            PlatformCommand::KeepAwake(is_kept) => {
+                UIApplication::sharedApplication(self.main_thread).setIdleTimerDisabled(is_kept);
+            }
+            PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
+            PlatformCommand::ReopenDevice => self.wants_device = true,
+            PlatformCommand::Announce(_) => {}
+        }
     }
 
     fn open_settings(&self) {

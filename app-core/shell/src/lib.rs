@@ -1,6 +1,6 @@
-//! What the shells of both phones share: files, the threads that do the work, and the guard at the border to the platform.
+//! What the shells of both phones and of a desktop share: files, the threads that do the work, and the guard at the border to the platform.
 //!
-//! The core does no input and output of its own; this is what both shells would else do twice. Whoever calls brings the folders.
+//! The core does no input and output of its own; this is what each shell would else do again. Whoever calls brings the folders.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The app on a desktop: the same logic, interface and core as on a phone, fed by a session in place of a camera.
+//! The app on a desktop: the same logic, interface, core and work as on a phone, fed by a session in place of a camera.
 
 pub mod desk;
 pub mod fault;
