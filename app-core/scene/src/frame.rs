@@ -43,7 +43,7 @@ impl FrameInput {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
-            check::light(&format!("lights[{index}]"), light)?;
+            light.check(&format!("lights[{index}]"))?;
         }
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))

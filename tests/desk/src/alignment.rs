@@ -138,26 +138,10 @@ impl SeenLight {
     /// From a place in the world.
     #[must_use]
     pub fn from(place: DVec3, light: &Light) -> Self {
-        match *light {
-            Light::Sphere {
-                position_in_world,
-                radius_m,
-            } => {
-                let to = position_in_world - place;
-                Self {
-                    direction_in_world: to.normalize_or(DVec3::Y),
-                    distance_m: Some(to.length()),
-                    angular_radius_rad: (radius_m / to.length()).min(1.0).asin(),
-                }
-            }
-            Light::Directional {
-                direction_to_light_in_world,
-                angular_radius_rad,
-            } => Self {
-                direction_in_world: direction_to_light_in_world,
-                distance_m: None,
-                angular_radius_rad,
-            },
+        Self {
+            direction_in_world: light.direction_from(place).unwrap_or(DVec3::Y),
+            distance_m: light.distance_m_from(place),
+            angular_radius_rad: light.angular_radius_rad_from(place),
         }
     }
 }

@@ -113,10 +113,7 @@ pub fn scene_of(toy: Toy, n_lights: u32, (camera, size_px): (Camera, [u32; 2])) 
         rgba8: vec![128; 4 * (width_px * height_px) as usize],
     };
     let place = |turn: f64| DVec3::new(turn.cos(), 1.6, turn.sin());
-    let lights = (0..n_lights).map(|index| Light::Sphere {
-        position_in_world: place(0.4 + 2.0 * f64::from(index)),
-        radius_m: 0.05,
-    });
+    let lights = (0..n_lights).map(|index| Light::sphere(place(0.4 + 2.0 * f64::from(index)), 0.05));
     let world_from_object = DMat4::from_translation(DVec3::new(0.0, 0.04, 0.0));
     let toy = Arc::new(toy);
     let scene = Scene {

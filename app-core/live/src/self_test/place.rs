@@ -76,10 +76,7 @@ pub(super) fn place() -> Result<(Scene, FrameInput), ToyError> {
             half_extent_m: DVec2::splat(2.0),
             surface: Surface::Textured,
         }],
-        lights: vec![Light::Directional {
-            direction_to_light_in_world: to_light(),
-            angular_radius_rad: 0.0,
-        }],
+        lights: vec![Light::directional(to_light(), 0.0)],
         plates: vec![Plate {
             camera,
             image: Arc::new(photograph(&camera, &[])),

@@ -2,5 +2,5 @@
 
 pub mod bounds;
 pub mod color;
-pub mod light_points;
+pub mod disc;
 pub mod nearest_receivers;

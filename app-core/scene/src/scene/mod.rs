@@ -4,6 +4,7 @@
 //! Camera space is +X right, +Y up and looks along -Z.
 
 pub mod check;
+mod light;
 mod light_estimate;
 mod probe;
 mod uncertainty;
@@ -17,6 +18,7 @@ use crate::toy::Toy;
 
 pub use crate::toy::Pose;
 pub use check::{FieldError, InputError};
+pub use light::Light;
 pub use light_estimate::{LightEstimate, N_HARMONICS};
 pub use probe::MAX_FURTHER_PICTURES;
 pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
@@ -73,7 +75,7 @@ impl Scene {
             receiver.check(&format!("receivers[{index}]"))?;
         }
         for (index, light) in self.lights.iter().enumerate() {
-            check::light(&format!("lights[{index}]"), light)?;
+            light.check(&format!("lights[{index}]"))?;
         }
         InputError::at("plates", check::at_most(self.plates.len(), MAX_SCENE_PLATES))?;
         for (index, plate) in self.plates.iter().enumerate() {
@@ -116,25 +118,6 @@ pub struct Receiver {
     pub half_extent_m: DVec2,
     /// Appearance of the receiver.
     pub surface: Surface,
-}
-
-/// A light whose direct shadow is moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Light {
-    /// A bulb. A radius of zero is a point.
-    Sphere {
-        /// Centre of the bulb, in metres.
-        position_in_world: DVec3,
-        /// Radius of the bulb, zero or more.
-        radius_m: f64,
-    },
-    /// A light too far away for its distance to matter.
-    Directional {
-        /// Unit vector from the scene towards the light.
-        direction_to_light_in_world: DVec3,
-        /// Half the angle that the light's disc fills, from 0 to just under 90 degrees.
-        angular_radius_rad: f64,
-    },
 }
 
 /// Pinhole projection, in pixels of the picture.
