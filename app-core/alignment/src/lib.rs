@@ -28,7 +28,6 @@
 mod camera;
 mod directions;
 mod error;
-pub mod faces;
 mod kept_lights;
 mod lights;
 mod mask;

@@ -5,58 +5,16 @@
 //! the same: all of it is covered, or none. Only triangles that meet other tiles have to be drawn once for each point.
 //! Source: Appel 1967 (silhouettes as edges between front and back faces); tiles as in Green 2008 (bounds of penumbras).
 
-use std::collections::HashMap;
-
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles, Vec4Swizzles};
 
 use crate::geometry::facing::Viewers;
 use crate::geometry::tiles::{PixelBox, Tiles};
+use app_scene::geometry::edges::Edge;
 
 /// Pixels along each side of a tile.
 const TILE_PX: u32 = 4;
 /// Distance that positions within a pixel are from its centre, and some for the rounding of 32 bits.
 const AROUND_PX: f32 = 0.55;
-
-/// An edge, and the triangles beside it: none where there is one alone, or more than two, or two that do not pass it in
-/// opposite directions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Edge {
-    ends: [u32; 2],
-    beside: Option<[u32; 2]>,
-}
-
-/// The edges of a shape.
-#[derive(Clone, Debug, Default)]
-pub struct Edges(Vec<Edge>);
-
-impl Edges {
-    /// Of triangles that share corners where they share places.
-    #[must_use]
-    pub fn of(corners: &[u32]) -> Self {
-        /// Triangles that pass an edge from its lower to its higher corner, and the other way.
-        #[derive(Default)]
-        struct Passed([Vec<u32>; 2]);
-        let mut passed: HashMap<[u32; 2], Passed> = HashMap::new();
-        for (index, [a, b, c]) in (0..).zip(corners.as_chunks::<3>().0) {
-            for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
-                let edge = passed.entry([from.min(to), from.max(to)]).or_default();
-                edge.0[usize::from(from > to)].push(index);
-            }
-        }
-        let mut edges: Vec<Edge> = passed
-            .into_iter()
-            .map(|(ends, passed)| {
-                let beside = match [&passed.0[0][..], &passed.0[1][..]] {
-                    [[one], [other]] => Some([*one, *other]),
-                    _ => None,
-                };
-                Edge { ends, beside }
-            })
-            .collect();
-        edges.sort_unstable_by_key(|edge| edge.ends);
-        Self(edges)
-    }
-}
 
 /// Where points of a shape are seen.
 pub trait Projection {
@@ -167,7 +125,7 @@ pub struct Shape<'a> {
     /// Three of each triangle.
     pub corners: &'a [u32],
     /// Between them.
-    pub edges: &'a Edges,
+    pub edges: &'a [Edge],
 }
 
 /// What has to be drawn once for each point, and where.
@@ -197,7 +155,7 @@ pub fn find_silhouette(
         .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
         .collect();
     let mut tiles = Tiles::over(size_px, TILE_PX);
-    for edge in &shape.edges.0 {
+    for edge in shape.edges {
         if edge
             .beside
             .is_none_or(|[one, other]| may_part(&sides, one, other))

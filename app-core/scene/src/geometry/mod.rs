@@ -3,4 +3,5 @@
 pub mod bounds;
 pub mod color;
 pub mod disc;
+pub mod edges;
 pub mod nearest_receivers;
