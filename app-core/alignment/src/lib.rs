@@ -44,6 +44,7 @@ mod ratio;
 mod receivers;
 mod rectangle;
 pub(crate) mod report;
+mod rigid_motion;
 mod shape;
 mod view;
 mod warning;
