@@ -253,10 +253,7 @@ impl Alignments {
         let now = plates(index)?;
         let before = index.checked_sub(1).and_then(plates);
         let is_new = before.is_none_or(|before| !Arc::ptr_eq(before, now));
-        is_new.then(|| Scene {
-            plates: now.to_vec(),
-            ..given.clone()
-        })
+        is_new.then(|| given.clone().with_plates(now.to_vec()))
     }
 
     /// Lights that the core is given with the last frame.
@@ -301,10 +298,10 @@ impl Alignments {
     pub fn input(&self, index: usize, frame: &SessionFrame, preset: Preset) -> FrameInput {
         let input = self.lights.input(frame);
         match self.of(index) {
-            Some(aligned) => FrameInput {
-                lights: aligned.lights(preset).or_else(|| input.lights.clone()),
-                ..aligned.alignment.applied_to(&input)
-            },
+            Some(aligned) => aligned
+                .alignment
+                .applied_to(&input)
+                .with_lights(aligned.lights(preset).or_else(|| input.lights.clone())),
             None => input,
         }
     }
@@ -353,10 +350,7 @@ impl Lights {
         let input = FrameInput::from(frame);
         match self {
             Self::Given => input,
-            Self::Found | Self::Probe => FrameInput {
-                lights: Some(Arc::new([])),
-                ..input
-            },
+            Self::Found | Self::Probe => input.with_lights(Some(Arc::new([]))),
         }
     }
 }

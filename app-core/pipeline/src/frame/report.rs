@@ -8,6 +8,7 @@ use crate::plan::{Change, LeftOut};
 
 /// The report of one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,

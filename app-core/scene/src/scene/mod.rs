@@ -35,6 +35,7 @@ pub const MAX_SCENE_PLATES: usize = 512;
 
 /// The inputs that precede the first frame: toy, receivers, lights, plates.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Scene {
     /// Name for people; may be empty.
     pub name: String,
@@ -62,6 +63,89 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A scene without name, known lights, plates or probe, in which the real toy is as its file has it. `size_px` is width, then height, of
+    /// every camera picture.
+    #[must_use]
+    pub fn new(size_px: [u32; 2], toy: Arc<Toy>, world_from_object: DMat4, receivers: Vec<Receiver>) -> Self {
+        let [width_px, height_px] = size_px;
+        Self {
+            name: String::new(),
+            width_px,
+            height_px,
+            toy,
+            world_from_object,
+            physical_pose: Pose::default(),
+            receivers,
+            lights: Vec::new(),
+            plates: Vec::new(),
+            probe: None,
+            uncertainty: Uncertainty::default(),
+        }
+    }
+
+    /// Sets the name for people.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// Sets the size of every camera picture: width, then height.
+    #[must_use]
+    pub fn with_size_px(mut self, size_px: [u32; 2]) -> Self {
+        [self.width_px, self.height_px] = size_px;
+        self
+    }
+
+    /// Sets the toy's model.
+    #[must_use]
+    pub fn with_toy(mut self, toy: Arc<Toy>) -> Self {
+        self.toy = toy;
+        self
+    }
+
+    /// Sets the transform of the real toy at first.
+    #[must_use]
+    pub fn with_world_from_object(mut self, world_from_object: DMat4) -> Self {
+        self.world_from_object = world_from_object;
+        self
+    }
+
+    /// Sets the pose of the real toy.
+    #[must_use]
+    pub fn with_physical_pose(mut self, pose: Pose) -> Self {
+        self.physical_pose = pose;
+        self
+    }
+
+    /// Sets the known lights.
+    #[must_use]
+    pub fn with_lights(mut self, lights: Vec<Light>) -> Self {
+        self.lights = lights;
+        self
+    }
+
+    /// Sets the pictures of the scene without the toy.
+    #[must_use]
+    pub fn with_plates(mut self, plates: Vec<Plate>) -> Self {
+        self.plates = plates;
+        self
+    }
+
+    /// Sets the light probe that lay in the scene.
+    #[must_use]
+    pub fn with_probe(mut self, probe: Option<Probe>) -> Self {
+        self.probe = probe;
+        self
+    }
+
+    /// Sets how far camera, toy and lights may be off.
+    #[must_use]
+    pub fn with_uncertainty(mut self, uncertainty: Uncertainty) -> Self {
+        self.uncertainty = uncertainty;
+        self
+    }
+
     /// Validates the scene.
     pub fn check(&self) -> Result<(), InputError> {
         let similarity = check::similarity(self.world_from_object.to_cols_array());

@@ -96,11 +96,10 @@ fn disturbed(scene: &Scene, recorded: &FrameInput, part: f64, random: &mut Rando
             |direction| turn * direction,
         )
     });
-    FrameInput {
-        world_from_object: object * recorded.world_from_object,
-        lights: (!scene.lights.is_empty()).then(|| lights.collect()),
-        ..recorded.clone()
-    }
+    recorded
+        .clone()
+        .with_world_from_object(object * recorded.world_from_object)
+        .with_lights((!scene.lights.is_empty()).then(|| lights.collect()))
 }
 
 fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
