@@ -472,20 +472,15 @@ impl Aligner {
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
+        let ratio = self.ratio.warning().into_iter();
+        let warnings = ratio.chain(warnings).chain(none).chain(changed);
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
             relit_plates: self.relit_plates.clone(),
             report,
-            warnings: self
-                .ratio
-                .warning()
-                .into_iter()
-                .chain(warnings)
-                .chain(none)
-                .chain(changed)
-                .collect(),
+            warnings: warnings.collect(),
         }
     }
 }
