@@ -10,7 +10,6 @@ use std::fs;
 use std::sync::Arc;
 
 use app_core::preset::Preset;
-use app_core::scene::Scene;
 use app_core::toy::Toy;
 use app_pipeline::core::inspect::Inspect;
 use desk::files::BUNDLED_SESSION;
@@ -61,10 +60,7 @@ fn shown(toy: Toy) -> (f64, u64) {
     let mut core = core();
     let objects = |core: &app_core::Core| core.n_created().iter().map(|(_, n)| n).sum::<u64>();
     let before = objects(&core);
-    let scene = Scene {
-        toy: Arc::new(toy),
-        ..scene()
-    };
+    let scene = scene().with_toy(Arc::new(toy));
     core.set_scene(scene, Preset::Balanced).unwrap();
     picture_of(&mut core, &first_input());
     (peak_mib().unwrap(), objects(&core) - before)

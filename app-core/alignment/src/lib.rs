@@ -28,7 +28,6 @@
 mod camera;
 mod directions;
 mod error;
-pub mod faces;
 mod kept_lights;
 mod lights;
 pub mod no_light;
@@ -43,6 +42,7 @@ mod raster;
 mod ratio;
 mod receivers;
 pub(crate) mod report;
+mod rigid_motion;
 mod shape;
 mod view;
 mod warning;
@@ -87,6 +87,7 @@ const POSE_GROWN: f64 = 0.01;
 
 /// Where the toy and the lights of a frame are, by its picture.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Alignment {
     /// The camera: as given, where it was not corrected.
     pub camera: Camera,
@@ -105,15 +106,27 @@ pub struct Alignment {
 }
 
 impl Alignment {
+    /// An input as given, of which nothing was found.
+    #[must_use]
+    pub fn new(input: &FrameInput) -> Self {
+        Self {
+            camera: input.camera,
+            world_from_object: input.world_from_object,
+            lights: None,
+            relit_plates: None,
+            report: AlignmentReport::default(),
+            warnings: Vec::new(),
+        }
+    }
+
     /// The input that it was found for, corrected.
     #[must_use]
     pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
-        FrameInput {
-            camera: self.camera,
-            world_from_object: self.world_from_object,
-            lights: self.lights.clone().or_else(|| input.lights.clone()),
-            ..input.clone()
-        }
+        input
+            .clone()
+            .with_camera(self.camera)
+            .with_world_from_object(self.world_from_object)
+            .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
     }
 }
 
@@ -247,11 +260,10 @@ impl Aligner {
                 (self.view, self.held, self.lights) = (None, None, None);
             }
         }
-        Ok(FrameInput {
-            camera: self.ratio.camera(&input.camera),
-            world_from_object: self.ratio.pose(&input.world_from_object),
-            ..input.clone()
-        })
+        Ok(input
+            .clone()
+            .with_camera(self.ratio.camera(&input.camera))
+            .with_world_from_object(self.ratio.pose(&input.world_from_object)))
     }
 
     /// Looks for the distortion of the lens that a frame and the plates were taken with, as if they were of a pinhole: two radial terms.
@@ -289,10 +301,7 @@ impl Aligner {
             .cameras
             .find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = camera::corrected(&input.camera, found);
-        let mut input_seen = FrameInput {
-            camera,
-            ..input.clone()
-        };
+        let mut input_seen = input.clone().with_camera(camera);
         let withheld = self.withheld(input, (&camera, POSE_GROWN), kept)?;
         let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
         let found = photograph.pose(&self.scene, &input_seen, self.held)?;
@@ -322,11 +331,10 @@ impl Aligner {
         let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
             return Ok(None);
         };
-        let placed = FrameInput {
-            camera: *camera,
-            world_from_object: self.held.unwrap_or(input.world_from_object),
-            ..input.clone()
-        };
+        let placed = input
+            .clone()
+            .with_camera(*camera)
+            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
         withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
     }
 
@@ -393,10 +401,7 @@ impl Aligner {
         let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
             return Ok(None);
         };
-        let relit = Self::new(Scene {
-            plates,
-            ..Scene::clone(&self.scene)
-        });
+        let relit = Self::new(Scene::clone(&self.scene).with_plates(plates));
         let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
         let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
         let now = relit
@@ -466,20 +471,15 @@ impl Aligner {
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
+        let ratio = self.ratio.warning().into_iter();
+        let warnings = ratio.chain(warnings).chain(none).chain(changed);
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             report,
-            warnings: self
-                .ratio
-                .warning()
-                .into_iter()
-                .chain(warnings)
-                .chain(none)
-                .chain(changed)
-                .collect(),
+            warnings: warnings.collect(),
         }
     }
 }

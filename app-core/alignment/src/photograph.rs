@@ -211,7 +211,7 @@ impl Photograph {
             let lights: Arc<[Light]> = found.lights.iter().map(|found| found.light).collect();
             let is_applied = after < LIGHT_GAIN * before
                 && found.lights.iter().any(FoundLight::is_moved)
-                && lights.iter().all(|light| check::light("lights", light).is_ok());
+                && lights.iter().all(|light| light.check("lights").is_ok());
             FoundLights {
                 applied: is_applied.then_some(lights),
                 report: found
@@ -291,7 +291,7 @@ impl Photograph {
             for found in &mut found {
                 found.seen_from(middle_in_world);
             }
-            let can_be = |found: &DiscoveredLight| check::light("lights", &found.light).is_ok();
+            let can_be = |found: &DiscoveredLight| found.light.check("lights").is_ok();
             if found.iter().all(can_be) {
                 Ok(found)
             } else {
@@ -349,16 +349,10 @@ pub(super) struct FoundLights {
 impl DiscoveredLight {
     /// Tells its direction, distance and size as seen from a place.
     fn seen_from(&mut self, place_in_world: DVec3) {
-        if let Light::Sphere {
-            position_in_world,
-            radius_m,
-        } = self.light
-        {
-            let to = position_in_world - place_in_world;
-            self.direction_in_world = to.normalize_or(self.direction_in_world);
-            self.distance_m = Some(to.length());
-            self.angular_radius_rad = (radius_m / to.length()).min(1.0).asin();
-        }
+        let direction = self.light.direction_from(place_in_world);
+        self.direction_in_world = direction.unwrap_or(self.direction_in_world);
+        self.distance_m = self.light.distance_m_from(place_in_world);
+        self.angular_radius_rad = self.light.angular_radius_rad_from(place_in_world);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3, IVec2};
 
-use super::faces::Faces;
 use super::picture::{index_in, places};
+use app_scene::geometry::edges::Faces;
 use app_scene::scene::Intrinsics;
 
 /// Samples of each pixel: 8 rows of 16.

@@ -11,7 +11,8 @@ use app_scene::lens::Distortion;
 use app_scene::scene::Light;
 
 /// What was aligned in a frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct AlignmentReport {
     /// The focal length; none where nobody asked for it.
     pub focal_length: Option<RatioAlignment>,

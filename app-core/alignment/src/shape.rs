@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DVec3};
 
-use super::faces::Faces;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::geometry::edges::Faces;
 use app_scene::scene::Scene;
 use app_scene::toy::{PosedMesh, ToyError};
 

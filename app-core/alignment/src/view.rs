@@ -31,11 +31,10 @@ pub(super) struct AlignedView {
 impl Seen {
     /// A view that is known.
     pub(super) fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
-        let input = FrameInput {
-            camera: view.camera,
-            world_from_object: view.world_from_object,
-            ..input.clone()
-        };
+        let input = input
+            .clone()
+            .with_camera(view.camera)
+            .with_world_from_object(view.world_from_object);
         Self {
             photograph: Photograph::new(scene, &input, None),
             view,

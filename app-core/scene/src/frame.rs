@@ -12,6 +12,7 @@ use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
 ///
 /// Whatever changes from frame to frame, no pipeline is recompiled; see the architecture for what is learned anew.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FrameInput {
     /// The camera's picture, of the scene's size.
     pub image: CameraImage,
@@ -35,6 +36,77 @@ pub struct FrameInput {
 }
 
 impl FrameInput {
+    /// A frame of unknown exposure in the light of the scene, which shows the toy as its file has it, with the whole effect.
+    #[must_use]
+    pub fn new(image: impl Into<CameraImage>, camera: Camera, world_from_object: DMat4) -> Self {
+        Self {
+            image: image.into(),
+            camera,
+            exposure: 1.0,
+            world_from_object,
+            lights: None,
+            light_estimate: None,
+            shown_pose: Pose::default(),
+            effect: 1.0,
+        }
+    }
+
+    /// Sets the picture.
+    #[must_use]
+    pub fn with_image(mut self, image: impl Into<CameraImage>) -> Self {
+        self.image = image.into();
+        self
+    }
+
+    /// Sets the camera that took the picture.
+    #[must_use]
+    pub fn with_camera(mut self, camera: Camera) -> Self {
+        self.camera = camera;
+        self
+    }
+
+    /// Sets the exposure of the picture.
+    #[must_use]
+    pub fn with_exposure(mut self, exposure: f64) -> Self {
+        self.exposure = exposure;
+        self
+    }
+
+    /// Sets the transform of the real toy.
+    #[must_use]
+    pub fn with_world_from_object(mut self, world_from_object: DMat4) -> Self {
+        self.world_from_object = world_from_object;
+        self
+    }
+
+    /// Sets the lights; with none those of the scene are taken.
+    #[must_use]
+    pub fn with_lights(mut self, lights: Option<Arc<[Light]>>) -> Self {
+        self.lights = lights;
+        self
+    }
+
+    /// Sets the platform's estimate of the light.
+    #[must_use]
+    pub fn with_light_estimate(mut self, estimate: Option<LightEstimate>) -> Self {
+        self.light_estimate = estimate;
+        self
+    }
+
+    /// Sets the pose that the toy is shown in.
+    #[must_use]
+    pub fn with_shown_pose(mut self, pose: Pose) -> Self {
+        self.shown_pose = pose;
+        self
+    }
+
+    /// Sets the part of the effect that is shown, from 0 to 1.
+    #[must_use]
+    pub fn with_effect(mut self, effect: f64) -> Self {
+        self.effect = effect;
+        self
+    }
+
     /// Validates the input.
     pub fn check(&self) -> Result<(), InputError> {
         check::camera("camera", &self.camera)?;
@@ -43,7 +115,7 @@ impl FrameInput {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
-            check::light(&format!("lights[{index}]"), light)?;
+            light.check(&format!("lights[{index}]"))?;
         }
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))

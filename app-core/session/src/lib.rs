@@ -94,16 +94,10 @@ pub struct SessionFrame {
 
 impl From<&SessionFrame> for FrameInput {
     fn from(frame: &SessionFrame) -> Self {
-        Self {
-            image: Arc::clone(&frame.image).into(),
-            camera: frame.camera,
-            exposure: frame.exposure,
-            world_from_object: frame.world_from_object,
-            lights: None,
-            light_estimate: frame.light_estimate,
-            shown_pose: frame.shown_pose.clone(),
-            effect: 1.0,
-        }
+        Self::new(Arc::clone(&frame.image), frame.camera, frame.world_from_object)
+            .with_exposure(frame.exposure)
+            .with_light_estimate(frame.light_estimate)
+            .with_shown_pose(frame.shown_pose.clone())
     }
 }
 

@@ -81,7 +81,7 @@ mod tests {
 
     use app_core::camera_frame::CameraImage;
     use app_core::recording::{Ending, Item, LiveFrame, Recording};
-    use app_core::scene::{Camera, Image, Intrinsics, Pose, Receiver, Scene, Surface, Uncertainty};
+    use app_core::scene::{Camera, Image, Intrinsics, Pose, Receiver, Scene, Surface};
     use app_core::session::{Capture, Session};
     use app_core::toy::Toy;
     use glam::{DMat4, DVec2, DVec3};
@@ -101,24 +101,17 @@ mod tests {
             height_px: 16,
             rgba8: [90, 120, 60, 255].repeat(256),
         };
-        let scene = Scene {
-            name: String::new(),
-            width_px: 16,
-            height_px: 16,
-            toy: Arc::new(Toy::from_glb("toy.glb", TOY).expect("the bundled toy")),
+        let scene = Scene::new(
+            [16, 16],
+            Arc::new(Toy::from_glb("toy.glb", TOY).expect("the bundled toy")),
             world_from_object,
-            physical_pose: Pose::Authored,
-            receivers: vec![Receiver {
+            vec![Receiver {
                 name: "table".to_owned(),
                 world_from_plane: DMat4::IDENTITY,
                 half_extent_m: DVec2::ONE,
                 surface: Surface::Textured,
             }],
-            lights: Vec::new(),
-            plates: Vec::new(),
-            probe: None,
-            uncertainty: Uncertainty::default(),
-        };
+        );
         let live = LiveFrame {
             image: CameraImage::from(image),
             camera: Camera {

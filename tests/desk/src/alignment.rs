@@ -175,26 +175,10 @@ impl SeenLight {
     /// From a place in the world.
     #[must_use]
     pub fn from(place: DVec3, light: &Light) -> Self {
-        match *light {
-            Light::Sphere {
-                position_in_world,
-                radius_m,
-            } => {
-                let to = position_in_world - place;
-                Self {
-                    direction_in_world: to.normalize_or(DVec3::Y),
-                    distance_m: Some(to.length()),
-                    angular_radius_rad: (radius_m / to.length()).min(1.0).asin(),
-                }
-            }
-            Light::Directional {
-                direction_to_light_in_world,
-                angular_radius_rad,
-            } => Self {
-                direction_in_world: direction_to_light_in_world,
-                distance_m: None,
-                angular_radius_rad,
-            },
+        Self {
+            direction_in_world: light.direction_from(place).unwrap_or(DVec3::Y),
+            distance_m: light.distance_m_from(place),
+            angular_radius_rad: light.angular_radius_rad_from(place),
         }
     }
 }
@@ -321,10 +305,7 @@ impl Alignments {
         // Cameras alone are corrected in the scene from its begin on.
         let mut pairs = plates.iter().zip(&given.plates);
         let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
-        is_relit.then(|| Scene {
-            plates: plates.clone(),
-            ..given.clone()
-        })
+        is_relit.then(|| given.clone().with_plates(plates.clone()))
     }
 
     /// Lights that the core is given with the last frame.
@@ -369,10 +350,10 @@ impl Alignments {
     pub fn input(&self, index: usize, frame: &SessionFrame, preset: Preset) -> FrameInput {
         let input = self.lights.input(frame);
         match self.of(index) {
-            Some(aligned) => FrameInput {
-                lights: aligned.lights(preset).or_else(|| input.lights.clone()),
-                ..aligned.alignment.applied_to(&input)
-            },
+            Some(aligned) => aligned
+                .alignment
+                .applied_to(&input)
+                .with_lights(aligned.lights(preset).or_else(|| input.lights.clone())),
             None => input,
         }
     }
@@ -439,10 +420,7 @@ impl Lights {
         let input = FrameInput::from(frame);
         match self {
             Self::Given => input,
-            Self::Found | Self::Probe => FrameInput {
-                lights: Some(Arc::new([])),
-                ..input
-            },
+            Self::Found | Self::Probe => input.with_lights(Some(Arc::new([]))),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use app_core::camera_frame::{PlanarImage, Planes};
 use app_core::frame::FrameInput;
-use app_core::scene::{Camera, Image, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty};
+use app_core::scene::{Camera, Image, Light, Plate, Pose, Receiver, Scene, Surface};
 use app_core::toy::Toy;
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde_json::json;
@@ -113,45 +113,34 @@ pub fn scene_of(toy: Toy, n_lights: u32, (camera, size_px): (Camera, [u32; 2])) 
         rgba8: vec![128; 4 * (width_px * height_px) as usize],
     };
     let place = |turn: f64| DVec3::new(turn.cos(), 1.6, turn.sin());
-    let lights = (0..n_lights).map(|index| Light::Sphere {
-        position_in_world: place(0.4 + 2.0 * f64::from(index)),
-        radius_m: 0.05,
-    });
+    let lights = (0..n_lights).map(|index| Light::sphere(place(0.4 + 2.0 * f64::from(index)), 0.05));
     let world_from_object = DMat4::from_translation(DVec3::new(0.0, 0.04, 0.0));
     let toy = Arc::new(toy);
-    let scene = Scene {
-        name: "ball".to_owned(),
-        width_px,
-        height_px,
-        toy: Arc::clone(&toy),
+    let scene = Scene::new(
+        size_px,
+        Arc::clone(&toy),
         world_from_object,
-        physical_pose: Pose::default(),
-        receivers: vec![Receiver {
+        vec![Receiver {
             name: "table".to_owned(),
             world_from_plane: DMat4::IDENTITY,
             half_extent_m: DVec2::splat(1.0),
             surface: Surface::Uniform,
         }],
-        lights: lights.collect(),
-        plates: vec![Plate {
-            camera,
-            image: Arc::new(image),
-        }],
-        probe: None,
-        uncertainty: Uncertainty::default(),
-    };
-    let input = FrameInput {
-        image: planes(size_px).expect("a picture that has pixels").into(),
+    )
+    .with_name("ball")
+    .with_lights(lights.collect())
+    .with_plates(vec![Plate {
         camera,
-        exposure: 1.0,
+        image: Arc::new(image),
+    }]);
+    let input = FrameInput::new(
+        planes(size_px).expect("a picture that has pixels"),
+        camera,
         world_from_object,
-        lights: None,
-        light_estimate: None,
-        shown_pose: Pose::Clip {
-            clip: toy.find_clip("lift").expect("a clip of that name"),
-            time_secs: 0.5,
-        },
-        effect: 1.0,
-    };
+    )
+    .with_shown_pose(Pose::Clip {
+        clip: toy.find_clip("lift").expect("a clip of that name"),
+        time_secs: 0.5,
+    });
     (scene, input)
 }

@@ -190,8 +190,8 @@ fn times(
 /// The same frames as phones deliver them.
 fn as_planes(inputs: Vec<FrameInput>) -> Result<Vec<FrameInput>, PlaneError> {
     let planes = |input: FrameInput| {
-        let image = planar(input.image.rgba(), BT601_FULL)?.into();
-        Ok(FrameInput { image, ..input })
+        let image = planar(input.image.rgba(), BT601_FULL)?;
+        Ok(input.with_image(image))
     };
     inputs.into_iter().map(planes).collect()
 }

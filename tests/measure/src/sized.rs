@@ -90,21 +90,18 @@ pub fn sized_scene(scene: &Scene, size_px: SizePx) -> Scene {
         camera: filling.camera(&plate.camera),
         image: Arc::new(filling.image(&plate.image)),
     };
-    Scene {
-        width_px: size_px[0],
-        height_px: size_px[1],
-        plates: scene.plates.iter().map(plate).collect(),
-        ..scene.clone()
-    }
+    scene
+        .clone()
+        .with_size_px(size_px)
+        .with_plates(scene.plates.iter().map(plate).collect())
 }
 
 /// A frame in a picture of `size_px`.
 #[must_use]
 pub fn sized_input(input: &FrameInput, size_px: SizePx) -> FrameInput {
     let filling = Filling::new(input.image.size_px(), size_px);
-    FrameInput {
-        image: CameraImage::from(filling.image(input.image.rgba())),
-        camera: filling.camera(&input.camera),
-        ..input.clone()
-    }
+    input
+        .clone()
+        .with_image(CameraImage::from(filling.image(input.image.rgba())))
+        .with_camera(filling.camera(&input.camera))
 }

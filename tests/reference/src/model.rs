@@ -5,7 +5,6 @@ use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::geometry::scene_layout::SceneLayout;
 use app_pipeline::geometry::view::View;
 use app_pipeline::passes::globals::globals;
-use app_scene::geometry::light_points::light_in_plane;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
@@ -106,9 +105,7 @@ impl Region {
         let world_from_anchor = layout.world_from_anchor();
         let lights_in = |space_from_world: &DMat4| {
             let lights = layout.lights.iter();
-            lights
-                .map(|light| light_in_plane(light, space_from_world))
-                .collect()
+            lights.map(|light| light.centre_in(space_from_world)).collect()
         };
         let receivers = layout.receivers.iter().map(|receiver| {
             let plane_from_world = receiver.world_from_plane.inverse();

@@ -1,8 +1,8 @@
 //! CPU reference of the maps of `occlusion.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
 
-use glam::{DVec2, DVec3, UVec2};
-
 use app_core::scene::Light;
+use app_scene::geometry::disc::vogel_disc;
+use glam::{DVec2, DVec3, UVec2};
 
 use super::model::Region;
 use super::occlusion::{Caster, Occluder, hidden_share};
@@ -58,7 +58,7 @@ pub fn exact_visibility<R: Real>(
     }
     let (across, along) = axis.orthonormal_pair();
     let (mut reached, mut total) = (R::ZERO, R::ZERO);
-    for at in unit_disc(n_rays) {
+    for at in vogel_disc(n_rays) {
         // Equal areas of the disc are equal solid angles of the cone.
         let area = R::from_f64(at.length_squared());
         let cosine = R::ONE - area * sine * sine / (R::ONE + (R::ONE - sine * sine).sqrt());
@@ -83,13 +83,4 @@ pub fn exact_visibility<R: Real>(
     } else {
         1.0
     }
-}
-
-/// `n_points` points over the unit disc, each standing for an equal area. Source: Vogel 1979.
-fn unit_disc(n_points: usize) -> impl Iterator<Item = DVec2> {
-    let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
-    (0..n_points).map(move |i| {
-        ((i as f64 + 0.5) / n_points as f64).sqrt() * DVec2::from_angle(i as f64 * golden_angle_rad)
-    })
 }

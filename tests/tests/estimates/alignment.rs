@@ -234,10 +234,7 @@ fn a_camera_is_found_by_the_table() {
         (DVec3::new(-1.0, 0.5, 1.0), DVec3::new(0.1, 0.2, -0.1)),
         (DVec3::new(6.0, -6.0, 5.0), DVec3::new(-0.6, 0.7, 0.3)),
     ] {
-        let given = FrameInput {
-            camera: shaken(&recorded, mm, deg),
-            ..SESSION.1.clone()
-        };
+        let given = SESSION.1.clone().with_camera(shaken(&recorded, mm, deg));
         let found = align(&given);
         assert!(found.report.camera.unwrap().is_applied);
         let apart_px = cameras_apart_px(&found.camera.world_from_camera, &recorded.world_from_camera);
@@ -352,10 +349,10 @@ fn a_toy_that_was_nudged_is_found_in_the_next_picture() {
             .unwrap()
             .is_applied
     );
-    let unaware = FrameInput {
-        world_from_object: before.input.world_from_object,
-        ..after.input.clone()
-    };
+    let unaware = after
+        .input
+        .clone()
+        .with_world_from_object(before.input.world_from_object);
     let found = aligner.align(&unaware).unwrap();
     let pose = found.report.pose.unwrap();
     assert!(pose.is_applied && !pose.is_held, "{pose:?}");

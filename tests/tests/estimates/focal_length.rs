@@ -52,17 +52,18 @@ fn disturbed(input: &FrameInput) -> FrameInput {
     };
     let to = position_in_world - at;
     let axis = to.cross(DVec3::new(0.3, 0.9, -0.4)).normalize();
-    FrameInput {
-        world_from_object: DMat4::from_translation(at + DVec3::new(2e-3, -3e-3, 3.5e-3))
-            * DMat4::from_rotation_x(3f64.to_radians())
-            * DMat4::from_translation(-at)
-            * input.world_from_object,
-        lights: Some(Arc::new([Light::Sphere {
+    input
+        .clone()
+        .with_world_from_object(
+            DMat4::from_translation(at + DVec3::new(2e-3, -3e-3, 3.5e-3))
+                * DMat4::from_rotation_x(3f64.to_radians())
+                * DMat4::from_translation(-at)
+                * input.world_from_object,
+        )
+        .with_lights(Some(Arc::new([Light::Sphere {
             position_in_world: at + DQuat::from_axis_angle(axis, 10f64.to_radians()) * to,
             radius_m: 2.0 * radius_m,
-        }])),
-        ..input.clone()
-    }
+        }])))
 }
 
 fn off_mm(found: &Alignment) -> f64 {
@@ -127,10 +128,7 @@ fn it_is_found_once_and_kept() {
     let (scene, input) = off(1.01);
     let mut aligner = Aligner::new(scene).with_unknown_focal_length();
     // A view without the toy does not tell it, and does not end the search.
-    let empty = FrameInput {
-        image: Arc::clone(&SESSION.0.plates[0].image).into(),
-        ..input.clone()
-    };
+    let empty = input.clone().with_image(Arc::clone(&SESSION.0.plates[0].image));
     let unseen = aligner.align(&empty).unwrap();
     let outcome = unseen.report.focal_length.unwrap().outcome;
     assert_eq!(outcome, RatioOutcome::Unseen);
@@ -139,11 +137,9 @@ fn it_is_found_once_and_kept() {
     let ratio = first.report.focal_length.unwrap().ratio;
     assert!((1.01 * ratio - 1.0).abs() < RATIO, "{ratio}");
     // Another picture, by a camera that zoomed: the same part of what is given.
-    let zoomed = FrameInput {
-        image: Image::clone(input.image.rgba()).into(),
-        camera: lengthened(&input.camera, 1.002),
-        ..input
-    };
+    let image = Image::clone(input.image.rgba());
+    let camera = lengthened(&input.camera, 1.002);
+    let zoomed = input.with_image(image).with_camera(camera);
     let second = aligner.align(&zoomed).unwrap();
     assert_eq!(second.report.focal_length, first.report.focal_length);
     assert_eq!(
@@ -159,10 +155,9 @@ fn a_lower_table_and_a_larger_toy_are_no_focal_length() {
     for receiver in &mut lower.receivers {
         receiver.world_from_plane = DMat4::from_translation(-2e-3 * DVec3::Y) * receiver.world_from_plane;
     }
-    let larger = FrameInput {
-        world_from_object: input.world_from_object * DMat4::from_scale(DVec3::splat(1.02)),
-        ..input.clone()
-    };
+    let larger = input
+        .clone()
+        .with_world_from_object(input.world_from_object * DMat4::from_scale(DVec3::splat(1.02)));
     for (scene, input) in [(lower, input), (SESSION.0.clone(), larger)] {
         let mut aligner = Aligner::new(scene).with_unknown_focal_length();
         let found = aligner.align(&input).unwrap();

@@ -93,8 +93,8 @@ fn taken_through(lens: Distortion) -> (Scene, FrameInput) {
     for plate in &mut scene.plates {
         plate.image = Arc::new(bent(&plate.image, lens));
     }
-    let image = Arc::new(bent(input.image.rgba(), lens)).into();
-    (scene, FrameInput { image, ..input })
+    let image = Arc::new(bent(input.image.rgba(), lens));
+    (scene, input.with_image(image))
 }
 
 fn found((scene, input): (Scene, FrameInput)) -> LensAlignment {

@@ -115,10 +115,10 @@ fn a_shadow_that_no_light_casts_is_said() {
     let before = shot(vec![bulb(50.0, 30.0)]);
     let mut aligner = Aligner::new(before.scene.clone());
     assert_eq!(aligner.align(&before.input).unwrap().lights, None);
-    let input = FrameInput {
-        image: with_dark_bars(before.input.image.rgba()).into(),
-        ..before.input.clone()
-    };
+    let input = before
+        .input
+        .clone()
+        .with_image(with_dark_bars(before.input.image.rgba()));
     let after = aligner.align(&input).unwrap();
     assert_eq!(after.lights, None, "{:?}", after.report);
     let said = after.warnings.iter();

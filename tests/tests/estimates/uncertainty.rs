@@ -21,10 +21,7 @@ const ROUNDING: f64 = 1e-5;
 const MIDDLE_DEG: f64 = 0.1;
 
 fn align(uncertainty: Uncertainty, input: &FrameInput) -> Alignment {
-    let scene = Scene {
-        uncertainty,
-        ..SESSION.0.clone()
-    };
+    let scene = SESSION.0.clone().with_uncertainty(uncertainty);
     Aligner::new(scene).align(input).unwrap()
 }
 
@@ -209,13 +206,10 @@ fn a_camera_is_moved_no_farther_than_its_pose_is_uncertain() {
         DQuat::from_scaled_axis(DVec3::new(-0.6, 0.7, 0.3).map(f64::to_radians)),
         DVec3::new(0.006, -0.006, 0.005),
     );
-    let given = FrameInput {
-        camera: Camera {
-            world_from_camera: SESSION.1.camera.world_from_camera * step,
-            ..SESSION.1.camera
-        },
-        ..SESSION.1.clone()
-    };
+    let given = SESSION.1.clone().with_camera(Camera {
+        world_from_camera: SESSION.1.camera.world_from_camera * step,
+        ..SESSION.1.camera
+    });
     let moved = |camera: PoseUncertainty| {
         let uncertainty = Uncertainty {
             camera,

@@ -73,10 +73,7 @@ fn painted(shot: &Shot, is_painted: impl Fn(&[u8]) -> bool) -> FrameInput {
         }
     }
     assert!(n_painted > 200, "{n_painted} pixels");
-    FrameInput {
-        image: image.into(),
-        ..shot.input.clone()
-    }
+    shot.input.clone().with_image(image)
 }
 
 /// Camera, pose and lights.

@@ -77,17 +77,18 @@ fn disturbed(scene: &Scene, input: &FrameInput) -> FrameInput {
     };
     let to = position_in_world - at;
     let axis = to.cross(DVec3::new(0.3, 0.9, -0.4)).normalize();
-    FrameInput {
-        world_from_object: DMat4::from_translation(at + DVec3::new(2e-3, -2e-3, 3e-3))
-            * DMat4::from_rotation_x(2f64.to_radians())
-            * DMat4::from_translation(-at)
-            * input.world_from_object,
-        lights: Some(Arc::new([Light::Sphere {
+    input
+        .clone()
+        .with_world_from_object(
+            DMat4::from_translation(at + DVec3::new(2e-3, -2e-3, 3e-3))
+                * DMat4::from_rotation_x(2f64.to_radians())
+                * DMat4::from_translation(-at)
+                * input.world_from_object,
+        )
+        .with_lights(Some(Arc::new([Light::Sphere {
             position_in_world: at + DQuat::from_axis_angle(axis, 8f64.to_radians()) * to,
             radius_m,
-        }])),
-        ..input.clone()
-    }
+        }])))
 }
 
 /// How far the toy is from where it stood, in millimetres of the true world.

@@ -5,10 +5,9 @@ use std::sync::LazyLock;
 
 use app_core::core::CoreError;
 use app_core::preset::{BASELINE, Preset};
-use app_core::scene::{Light, Surface};
+use app_core::scene::Surface;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::Map;
-use app_scene::geometry::light_points::light_in_plane;
 use glam::{DVec3, DVec4, UVec2};
 use reference::box_filter::{box_sums, mean};
 use reference::census::seen_sets;
@@ -206,13 +205,8 @@ impl BaselineRun {
         let stand = &self.stand;
         let light = &stand.setup.lights[index];
         let softness = Softness {
-            light: light_in_plane(light, &stand.anchor_from_world),
-            light_radius: match *light {
-                Light::Sphere { radius_m, .. } => radius_m,
-                Light::Directional {
-                    angular_radius_rad, ..
-                } => angular_radius_rad.tan(),
-            },
+            light: light.centre_in(&stand.anchor_from_world),
+            light_radius: light.radius(),
             tallest_m: stand.tallest_m(),
             n_blocker_taps: BASELINE.n_blocker_taps,
             n_filter_taps: BASELINE.n_filter_taps,

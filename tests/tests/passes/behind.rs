@@ -1,7 +1,6 @@
 //! A receiver seen from behind is none: what is known is where its front is, and what light falls there.
 
 use app_core::preset::Preset;
-use app_core::scene::Scene;
 use app_pipeline::geometry::view::View;
 use glam::{DVec2, DVec3, UVec2};
 use reference::model::{Region, centre_px};
@@ -52,13 +51,10 @@ fn nothing_moves_on_the_back_of_a_wall() {
     let behind = Stand::seen_from(setup(), BEHIND);
     let photo = Photo::plain(2);
     let shots = [&before, &behind].map(|stand| photo.frame(stand, &stand.physical));
-    let with_plates = Scene {
-        plates: vec![
-            plate_of(&before, &photo.plate(&before)),
-            plate_of(&behind, &photo.plate(&behind)),
-        ],
-        ..scene(&before, &shots[0])
-    };
+    let with_plates = scene(&before, &shots[0]).with_plates(vec![
+        plate_of(&before, &photo.plate(&before)),
+        plate_of(&behind, &photo.plate(&behind)),
+    ]);
     let back = texels_of_back(&behind, &behind.region(&behind.whole_image()));
     assert!(back.len() > 1000, "{} pixels of the back are seen", back.len());
     for preset in [Preset::Balanced, Preset::Paper, Preset::Flat] {

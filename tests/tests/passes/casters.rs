@@ -1,7 +1,7 @@
 //! The toy before the lights: what casts shadows, and from which points.
 
 use app_core::toy::PosedMesh;
-use app_scene::geometry::light_points::{ambient_directions, light_points};
+use app_scene::geometry::disc::ambient_directions;
 use glam::{DMat4, DVec3, DVec4};
 use reference::occlusion::{Caster, Occluder};
 
@@ -11,7 +11,7 @@ impl Stand {
     /// Points of a light, in anchor space.
     pub(crate) fn light_points(&self, index: usize, n_points: usize) -> Vec<DVec4> {
         let light = &self.setup.lights[index];
-        let points = light_points(light, &self.anchor_from_world, self.physical_centre(), n_points);
+        let points = light.points_in(&self.anchor_from_world, self.physical_centre(), n_points);
         points.iter().map(|point| point.as_dvec4()).collect()
     }
 

@@ -2,7 +2,6 @@
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
-use app_core::scene::Scene;
 use app_core::wgpu;
 use app_pipeline::core::inspect::Inspect;
 use glam::{DVec3, DVec4};
@@ -31,10 +30,7 @@ fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
         });
         let photo = Photo::plain(1);
         let frame = photo.frame(&stand, &stand.physical);
-        let without_plates = Scene {
-            plates: Vec::new(),
-            ..scene(&stand, &frame)
-        };
+        let without_plates = scene(&stand, &frame).with_plates(Vec::new());
         let mut core = core_on(without_plates, Preset::Balanced).unwrap();
         let report = core.frame(&input(&stand, &frame)).unwrap();
         assert_eq!(report.warnings, [Warning::PlateEstimated], "{}", setup.name);

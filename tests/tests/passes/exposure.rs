@@ -3,7 +3,6 @@
 use app_core::core::Core;
 use app_core::frame::PassGroup;
 use app_core::preset::Preset;
-use app_core::scene::Scene;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
@@ -61,10 +60,7 @@ fn plates_of_the_published_method_follow_each_picture() {
                 later.solution.gain = gain;
                 later.frame(&here, &here.physical)
             });
-            let with_plates = Scene {
-                plates,
-                ..scene(&here, &frames[0])
-            };
+            let with_plates = scene(&here, &frames[0]).with_plates(plates);
             for preset in [Preset::Paper, Preset::Flat] {
                 let mut core = core_on(with_plates.clone(), preset).unwrap();
                 for (index, (frame, gain)) in frames.iter().zip(GAINS).enumerate() {

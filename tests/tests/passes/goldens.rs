@@ -1,7 +1,7 @@
 //! Whole pictures that the bundled session has no case of: several lights, a wall, a moving camera.
 
 use app_core::preset::Preset;
-use app_core::scene::{Image, Scene};
+use app_core::scene::Image;
 use glam::DVec3;
 use harness::golden::{Goldens, ON_HARDWARE, ON_SOFTWARE};
 
@@ -46,10 +46,8 @@ fn seen_by(stands: &[Stand]) -> Image {
         .iter()
         .map(|stand| photo.frame(stand, &stand.physical))
         .collect();
-    let staged = Scene {
-        plates: vec![plate_of(&stands[0], &photo.plate(&stands[0]))],
-        ..scene(&stands[0], &frames[0])
-    };
+    let staged =
+        scene(&stands[0], &frames[0]).with_plates(vec![plate_of(&stands[0], &photo.plate(&stands[0]))]);
     let mut core = core_on(staged, Preset::Balanced).unwrap();
     for (stand, frame) in stands.iter().zip(&frames) {
         core.frame(&input(stand, frame)).unwrap();

@@ -35,10 +35,7 @@ fn gain(index: usize) -> DVec3 {
 
 fn scene_with(plates: Vec<Plate>) -> (Stand, Scene) {
     let stand = Stand::seen_from(setup(), HERE);
-    let scene = Scene {
-        plates,
-        ..scene(&stand, &flat(128))
-    };
+    let scene = scene(&stand, &flat(128)).with_plates(plates);
     (stand, scene)
 }
 

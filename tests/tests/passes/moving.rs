@@ -52,10 +52,7 @@ fn shots() -> Shots {
     let plates = stands.iter().map(|stand| plate_of(stand, &photo.plate(stand)));
     let frames = stands.each_ref().map(|stand| photo.frame(stand, &stand.physical));
     Shots {
-        scene: Scene {
-            plates: plates.collect(),
-            ..scene(&stands[0], &frames[0])
-        },
+        scene: scene(&stands[0], &frames[0]).with_plates(plates.collect()),
         stands,
         frames,
     }

@@ -1,7 +1,7 @@
 //! What the model does not know stays as it was photographed: something on the table, and a light that no list names.
 
 use app_core::preset::Preset;
-use app_core::scene::{Image, Light, Scene};
+use app_core::scene::{Image, Light};
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use reference::model::{ReceiverPoint, centre_px};
@@ -103,10 +103,7 @@ fn the_shadow_of_a_light_that_is_not_listed_stays() {
     // More than a third of the light: what is fainter counts in part.
     photo.solution.receivers[0].direct_fractions.swap(0, 1);
     let (plate, frame) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
-    let one_listed = Scene {
-        lights: stand.setup.lights[..1].to_vec(),
-        ..scene(&stand, &plate)
-    };
+    let one_listed = scene(&stand, &plate).with_lights(stand.setup.lights[..1].to_vec());
     let mut core = core_on(one_listed, Preset::Balanced).unwrap();
     core.frame(&input(&stand, &frame)).unwrap();
     let region = stand.region(&stand.whole_image());

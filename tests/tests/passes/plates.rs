@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
-use app_core::scene::{Camera, Image, Plate, Scene};
+use app_core::scene::{Camera, Image, Plate};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
@@ -39,10 +39,7 @@ fn photo(stand: &Stand) -> Photo {
 /// The plate of a frame from `HERE`, its region, and the core that made it.
 fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec4>, PixelRect, SharedCore) {
     let frame = photo(stand).frame(stand, &stand.physical);
-    let with_plates = Scene {
-        plates,
-        ..scene(stand, &frame)
-    };
+    let with_plates = scene(stand, &frame).with_plates(plates);
     let mut core = core_on(with_plates, preset).unwrap();
     let rect = core.frame(&input(stand, &frame)).unwrap().region.unwrap();
     let plate = raster(&core.read_map(Map::Plate).unwrap().unwrap());
@@ -261,10 +258,7 @@ fn a_narrow_gap_between_plates_is_reported() {
         cameras.map(plate).to_vec()
     };
     let frame = photo(&here).frame(&here, &here.physical);
-    let scene_with = |plates| Scene {
-        plates,
-        ..scene(&here, &frame)
-    };
+    let scene_with = |plates| scene(&here, &frame).with_plates(plates);
     let together = scene_with(plates_apart_by(-HALF_GAP_PX, 0.0));
     let mut core = core_on(together.clone(), Preset::Balanced).unwrap();
     // Wherever it lies between the pixels that are looked at.

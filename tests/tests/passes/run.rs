@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use app_core::core::CoreError;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
-use app_core::scene::{Image, Plate, Scene, Uncertainty};
+use app_core::scene::{Image, Plate, Scene};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::plan::Plan;
@@ -137,32 +137,21 @@ impl Run {
 
 /// A frame of a stand, from its camera.
 pub(crate) fn input(stand: &Stand, image: &Arc<Image>) -> FrameInput {
-    FrameInput {
-        image: Arc::clone(image).into(),
-        effect: 1.0,
-        camera: stand.camera,
-        exposure: 1.0,
-        world_from_object: stand.world_from_object,
-        lights: None,
-        light_estimate: None,
-        shown_pose: stand.shown_pose.clone(),
-    }
+    FrameInput::new(Arc::clone(image), stand.camera, stand.world_from_object)
+        .with_shown_pose(stand.shown_pose.clone())
 }
 
 pub(crate) fn scene(stand: &Stand, plate: &Arc<Image>) -> Scene {
-    Scene {
-        name: stand.setup.name.to_owned(),
-        width_px: stand.setup.image_px.x,
-        height_px: stand.setup.image_px.y,
-        toy: Arc::clone(&stand.toy),
-        world_from_object: stand.world_from_object,
-        physical_pose: stand.physical_pose.clone(),
-        receivers: stand.receivers.clone(),
-        lights: stand.setup.lights.to_vec(),
-        plates: vec![plate_of(stand, plate)],
-        probe: None,
-        uncertainty: Uncertainty::default(),
-    }
+    Scene::new(
+        stand.setup.image_px.to_array(),
+        Arc::clone(&stand.toy),
+        stand.world_from_object,
+        stand.receivers.clone(),
+    )
+    .with_name(stand.setup.name)
+    .with_physical_pose(stand.physical_pose.clone())
+    .with_lights(stand.setup.lights.to_vec())
+    .with_plates(vec![plate_of(stand, plate)])
 }
 
 /// A plate that the stand's camera took.

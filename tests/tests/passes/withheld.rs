@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
-use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
@@ -26,10 +25,7 @@ const MAGENTA: [u8; 4] = [255, 0, 255, 255];
 
 /// Makes the physical pose from a photograph.
 fn rebuilt(core: &mut Core, stand: &Stand, photograph: &Arc<Image>) -> Image {
-    let input = FrameInput {
-        shown_pose: stand.physical_pose.clone(),
-        ..input(stand, photograph)
-    };
+    let input = input(stand, photograph).with_shown_pose(stand.physical_pose.clone());
     core.frame(&input).unwrap();
     core.read_picture().unwrap()
 }

@@ -144,42 +144,30 @@ fn later(input: &FrameInput) -> FrameInput {
     let Pose::Clip { clip, time_secs } = input.shown_pose else {
         panic!("the session shows a clip");
     };
-    FrameInput {
-        shown_pose: Pose::Clip {
-            clip,
-            time_secs: time_secs + 0.1,
-        },
-        ..input.clone()
-    }
+    input.clone().with_shown_pose(Pose::Clip {
+        clip,
+        time_secs: time_secs + 0.1,
+    })
 }
 
 fn photographed_again(input: &FrameInput) -> FrameInput {
-    FrameInput {
-        image: as_planes(input.image.rgba()),
-        ..input.clone()
-    }
+    input.clone().with_image(as_planes(input.image.rgba()))
 }
 
 fn from_nearby(input: &FrameInput) -> FrameInput {
-    FrameInput {
-        camera: Camera {
-            world_from_camera: input.camera.world_from_camera
-                * DMat4::from_translation(DVec3::new(0.0, 0.0, -0.02)),
-            ..input.camera
-        },
-        ..input.clone()
-    }
+    input.clone().with_camera(Camera {
+        world_from_camera: input.camera.world_from_camera
+            * DMat4::from_translation(DVec3::new(0.0, 0.0, -0.02)),
+        ..input.camera
+    })
 }
 
 fn from_beside(input: &FrameInput) -> FrameInput {
-    FrameInput {
-        camera: Camera {
-            world_from_camera: DMat4::from_translation(DVec3::new(0.002, 0.0, 0.001))
-                * input.camera.world_from_camera,
-            ..input.camera
-        },
-        ..input.clone()
-    }
+    input.clone().with_camera(Camera {
+        world_from_camera: DMat4::from_translation(DVec3::new(0.002, 0.0, 0.001))
+            * input.camera.world_from_camera,
+        ..input.camera
+    })
 }
 
 fn session() -> Capture {

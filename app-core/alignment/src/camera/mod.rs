@@ -14,15 +14,16 @@ mod step;
 
 use std::sync::Arc;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::picture::Mask;
 use super::receivers::nearest;
 use super::report::CameraAlignment;
+use crate::rigid_motion::RigidMotion;
 use app_scene::scene::{Camera, Image, Plate, PoseUncertainty, Receiver, check};
 use brightness::Brightness;
 use points::{Point, points_of};
-use step::{Rigid, Search};
+use step::Search;
 
 /// Plates that a camera is aligned to: those taken nearest to it.
 const N_PLATES: usize = 2;
@@ -151,7 +152,8 @@ impl Finder {
                     moved_px: search.moved_px(&found),
                     moved_m: found.moved_m(),
                     turned_rad: found.turned_rad(),
-                    losses: [Rigid::default(), found].map(|motion| search.loss(&motion)),
+                    losses: [RigidMotion::about_camera(DVec3::ZERO), found]
+                        .map(|motion| search.loss(&motion)),
                 });
             }
             motion = Some(found);

@@ -1,14 +1,11 @@
 //! Gauss-Newton steps on a camera's six numbers.
 
-use glam::{DMat4, DQuat, DVec2, DVec3};
-use nalgebra::{SMatrix, SVector};
+use glam::{DVec2, DVec3};
 
 use super::brightness::Plane;
 use super::points::Point;
+use crate::rigid_motion::{Matrix6, RigidMotion, Vector6, step_of};
 use app_scene::scene::{Camera, Intrinsics, PoseUncertainty};
-
-type Vector6 = SVector<f64, 6>;
-type Matrix6 = SMatrix<f64, 6, 6>;
 
 /// What a tracker is never off by, in radians and metres: holds back what the texture does not tell.
 const TRACKED_RAD: f64 = 0.1;
@@ -24,70 +21,6 @@ const N_STARTS: usize = 8;
 const START_STRIDE: usize = 4;
 /// Steps that move points by less, in root mean square pixels, are the last.
 const LAST_STEP_PX: f64 = 1e-3;
-
-/// A rotation about the camera, then a translation, of points in camera space.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rigid {
-    rotation: DQuat,
-    translation: DVec3,
-}
-
-impl Default for Rigid {
-    fn default() -> Self {
-        Self {
-            rotation: DQuat::IDENTITY,
-            translation: DVec3::ZERO,
-        }
-    }
-}
-
-impl Rigid {
-    pub(super) fn matrix(&self) -> DMat4 {
-        DMat4::from_rotation_translation(self.rotation, self.translation)
-    }
-
-    pub(super) fn moved_m(&self) -> f64 {
-        self.translation.length()
-    }
-
-    pub(super) fn turned_rad(&self) -> f64 {
-        self.rotation.to_scaled_axis().length()
-    }
-
-    fn apply(&self, point: DVec3) -> DVec3 {
-        self.rotation * point + self.translation
-    }
-
-    fn then(&self, step: &Vector6) -> Self {
-        let turn = DQuat::from_scaled_axis(DVec3::new(step[0], step[1], step[2]));
-        Self {
-            rotation: (turn * self.rotation).normalize(),
-            translation: turn * self.translation + DVec3::new(step[3], step[4], step[5]),
-        }
-    }
-
-    /// The nearest motion that goes no farther than a pose is uncertain.
-    fn within(self, uncertainty: &PoseUncertainty) -> Self {
-        let mut within = self;
-        if let Some(most_m) = uncertainty.position_m {
-            within.translation = within.translation.clamp_length_max(most_m);
-        }
-        let turn = within.rotation.to_scaled_axis();
-        if let Some(most_rad) = uncertainty
-            .rotation_rad
-            .filter(|most_rad| turn.length() > *most_rad)
-        {
-            within.rotation = DQuat::from_scaled_axis(turn.clamp_length_max(most_rad));
-        }
-        within
-    }
-
-    /// As numbers: rotation vector, then translation.
-    fn numbers(&self) -> Vector6 {
-        let (turn, shift) = (self.rotation.to_scaled_axis(), self.translation);
-        Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
-    }
-}
 
 /// One level of a photograph, and the points to be found in it.
 pub(super) struct Search<'a> {
@@ -130,26 +63,24 @@ impl<'a> Search<'a> {
 
     /// No motion, and turns that bring the picture nearer: a tracker that jumps, or a hand that shakes, turns the camera more than it
     /// shows otherwise.
-    pub(super) fn starts(&self) -> Vec<Rigid> {
+    pub(super) fn starts(&self) -> Vec<RigidMotion> {
         let n_turns = self.n_turns();
         let turns = -n_turns..=n_turns;
         let all = turns
             .clone()
             .flat_map(|up| turns.clone().map(move |side| (up, side)));
-        let mut tried: Vec<(f64, Rigid)> = all
+        let mut tried: Vec<(f64, RigidMotion)> = all
             .map(|(up, side)| {
                 let turn = TURN_RAD * DVec3::new(f64::from(up), f64::from(side), 0.0);
-                let motion = Rigid {
-                    rotation: DQuat::from_scaled_axis(turn),
-                    ..Rigid::default()
-                };
-                let motion = motion.within(&self.uncertainty);
+                let motion = RigidMotion::about_camera(turn).within(&self.uncertainty);
                 (self.loss_of(&motion, START_STRIDE), motion)
             })
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let best = tried.into_iter().take(N_STARTS).map(|(_, motion)| motion);
-        std::iter::once(Rigid::default()).chain(best).collect()
+        std::iter::once(RigidMotion::about_camera(DVec3::ZERO))
+            .chain(best)
+            .collect()
     }
 
     /// Of turns to try in each direction.
@@ -164,20 +95,20 @@ impl<'a> Search<'a> {
     }
 
     /// The best of what is found from several starts.
-    pub(super) fn run_from(&self, starts: &[Rigid], n_rounds: usize) -> Rigid {
+    pub(super) fn run_from(&self, starts: &[RigidMotion], n_rounds: usize) -> RigidMotion {
         let found = starts.iter().map(|start| self.run(*start, n_rounds));
         let best = found.min_by(|a, b| self.loss(a).total_cmp(&self.loss(b)));
-        best.unwrap_or_default()
+        best.unwrap_or(RigidMotion::about_camera(DVec3::ZERO))
     }
 
     /// Steps until they are small, `n_rounds` at most.
-    pub(super) fn run(&self, mut motion: Rigid, n_rounds: usize) -> Rigid {
+    pub(super) fn run(&self, mut motion: RigidMotion, n_rounds: usize) -> RigidMotion {
         for _ in 0..n_rounds {
             let before = motion;
             let Some(step) = self.step(&motion) else {
                 return motion;
             };
-            motion = motion.then(&step).within(&self.uncertainty);
+            motion = motion.then_about_camera(&step).within(&self.uncertainty);
             if self.between_px(&before, &motion) < LAST_STEP_PX {
                 break;
             }
@@ -186,12 +117,12 @@ impl<'a> Search<'a> {
     }
 
     /// Mean loss of Geman and McClure over all points; one that meets no pixel counts as far off.
-    pub(super) fn loss(&self, motion: &Rigid) -> f64 {
+    pub(super) fn loss(&self, motion: &RigidMotion) -> f64 {
         self.loss_of(motion, 1)
     }
 
     /// The same of every `stride`th point.
-    fn loss_of(&self, motion: &Rigid, stride: usize) -> f64 {
+    fn loss_of(&self, motion: &RigidMotion, stride: usize) -> f64 {
         let met = self.met(motion, stride);
         let gains = self.gains(&met);
         let errors = met.iter().map(|met| {
@@ -204,12 +135,12 @@ impl<'a> Search<'a> {
     }
 
     /// Root mean square that a motion moves points by, in pixels of the picture.
-    pub(super) fn moved_px(&self, motion: &Rigid) -> f64 {
+    pub(super) fn moved_px(&self, motion: &RigidMotion) -> f64 {
         self.photograph
-            .picture_px(self.between_px(&Rigid::default(), motion))
+            .picture_px(self.between_px(&RigidMotion::about_camera(DVec3::ZERO), motion))
     }
 
-    fn between_px(&self, a: &Rigid, b: &Rigid) -> f64 {
+    fn between_px(&self, a: &RigidMotion, b: &RigidMotion) -> f64 {
         let points = self.templates.iter().flatten();
         let moved = points.filter_map(|point| {
             let [a, b] = [a, b].map(|motion| self.intrinsics.pixel_of(motion.apply(point.in_camera)));
@@ -219,7 +150,7 @@ impl<'a> Search<'a> {
         if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
     }
 
-    fn met(&self, motion: &Rigid, stride: usize) -> Vec<Met> {
+    fn met(&self, motion: &RigidMotion, stride: usize) -> Vec<Met> {
         let templates = self.templates.iter().enumerate();
         let points = templates.flat_map(|(index, points)| points.iter().map(move |point| (index, point)));
         let met = points.step_by(stride).filter_map(|(template, point)| {
@@ -228,19 +159,18 @@ impl<'a> Search<'a> {
             Some(Met {
                 template,
                 brightness: [point.brightness, value],
-                row: self.row(moved, gradient),
+                row: motion.row(moved, self.per_m(moved, gradient)),
             })
         });
         met.collect()
     }
 
-    fn row(&self, point: DVec3, gradient: DVec2) -> Vector6 {
+    /// Change of a pixel's brightness for each metre that its point moves along each axis.
+    fn per_m(&self, point: DVec3, gradient: DVec2) -> DVec3 {
         let k = &self.intrinsics;
         let depth_m = -point.z;
         let (across, up) = (gradient.x * k.fx_px, -gradient.y * k.fy_px);
-        let per_m = DVec3::new(across, up, (across * point.x + up * point.y) / depth_m) / depth_m;
-        let turn = point.cross(per_m);
-        Vector6::new(turn.x, turn.y, turn.z, per_m.x, per_m.y, per_m.z)
+        DVec3::new(across, up, (across * point.x + up * point.y) / depth_m) / depth_m
     }
 
     /// Exposure of the photograph over that of each plate, in square roots: the median over the points.
@@ -263,7 +193,7 @@ impl<'a> Search<'a> {
     }
 
     /// None where nothing is met.
-    fn step(&self, motion: &Rigid) -> Option<Vector6> {
+    fn step(&self, motion: &RigidMotion) -> Option<Vector6> {
         let met = self.met(motion, 1);
         let gains = self.gains(&met);
         let turn_rad = self
@@ -274,7 +204,7 @@ impl<'a> Search<'a> {
             .uncertainty
             .position_m
             .map_or(TRACKED_M, |most| most.max(TRACKED_M));
-        let prior = Vector6::new(turn_rad, turn_rad, turn_rad, move_m, move_m, move_m)
+        let prior = step_of(DVec3::splat(turn_rad), DVec3::splat(move_m))
             .map(|deviation| (self.robust / deviation).powi(2));
         let mut information = Matrix6::from_diagonal(&prior);
         let mut gradient = -prior.component_mul(&motion.numbers());

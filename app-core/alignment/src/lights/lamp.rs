@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 
-use app_scene::geometry::light_points::{outline_radius_m, vogel_disc};
+use app_scene::geometry::disc::vogel_disc;
 use app_scene::scene::Light;
 
 /// Numbers of a lamp: two angles, its nearness, and its spread.
@@ -26,52 +26,24 @@ pub(super) struct Lamp {
 impl Lamp {
     /// None for a light around the middle of the toy.
     pub(super) fn new(light: &Light, camera_from_world: &DMat4, toy: DVec3) -> Option<Self> {
-        let (to, radius_m) = match *light {
-            Light::Sphere {
-                position_in_world,
-                radius_m,
-            } => (
-                camera_from_world.transform_point3(position_in_world) - toy,
-                Some(radius_m),
-            ),
-            Light::Directional {
-                direction_to_light_in_world,
-                ..
-            } => (
-                camera_from_world.transform_vector3(direction_to_light_in_world),
-                None,
-            ),
-        };
-        let distance_m = to.length();
-        let spread = match *light {
-            Light::Directional {
-                angular_radius_rad, ..
-            } => angular_radius_rad.tan(),
-            Light::Sphere { radius_m, .. } if radius_m < distance_m => {
-                outline_radius_m(radius_m, distance_m) / distance_m
-            }
-            Light::Sphere { .. } => return None,
-        };
+        let in_camera = light.moved(camera_from_world);
         Some(Self {
-            direction: to.try_normalize()?,
-            nearness: radius_m.map_or(0.0, |_| distance_m.recip()),
-            spread,
+            direction: in_camera.vector_from(toy).try_normalize()?,
+            nearness: in_camera.distance_m_from(toy).map_or(0.0, f64::recip),
+            spread: in_camera.slope_from(toy)?,
         })
     }
 
     /// Back in the world.
     pub(super) fn light(&self, world_from_camera: &DMat4, toy: DVec3) -> Light {
+        let angular_radius_rad = self.spread.atan();
         if self.is_far() {
-            Light::Directional {
-                direction_to_light_in_world: world_from_camera.transform_vector3(self.direction).normalize(),
-                angular_radius_rad: self.spread.atan(),
-            }
+            let direction = world_from_camera.transform_vector3(self.direction).normalize();
+            Light::directional(direction, angular_radius_rad)
         } else {
             let distance_m = self.nearness.recip();
-            Light::Sphere {
-                position_in_world: world_from_camera.transform_point3(toy + distance_m * self.direction),
-                radius_m: self.spread.atan().sin() * distance_m,
-            }
+            let position = world_from_camera.transform_point3(toy + distance_m * self.direction);
+            Light::sphere(position, angular_radius_rad.sin() * distance_m)
         }
     }
 

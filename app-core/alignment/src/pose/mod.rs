@@ -16,11 +16,12 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
 use super::report::PoseDeviation;
+use super::rigid_motion::{Matrix6, RigidMotion, Vector6};
 use super::shape::Shape;
 use app_scene::scene::{Intrinsics, PoseUncertainty};
 use contour::{Element, contour};
 use matte::Band;
-use motion::{Held, Matrix6, Measured, Motion, Vector6, solve};
+use motion::{Held, Measured, solve};
 use odds::Odds;
 
 pub(super) use resting::find_resting;
@@ -122,7 +123,7 @@ impl Found {
 /// seen.
 pub(super) fn find(shape: &Shape, pyramid: &Pyramid, uncertainty: &PoseUncertainty) -> Option<Found> {
     let mut search = Search::new(shape, pyramid, uncertainty);
-    let start = Motion::none(shape.centre, shape.radius_m);
+    let start = RigidMotion::none(shape.centre, shape.radius_m);
     let given = search.fit(&start)?;
     let mut motion = start;
     if given.is_far() {
@@ -143,7 +144,7 @@ pub(super) enum Start {
 /// The motion to the pose that fits best, and the distance of its outline in pixels; none where too little of that is seen.
 pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(DMat4, f64)> {
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
-    let mut motion = Motion::none(shape.centre, shape.radius_m);
+    let mut motion = RigidMotion::none(shape.centre, shape.radius_m);
     let bands = match start {
         Start::Near => &FINE[N_WIDE_BANDS..],
         Start::Given => {
@@ -214,14 +215,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn outline(&mut self, motion: &Motion, level: &Level) -> (Coverage, Vec<Element>) {
-        let points = motion.apply(&self.shape.points);
+    fn outline(&mut self, motion: &RigidMotion, level: &Level) -> (Coverage, Vec<Element>) {
+        let points = self.shape.points.iter().map(|point| motion.apply(*point));
+        let points: Vec<DVec3> = points.collect();
         let posed = (&points[..], self.shape);
         outline(&mut self.raster, posed, &level.intrinsics, level.frame.size_px)
     }
 
     /// The pieces that can be measured, and how many of all these are.
-    fn matte(&mut self, motion: &Motion, band: Band) -> Option<(Vec<Measured>, f64)> {
+    fn matte(&mut self, motion: &RigidMotion, band: Band) -> Option<(Vec<Measured>, f64)> {
         let level = self.pyramid.level(0);
         let (coverage, elements) = self.outline(motion, level);
         let measured = matte::measure(level, &coverage, &elements, band);
@@ -230,7 +232,7 @@ impl<'a> Search<'a> {
         (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))
     }
 
-    fn fit(&mut self, motion: &Motion) -> Option<Fit> {
+    fn fit(&mut self, motion: &RigidMotion) -> Option<Fit> {
         let (fine, share) = self.matte(motion, FINEST)?;
         let (wide, _) = self.matte(motion, WIDE)?;
         Some(Fit {
@@ -241,11 +243,16 @@ impl<'a> Search<'a> {
     }
 
     /// Freely, or held to a plane.
-    fn coarse(&mut self, motion: Motion, held: Option<&Held>) -> Motion {
+    fn coarse(&mut self, motion: RigidMotion, held: Option<&Held>) -> RigidMotion {
         self.by_lines(motion, held, &Self::COARSE)
     }
 
-    fn by_lines(&mut self, mut motion: Motion, held: Option<&Held>, rounds: &[(usize, i32)]) -> Motion {
+    fn by_lines(
+        &mut self,
+        mut motion: RigidMotion,
+        held: Option<&Held>,
+        rounds: &[(usize, i32)],
+    ) -> RigidMotion {
         for (level, reach_px) in rounds.iter().copied() {
             let level = self.pyramid.level(level);
             let (coverage, elements) = self.outline(&motion, level);
@@ -263,7 +270,7 @@ impl<'a> Search<'a> {
         motion
     }
 
-    fn fine(&mut self, mut motion: Motion, bands: &[(Band, usize)]) -> Option<Converged> {
+    fn fine(&mut self, mut motion: RigidMotion, bands: &[(Band, usize)]) -> Option<Converged> {
         let mut last = None;
         for (band, n_rounds) in bands {
             for _ in 0..*n_rounds {
@@ -285,7 +292,7 @@ impl<'a> Search<'a> {
     }
 
     /// With all six freedoms, in all bands.
-    fn freed(&mut self, given: Fit, motion: Motion) -> Option<Found> {
+    fn freed(&mut self, given: Fit, motion: RigidMotion) -> Option<Found> {
         let Converged {
             motion,
             information,
@@ -303,7 +310,7 @@ impl<'a> Search<'a> {
 
 /// Where the search came to rest.
 struct Converged {
-    motion: Motion,
+    motion: RigidMotion,
     information: Matrix6,
     mean_weight: f64,
 }

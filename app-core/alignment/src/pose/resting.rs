@@ -8,9 +8,10 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, IVec2};
 
-use super::motion::{Held, Motion};
+use super::motion::Held;
 use super::{Found, Search};
 use crate::picture::Pyramid;
+use crate::rigid_motion::RigidMotion;
 use crate::shape::Shape;
 use app_scene::scene::PoseUncertainty;
 
@@ -37,10 +38,10 @@ pub(crate) fn find_resting(
     uncertainty: &PoseUncertainty,
 ) -> Option<Found> {
     let mut search = Search::new(shape, pyramid, uncertainty);
-    let start = Motion::none(shape.centre, shape.radius_m);
+    let start = RigidMotion::none(shape.centre, shape.radius_m);
     let given = search.fit(&start)?;
     let held = Held::to_plane(normal);
-    let mut starts: Vec<(f64, Motion)> = Vec::new();
+    let mut starts: Vec<(f64, RigidMotion)> = Vec::new();
     for mut motion in search.followed(&start, &held) {
         for _ in 0..N_ROUNDS {
             motion = search.coarse(motion, Some(&held));
@@ -58,7 +59,7 @@ pub(crate) fn find_resting(
 
 impl Search<'_> {
     /// Starts that are worth to be followed: all, where they are few.
-    fn followed(&mut self, start: &Motion, held: &Held) -> Vec<Motion> {
+    fn followed(&mut self, start: &RigidMotion, held: &Held) -> Vec<RigidMotion> {
         let radius_m = self.shape.radius_m;
         let turns: Vec<f64> = turns(self.uncertainty.rotation_rad.unwrap_or(MOST_TURN_RAD)).collect();
         let shifts = shifts(self.uncertainty.position_m.unwrap_or(0.0), SHIFT * radius_m);
@@ -67,11 +68,11 @@ impl Search<'_> {
             let turned = turns.iter().map(move |turn| held.turn(*turn, radius_m));
             turned.map(move |turn| shifted.then(&turn))
         });
-        let starts: Vec<Motion> = starts.collect();
+        let starts: Vec<RigidMotion> = starts.collect();
         if starts.len() <= N_FOLLOWED {
             return starts;
         }
-        let mut ranked: Vec<(f64, Motion)> = Vec::new();
+        let mut ranked: Vec<(f64, RigidMotion)> = Vec::new();
         for start in starts {
             let motion = self.by_lines(start, Some(held), &Self::COARSE[..N_FIRST_ROUNDS]);
             if let Some(fit) = self.fit(&motion) {

@@ -6,7 +6,6 @@ use super::error::ProbeError;
 use super::look::look;
 use super::near_light::{Meeting, Ray, agree, meet};
 use super::{Form, ProbeView, Rejected, SeenLight, Sighting};
-use app_scene::scene::check;
 use app_scene::scene::{Light, Probe};
 
 /// Earlier views whose rays are kept.
@@ -111,16 +110,12 @@ impl Track {
         }
         let meeting = meet(&rays);
         let angular_radius_rad = seen.angular_radius_rad.min(WIDEST_RAD);
-        let near = meeting.filter(Meeting::is_told).map(|meeting| Light::Sphere {
-            position_in_world: meeting.position,
-            radius_m: meeting.distance_m * angular_radius_rad.sin(),
-        });
-        let near = near.filter(|light| check::light("light", light).is_ok());
+        let near = meeting
+            .filter(Meeting::is_told)
+            .map(|meeting| Light::sphere(meeting.position, meeting.distance_m * angular_radius_rad.sin()));
+        let near = near.filter(|light| light.check("light").is_ok());
         TrackedLight {
-            light: near.unwrap_or(Light::Directional {
-                direction_to_light_in_world: seen.direction_in_world,
-                angular_radius_rad,
-            }),
+            light: near.unwrap_or(Light::directional(seen.direction_in_world, angular_radius_rad)),
             seen: *seen,
             distance_m: near.and(meeting).map(|meeting| meeting.distance_m),
             nearness_deviation_per_m: meeting

@@ -70,10 +70,7 @@ impl<'a> Trials<'a> {
             .next()
             .ok_or(Unseen)?;
         let given = plate.clone();
-        let mut scene = Scene {
-            plates: vec![given.clone()],
-            ..scene.clone()
-        };
+        let mut scene = scene.clone().with_plates(vec![given.clone()]);
         let mut cameras = Finder::default();
         let taken = unknown.taken(0.0, &given, input).ok_or(Unseen)?;
         let (photograph, camera) = photograph(&mut scene, &mut cameras, taken);
@@ -218,7 +215,7 @@ fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photogr
             camera.world_from_camera = found.world_from_camera;
         }
     }
-    let seen = FrameInput { camera, ..frame };
+    let seen = frame.with_camera(camera);
     (Photograph::new(scene, &seen, None), camera)
 }
 

@@ -155,21 +155,18 @@ impl Place {
             return input;
         };
         let placed_from_now = self.world_from_anchor * now_from_anchor.inverse();
-        FrameInput {
-            camera: moved(&input.camera, &placed_from_now),
-            ..input
-        }
+        let camera = moved(&input.camera, &placed_from_now);
+        input.with_camera(camera)
     }
 
     /// The input as it was corrected.
     pub(super) fn corrected(&self, input: FrameInput) -> FrameInput {
         let input = self.anchored(input);
-        FrameInput {
-            camera: moved(&input.camera, &self.world_from_anchored),
-            world_from_object: self.world_from_object,
-            lights: self.lights.clone(),
-            ..input
-        }
+        let camera = moved(&input.camera, &self.world_from_anchored);
+        input
+            .with_camera(camera)
+            .with_world_from_object(self.world_from_object)
+            .with_lights(self.lights.clone())
     }
 
     /// An alignment of `input`, where it is time for one.

@@ -11,7 +11,7 @@ use super::table::as_told_now;
 use app_alignment::plate_taker::{PlateShot, PlateStep};
 use app_scene::camera_frame::{Arrival, CameraFrame};
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Pose, Receiver, Scene, Surface, Uncertainty};
+use app_scene::scene::{Receiver, Scene, Surface};
 
 impl App {
     pub(super) fn frame(&mut self, frame: CameraFrame, commands: &mut Vec<ShellCommand>) {
@@ -105,25 +105,19 @@ impl App {
         let (Some(table), Some(ghost), Some(latest)) = (&self.table, &self.ghost, &self.latest) else {
             return;
         };
-        let [width_px, height_px] = latest.image.size_px();
-        let scene = Scene {
-            name: String::new(),
-            width_px,
-            height_px,
-            toy: Arc::clone(&self.toy),
-            world_from_object: ghost.world_from_object(),
-            physical_pose: Pose::Authored,
-            receivers: vec![Receiver {
+        let scene = Scene::new(
+            latest.image.size_px(),
+            Arc::clone(&self.toy),
+            ghost.world_from_object(),
+            vec![Receiver {
                 name: "table".to_owned(),
                 world_from_plane: table.world_from_plane,
                 half_extent_m: table.half_extent_m,
                 surface: Surface::Textured,
             }],
-            lights: Vec::new(),
-            plates: self.plates.clone(),
-            probe: self.lens.probe(),
-            uncertainty: Uncertainty::default(),
-        };
+        )
+        .with_plates(self.plates.clone())
+        .with_probe(self.lens.probe());
         self.n_places += 1;
         self.wants_anchor = true;
         self.place = Some(Place::new(self.n_places, scene));
@@ -155,16 +149,13 @@ impl App {
             (Some(amount), Some(plate)) => amount / plate,
             _ => 1.0,
         };
-        Some(FrameInput {
-            image: latest.image.clone(),
-            camera: latest.camera().or(self.camera)?,
-            exposure,
-            world_from_object: place.scene.world_from_object,
-            lights: None,
-            light_estimate: latest.light_estimate,
-            shown_pose: self.playback.pose(),
-            effect,
-        })
+        let camera = latest.camera().or(self.camera)?;
+        let input = FrameInput::new(latest.image.clone(), camera, place.scene.world_from_object)
+            .with_exposure(exposure)
+            .with_light_estimate(latest.light_estimate)
+            .with_shown_pose(self.playback.pose())
+            .with_effect(effect);
+        Some(input)
     }
 
     pub(super) fn aligned(&mut self, done: Option<Box<AlignedJob>>) {

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3};
 
-use app_alignment::faces::Faces;
+use app_scene::geometry::edges::Faces;
 use app_scene::scene::{Camera, Pose};
 use app_scene::toy::{PosedMesh, Toy};
 

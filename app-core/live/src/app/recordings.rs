@@ -8,8 +8,6 @@ use super::notice::Notice;
 use super::recorder::Recorder;
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
-use app_scene::frame::FrameInput;
-use app_scene::scene::Scene;
 use app_session::recording::{Ending, Limits, LiveFrame, RecordingJob};
 
 impl App {
@@ -51,10 +49,7 @@ impl App {
             // A platform may estimate whatever it likes; what no reader takes is left out.
             let estimate = input.light_estimate;
             let estimate = estimate.filter(|estimate| estimate.check("light_estimate").is_ok());
-            let input = FrameInput {
-                light_estimate: estimate,
-                ..input
-            };
+            let input = input.with_light_estimate(estimate);
             input.check().ok()?;
             Some(LiveFrame {
                 image: input.image.kept(),

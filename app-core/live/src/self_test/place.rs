@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use app_scene::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarImage, Planes, YcbcrEncoding};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::color::srgb_from_linear;
-use app_scene::scene::{
-    Camera, Image, Intrinsics, Light, Plate, Pose, Receiver, Scene, Surface, Uncertainty,
-};
+use app_scene::scene::{Camera, Image, Intrinsics, Light, Plate, Pose, Receiver, Scene, Surface};
 use app_scene::toy::{NodePose, Toy, ToyError, Trs};
 
 /// Width and height of the picture.
@@ -62,41 +60,25 @@ pub(super) fn place() -> Result<(Scene, FrameInput), ToyError> {
         morph_weights: Vec::new(),
     };
     let camera = camera();
-    let [width_px, height_px] = SIZE_PX;
-    let scene = Scene {
-        name: "self-test".to_owned(),
-        width_px,
-        height_px,
+    let scene = Scene::new(
+        SIZE_PX,
         toy,
-        world_from_object: DMat4::IDENTITY,
-        physical_pose: Pose::Authored,
-        receivers: vec![Receiver {
+        DMat4::IDENTITY,
+        vec![Receiver {
             name: "table".to_owned(),
             world_from_plane: DMat4::IDENTITY,
             half_extent_m: DVec2::splat(2.0),
             surface: Surface::Textured,
         }],
-        lights: vec![Light::Directional {
-            direction_to_light_in_world: to_light(),
-            angular_radius_rad: 0.0,
-        }],
-        plates: vec![Plate {
-            camera,
-            image: Arc::new(photograph(&camera, &[])),
-        }],
-        probe: None,
-        uncertainty: Uncertainty::default(),
-    };
-    let input = FrameInput {
-        image: in_planes(photograph(&camera, &SOLIDS)),
+    )
+    .with_name("self-test")
+    .with_lights(vec![Light::directional(to_light(), 0.0)])
+    .with_plates(vec![Plate {
         camera,
-        exposure: 1.0,
-        world_from_object: DMat4::IDENTITY,
-        lights: None,
-        light_estimate: None,
-        shown_pose: Pose::Nodes(Arc::new(shown)),
-        effect: 1.0,
-    };
+        image: Arc::new(photograph(&camera, &[])),
+    }]);
+    let input = FrameInput::new(in_planes(photograph(&camera, &SOLIDS)), camera, DMat4::IDENTITY)
+        .with_shown_pose(Pose::Nodes(Arc::new(shown)));
     Ok((scene, input))
 }
 

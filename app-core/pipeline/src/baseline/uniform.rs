@@ -8,7 +8,7 @@ use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
 use crate::preset::BaselineSettings;
 use app_scene::geometry::bounds::Bounds;
-use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Surface};
+use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS, Surface};
 
 /// WGSL part of the uniform.
 pub(crate) const BASELINE: Mirrors = mirrors!("common/baseline", structs: [Baseline]);
@@ -53,7 +53,7 @@ impl<'a> Scene<'a> {
 pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &BaselineSettings) -> Baseline {
     let mut light_radii = [0.0; MAX_LIGHTS];
     for (slot, light) in light_radii.iter_mut().zip(layout.lights) {
-        *slot = disc_radius(light);
+        *slot = narrowed(light.radius());
     }
     let mut tallest_m = [0.0; MAX_RECEIVERS];
     let mut textured_receivers = 0;
@@ -87,16 +87,6 @@ fn ratio_per_light(of_all: f32, n_lights: usize) -> f32 {
     #[allow(clippy::cast_precision_loss, reason = "at most MAX_LIGHTS")]
     let n_lights = n_lights.max(1) as f32;
     of_all.powf(n_lights.recip())
-}
-
-/// Metres for a sphere, slope for a directional light.
-fn disc_radius(light: &Light) -> f32 {
-    narrowed(match *light {
-        Light::Sphere { radius_m, .. } => radius_m,
-        Light::Directional {
-            angular_radius_rad, ..
-        } => angular_radius_rad.tan(),
-    })
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "a shader takes no more")]

@@ -13,6 +13,7 @@ pub use warning::{Mismatch, Outlier, UnseenShadow, Warning};
 
 /// The report of one frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,

@@ -6,7 +6,6 @@ use crate::geometry::extent::NEAR_M;
 use crate::geometry::reach::shadow_of;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
-use app_scene::geometry::light_points::light_in_plane;
 
 /// Below this distance two cameras count as the same: at the sharpest edge, of 200 codes a pixel, two codes.
 const SAME_VIEW_PX: f64 = 0.01;
@@ -55,7 +54,7 @@ fn images(view: &View, layout: &SceneLayout<'_>, in_world: DVec3) -> Vec<DVec3> 
         let in_plane = plane_from_world.transform_point3(in_world);
         let lights = layout.lights.iter();
         lights.map(move |light| {
-            let shadow = shadow_of(in_plane, light_in_plane(light, &plane_from_world));
+            let shadow = shadow_of(in_plane, light.centre_in(&plane_from_world));
             if in_plane.y < 0.0 || shadow.z <= 0.0 {
                 return DVec3::ZERO;
             }

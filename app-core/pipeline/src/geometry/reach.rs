@@ -12,7 +12,6 @@ use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use app_scene::geometry::bounds::Bounds;
-use app_scene::geometry::light_points::light_corners;
 
 /// Occlusion of ambient light by the toy counts out to this many toy heights from its footprint.
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
@@ -62,7 +61,7 @@ impl<'a> Reach<'a> {
             let target = plane_from_anchor.transform_point3(toy.centre());
             let middle = DVec2::new(target.x, target.z);
             let lights = layout.lights.iter();
-            let corners = lights.map(|light| light_corners(light, &plane_from_world, target));
+            let corners = lights.map(|light| light.corners_in(&plane_from_world, target));
             PlaneReach {
                 world_from_plane: receiver.world_from_plane,
                 plane_from_anchor,

@@ -6,11 +6,10 @@
 //! the same: all of it is covered, or none. Only triangles that meet other tiles have to be drawn once for each point.
 //! Source: Appel 1967 (silhouettes as edges between front and back faces); tiles as in Green 2008 (bounds of penumbras).
 
-use std::collections::HashMap;
-
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use crate::geometry::tiles::{PixelBox, Tiles};
+use app_scene::geometry::edges::Edge;
 
 /// Pixels along each side of a tile.
 const TILE_PX: u32 = 4;
@@ -66,47 +65,6 @@ impl Viewers {
         let place = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
         let facing = triangles.filter(|triangle| self.may_see(triangle.map(place)));
         facing.flatten().copied().collect()
-    }
-}
-
-/// An edge, and the triangles beside it: none where there is one alone, or more than two, or two that do not pass it in
-/// opposite directions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Edge {
-    ends: [u32; 2],
-    beside: Option<[u32; 2]>,
-}
-
-/// The edges of a shape.
-#[derive(Clone, Debug, Default)]
-pub struct Edges(Vec<Edge>);
-
-impl Edges {
-    /// Of triangles that share corners where they share places.
-    #[must_use]
-    pub fn of(corners: &[u32]) -> Self {
-        /// Triangles that pass an edge from its lower to its higher corner, and the other way.
-        #[derive(Default)]
-        struct Passed([Vec<u32>; 2]);
-        let mut passed: HashMap<[u32; 2], Passed> = HashMap::new();
-        for (index, [a, b, c]) in (0..).zip(corners.as_chunks::<3>().0) {
-            for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
-                let edge = passed.entry([from.min(to), from.max(to)]).or_default();
-                edge.0[usize::from(from > to)].push(index);
-            }
-        }
-        let mut edges: Vec<Edge> = passed
-            .into_iter()
-            .map(|(ends, passed)| {
-                let beside = match [&passed.0[0][..], &passed.0[1][..]] {
-                    [[one], [other]] => Some([*one, *other]),
-                    _ => None,
-                };
-                Edge { ends, beside }
-            })
-            .collect();
-        edges.sort_unstable_by_key(|edge| edge.ends);
-        Self(edges)
     }
 }
 
@@ -219,7 +177,7 @@ pub struct Shape<'a> {
     /// Three of each triangle.
     pub corners: &'a [u32],
     /// Between them.
-    pub edges: &'a Edges,
+    pub edges: &'a [Edge],
 }
 
 /// What has to be drawn once for each point, and where.
@@ -250,7 +208,7 @@ pub fn find_silhouette(
         .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
         .collect();
     let mut tiles = Tiles::over(size_px, TILE_PX);
-    for edge in &shape.edges.0 {
+    for edge in shape.edges {
         if edge
             .beside
             .is_none_or(|[one, other]| may_part(&sides, one, other))

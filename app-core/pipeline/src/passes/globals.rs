@@ -13,7 +13,6 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::{Mat3Columns, shared_struct};
 use app_scene::geometry::bounds::Sphere;
-use app_scene::geometry::light_points::light_in_plane;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 
 /// WGSL part of the globals.
@@ -205,7 +204,7 @@ fn seen_from_behind(view: &View, receivers: &[AnchoredReceiver]) -> u32 {
 fn lights_in(lights: &[Light], space_from_world: &DMat4) -> [[f32; 4]; MAX_LIGHTS] {
     let mut slots = [[0.0; 4]; MAX_LIGHTS];
     for (slot, light) in slots.iter_mut().zip(lights) {
-        *slot = light_in_plane(light, space_from_world).as_vec4().to_array();
+        *slot = light.centre_in(space_from_world).as_vec4().to_array();
     }
     slots
 }

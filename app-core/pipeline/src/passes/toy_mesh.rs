@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use glam::{UVec2, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
-use crate::geometry::silhouette::{Edges, Projection, Shape, Viewers, find_silhouette};
+use crate::geometry::silhouette::{Projection, Shape, Viewers, find_silhouette};
 use crate::geometry::rect::PixelRect;
 use crate::geometry::seen::{mark_seen, seen_rect};
 use crate::geometry::tiles::Tiles;
@@ -23,6 +23,7 @@ use crate::passes::toy_mesh::corners::{Lists, MAX_SILHOUETTE_CORNERS, n};
 pub(crate) use crate::passes::toy_mesh::runs::Sided;
 use crate::passes::toy_mesh::runs::{Run, runs};
 use app_scene::geometry::bounds::Sphere;
+use app_scene::geometry::edges::{Edge, edges};
 use app_scene::scene::MAX_LIGHTS;
 use app_scene::toy::{Caster, PosedMesh, Toy};
 
@@ -104,7 +105,7 @@ struct CasterRange {
     /// Of the corners, those of closed pieces, which come first.
     n_closed: usize,
     /// Found when first asked for.
-    edges: OnceLock<Edges>,
+    edges: OnceLock<Vec<Edge>>,
 }
 
 impl CasterRange {
@@ -270,7 +271,7 @@ impl ToyMesh {
         (corners.len() <= MAX_SILHOUETTE_CORNERS).then(|| Shape {
             positions: &pose.mesh.positions,
             corners,
-            edges: caster.edges.get_or_init(|| Edges::of(corners)),
+            edges: caster.edges.get_or_init(|| edges(corners.as_chunks().0)),
         })
     }
 

@@ -49,13 +49,10 @@ impl Stage {
         let (anchor_from_world, bounds) = (self.layout().world_from_anchor().inverse(), self.physical_bounds);
         let mut inside = Vec::new();
         for (index, light) in self.lights.indices.iter().zip(&self.lights.used) {
-            let Light::Sphere {
-                position_in_world, ..
-            } = light
-            else {
+            let Some(position_in_world) = light.position_in_world() else {
                 continue;
             };
-            let at = anchor_from_world.transform_point3(*position_in_world);
+            let at = anchor_from_world.transform_point3(position_in_world);
             if at.cmpgt(bounds.min).all() && at.cmplt(bounds.max).all() {
                 inside.push((*index, at));
             }

@@ -27,7 +27,6 @@ use crate::plates::choice::{covered_fraction, exposed};
 use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use app_scene::frame::FrameInput;
-use app_scene::geometry::light_points::light_points;
 use app_scene::scene::{Light, Plate};
 
 /// Sizes of the region under a moving camera, so that it keeps one for a while.
@@ -298,7 +297,7 @@ impl Stage {
     pub(super) fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
         let world_from_anchor = self.layout().world_from_anchor();
         let target = self.toy_in_anchor();
-        let points = light_points(light, &world_from_anchor.inverse(), target, n_points);
+        let points = light.points_in(&world_from_anchor.inverse(), target, n_points);
         let planes = self
             .receivers
             .iter()

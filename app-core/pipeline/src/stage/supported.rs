@@ -4,7 +4,6 @@ use glam::{DMat4, DVec3};
 
 use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
-use app_scene::geometry::light_points::light_in_plane;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
 
@@ -60,7 +59,7 @@ impl Lights {
         let is_above_any = |light: &Light| {
             planes_from_world
                 .iter()
-                .any(|plane_from_world| light_in_plane(light, plane_from_world).y > 0.0)
+                .any(|plane_from_world| light.is_above(plane_from_world))
         };
         let (mut indices, below): (Vec<usize>, Vec<usize>) =
             (0..listed.len()).partition(|index| is_above_any(&listed[*index]));

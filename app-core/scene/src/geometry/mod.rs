@@ -2,5 +2,6 @@
 
 pub mod bounds;
 pub mod color;
-pub mod light_points;
+pub mod disc;
+pub mod edges;
 pub mod nearest_receivers;

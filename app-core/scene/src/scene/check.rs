@@ -8,7 +8,7 @@ use glam::{DMat3, DMat4, DVec3};
 
 use thiserror::Error;
 
-use super::{Camera, Intrinsics, Light};
+use super::{Camera, Intrinsics};
 use crate::words::Number;
 
 /// A value that is refused, and the path of its field.
@@ -280,30 +280,6 @@ fn intrinsics(field: &str, intrinsics: &Intrinsics) -> Result<(), InputError> {
     ];
     for (name, value, range) in numbers {
         InputError::at(&format!("{field}.{name}"), number(value, &range))?;
-    }
-    Ok(())
-}
-
-/// A light, whose fields are below `field`.
-pub fn light(field: &str, light: &Light) -> Result<(), InputError> {
-    match *light {
-        Light::Sphere {
-            position_in_world,
-            radius_m,
-        } => {
-            let position = light_position(position_in_world.to_array());
-            InputError::at(&format!("{field}.position_in_world"), position)?;
-            InputError::at(&format!("{field}.radius_m"), number(radius_m, &RADIUS_M))?;
-        }
-        Light::Directional {
-            direction_to_light_in_world,
-            angular_radius_rad,
-        } => {
-            let unit = unit(direction_to_light_in_world);
-            InputError::at(&format!("{field}.direction_to_light_in_world"), unit)?;
-            let degrees = number(angular_radius_rad.to_degrees(), &ANGULAR_RADIUS_DEG);
-            InputError::at(&format!("{field}.angular_radius_rad, in degrees"), degrees)?;
-        }
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! Camera space is +X right, +Y up and looks along -Z.
 
 pub mod check;
+mod light;
 mod light_estimate;
 mod probe;
 mod uncertainty;
@@ -18,6 +19,7 @@ use crate::toy::Toy;
 
 pub use crate::toy::Pose;
 pub use check::{FieldError, InputError};
+pub use light::Light;
 pub use light_estimate::{LightEstimate, N_HARMONICS};
 pub use probe::MAX_FURTHER_PICTURES;
 pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
@@ -34,6 +36,7 @@ pub const MAX_SCENE_PLATES: usize = 512;
 
 /// The inputs that precede the first frame: toy, receivers, lights, plates.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Scene {
     /// Name for people; may be empty.
     pub name: String,
@@ -61,6 +64,89 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A scene without name, known lights, plates or probe, in which the real toy is as its file has it. `size_px` is width, then height, of
+    /// every camera picture.
+    #[must_use]
+    pub fn new(size_px: [u32; 2], toy: Arc<Toy>, world_from_object: DMat4, receivers: Vec<Receiver>) -> Self {
+        let [width_px, height_px] = size_px;
+        Self {
+            name: String::new(),
+            width_px,
+            height_px,
+            toy,
+            world_from_object,
+            physical_pose: Pose::default(),
+            receivers,
+            lights: Vec::new(),
+            plates: Vec::new(),
+            probe: None,
+            uncertainty: Uncertainty::default(),
+        }
+    }
+
+    /// Sets the name for people.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// Sets the size of every camera picture: width, then height.
+    #[must_use]
+    pub fn with_size_px(mut self, size_px: [u32; 2]) -> Self {
+        [self.width_px, self.height_px] = size_px;
+        self
+    }
+
+    /// Sets the toy's model.
+    #[must_use]
+    pub fn with_toy(mut self, toy: Arc<Toy>) -> Self {
+        self.toy = toy;
+        self
+    }
+
+    /// Sets the transform of the real toy at first.
+    #[must_use]
+    pub fn with_world_from_object(mut self, world_from_object: DMat4) -> Self {
+        self.world_from_object = world_from_object;
+        self
+    }
+
+    /// Sets the pose of the real toy.
+    #[must_use]
+    pub fn with_physical_pose(mut self, pose: Pose) -> Self {
+        self.physical_pose = pose;
+        self
+    }
+
+    /// Sets the known lights.
+    #[must_use]
+    pub fn with_lights(mut self, lights: Vec<Light>) -> Self {
+        self.lights = lights;
+        self
+    }
+
+    /// Sets the pictures of the scene without the toy.
+    #[must_use]
+    pub fn with_plates(mut self, plates: Vec<Plate>) -> Self {
+        self.plates = plates;
+        self
+    }
+
+    /// Sets the light probe that lay in the scene.
+    #[must_use]
+    pub fn with_probe(mut self, probe: Option<Probe>) -> Self {
+        self.probe = probe;
+        self
+    }
+
+    /// Sets how far camera, toy and lights may be off.
+    #[must_use]
+    pub fn with_uncertainty(mut self, uncertainty: Uncertainty) -> Self {
+        self.uncertainty = uncertainty;
+        self
+    }
+
     /// Validates the scene.
     pub fn check(&self) -> Result<(), InputError> {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
@@ -74,7 +160,7 @@ impl Scene {
             receiver.check(&format!("receivers[{index}]"))?;
         }
         for (index, light) in self.lights.iter().enumerate() {
-            check::light(&format!("lights[{index}]"), light)?;
+            light.check(&format!("lights[{index}]"))?;
         }
         InputError::at("plates", check::at_most(self.plates.len(), MAX_SCENE_PLATES))?;
         for (index, plate) in self.plates.iter().enumerate() {
@@ -117,26 +203,6 @@ pub struct Receiver {
     pub half_extent_m: DVec2,
     /// Appearance of the receiver.
     pub surface: Surface,
-}
-
-/// A light whose direct shadow is moved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-pub enum Light {
-    /// A bulb. A radius of zero is a point.
-    Sphere {
-        /// Centre of the bulb, in metres.
-        position_in_world: DVec3,
-        /// Radius of the bulb, zero or more.
-        radius_m: f64,
-    },
-    /// A light too far away for its distance to matter.
-    Directional {
-        /// Unit vector from the scene towards the light.
-        direction_to_light_in_world: DVec3,
-        /// Half the angle that the light's disc fills, from 0 to just under 90 degrees.
-        angular_radius_rad: f64,
-    },
 }
 
 /// Pinhole projection, in pixels of the picture.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 
 use crate::disjoint::DisjointSets;
+use crate::geometry::edges::edges;
 
 /// Connected components of triangles.
 pub(super) struct Pieces {
@@ -32,16 +33,12 @@ impl Pieces {
             is_open: vec![false; places.len()],
             volumes: HashMap::new(),
         };
-        // How often an edge is passed from lower to higher index, less how often the other way.
-        let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
-        for &[a, b, c] in triangles {
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *passes.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-                pieces.connected.join(from as usize, to as usize);
-            }
+        let edges = edges(triangles);
+        for [from, to] in edges.iter().map(|edge| edge.ends) {
+            pieces.connected.join(from as usize, to as usize);
         }
-        for ([corner, _], _) in passes.into_iter().filter(|(_, n)| *n != 0) {
-            let root = pieces.root(corner);
+        for edge in edges.iter().filter(|edge| edge.is_border) {
+            let root = pieces.root(edge.ends[0]);
             pieces.is_open[root] = true;
         }
         for corners in triangles {

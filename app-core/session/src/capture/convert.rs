@@ -68,19 +68,18 @@ pub(super) fn capture_from_record(
         .zip(frames.first())
         .map(|(record, first)| probe(&store, record, (&intrinsics, &first.camera), &mut warnings))
         .transpose()?;
-    let scene = Scene {
-        name: record.name,
-        width_px: size.width_px,
-        height_px: size.height_px,
-        toy: Arc::new(toy),
+    let scene = Scene::new(
+        [size.width_px, size.height_px],
+        Arc::new(toy),
         world_from_object,
-        physical_pose,
         receivers,
-        lights,
-        plates,
-        probe,
-        uncertainty,
-    };
+    )
+    .with_name(record.name)
+    .with_physical_pose(physical_pose)
+    .with_lights(lights)
+    .with_plates(plates)
+    .with_probe(probe)
+    .with_uncertainty(uncertainty);
     Ok(Capture {
         store,
         scene,

@@ -1,6 +1,6 @@
 //! Numbers that can be read, but are hardly meant.
 
-use app_core::scene::{Light, Scene};
+use app_core::scene::Scene;
 use app_core::session::SessionFrame;
 use app_scene::geometry::bounds::Bounds;
 use glam::{DMat4, DVec2, DVec3, UVec2};
@@ -40,18 +40,8 @@ pub(super) fn wrong(scene: &Scene) -> Vec<String> {
         }
     }
     for (index, light) in scene.lights.iter().enumerate() {
-        let is_above = scene.receivers.iter().any(|receiver| {
-            let plane_from_world = receiver.world_from_plane.inverse();
-            match light {
-                Light::Sphere {
-                    position_in_world, ..
-                } => plane_from_world.transform_point3(*position_in_world).y > 0.0,
-                Light::Directional {
-                    direction_to_light_in_world,
-                    ..
-                } => plane_from_world.transform_vector3(*direction_to_light_in_world).y > 0.0,
-            }
-        });
+        let mut receivers = scene.receivers.iter();
+        let is_above = receivers.any(|receiver| light.is_above(&receiver.world_from_plane.inverse()));
         if !is_above {
             wrong.push(format!("lights[{index}]: it is above none of the receivers"));
         }

@@ -15,7 +15,7 @@ use plotters::prelude::{
 
 use super::table::aligned;
 use crate::random::Random;
-use desk::alignment::{SeenLight, middle};
+use desk::alignment::middle;
 use desk::replay::ReplayError;
 
 /// The largest disturbance: of the pose in millimetres and degrees, of each light's direction in degrees.
@@ -85,34 +85,21 @@ fn disturbed(scene: &Scene, recorded: &FrameInput, part: f64, random: &mut Rando
     let object = DMat4::from_rotation_translation(turn(random.direction(), MOST.pose_deg), moved)
         * DMat4::from_translation(-place);
     let lights = scene.lights.iter().map(|light| {
-        let direction = SeenLight::from(place, light).direction_in_world;
+        let direction = light.direction_from(place).unwrap_or(DVec3::Y);
         let across = random.direction().cross(direction);
         let axis = across
             .try_normalize()
             .unwrap_or_else(|| direction.any_orthonormal_vector());
         let turn = turn(axis, MOST.light_deg.unwrap_or_default());
-        match *light {
-            Light::Sphere {
-                position_in_world,
-                radius_m,
-            } => Light::Sphere {
-                position_in_world: place + turn * (position_in_world - place),
-                radius_m,
-            },
-            Light::Directional {
-                direction_to_light_in_world,
-                angular_radius_rad,
-            } => Light::Directional {
-                direction_to_light_in_world: turn * direction_to_light_in_world,
-                angular_radius_rad,
-            },
-        }
+        light.map(
+            |position| place + turn * (position - place),
+            |direction| turn * direction,
+        )
     });
-    FrameInput {
-        world_from_object: object * recorded.world_from_object,
-        lights: (!scene.lights.is_empty()).then(|| lights.collect()),
-        ..recorded.clone()
-    }
+    recorded
+        .clone()
+        .with_world_from_object(object * recorded.world_from_object)
+        .with_lights((!scene.lights.is_empty()).then(|| lights.collect()))
 }
 
 fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
@@ -120,7 +107,7 @@ fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
     let [there, here] = [recorded, input].map(|input| input.world_from_object);
     let rotation = |matrix: &DMat4| matrix.to_scale_rotation_translation().1;
     let turn = rotation(&here) * rotation(&there).inverse();
-    let direction = |light: &Light| SeenLight::from(place, light).direction_in_world;
+    let direction = |light: &Light| light.direction_from(place).unwrap_or(DVec3::Y);
     let lights = input.lights.as_deref().unwrap_or(&scene.lights);
     let apart = scene
         .lights

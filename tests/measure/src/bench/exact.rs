@@ -16,7 +16,6 @@ use app_pipeline::geometry::scene_layout::SceneLayout;
 use app_pipeline::geometry::view::View;
 use app_pipeline::readback::FloatMap;
 use app_pipeline::readback::inject::InjectedVisibility;
-use app_scene::geometry::light_points::light_in_plane;
 use glam::{DMat4, DVec3, UVec2};
 
 use desk::lens::through_lens;
@@ -117,12 +116,12 @@ impl Rays {
             .collect();
         let is_usable = |light: &&Light| {
             let mut planes = planes_from_world.iter();
-            planes.any(|plane_from_world| light_in_plane(light, plane_from_world).y > 0.0)
+            planes.any(|plane_from_world| light.is_above(plane_from_world))
         };
         let usable: Vec<&Light> = scene.lights.iter().filter(is_usable).take(MAX_LIGHTS).collect();
         let lights_in = |plane_from_world: &DMat4| {
             let lights = usable.iter();
-            lights.map(|light| moved(light, plane_from_world)).collect()
+            lights.map(|light| light.moved(plane_from_world)).collect()
         };
         Self {
             region: Region::new(&view, rect, &layout),
@@ -189,22 +188,5 @@ impl Rays {
             }
         }
         visibility
-    }
-}
-
-/// The light in a receiver's plane space.
-fn moved(light: &Light, plane_from_world: &DMat4) -> Light {
-    let centre = light_in_plane(light, plane_from_world);
-    match *light {
-        Light::Sphere { radius_m, .. } => Light::Sphere {
-            position_in_world: centre.truncate(),
-            radius_m,
-        },
-        Light::Directional {
-            angular_radius_rad, ..
-        } => Light::Directional {
-            direction_to_light_in_world: centre.truncate(),
-            angular_radius_rad,
-        },
     }
 }

@@ -192,18 +192,11 @@ pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
     let turn = DMat4::from_rotation_x(TURN_RAD);
     match kind {
         FrameKind::Pose => input.clone(),
-        FrameKind::Picture => FrameInput {
-            image: picture(),
-            ..input.clone()
-        },
-        FrameKind::View => FrameInput {
-            image: picture(),
-            camera: Camera {
-                world_from_camera: input.camera.world_from_camera * turn,
-                ..input.camera
-            },
-            ..input.clone()
-        },
+        FrameKind::Picture => input.clone().with_image(picture()),
+        FrameKind::View => input.clone().with_image(picture()).with_camera(Camera {
+            world_from_camera: input.camera.world_from_camera * turn,
+            ..input.camera
+        }),
     }
 }
 

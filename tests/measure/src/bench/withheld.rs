@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
-use app_core::frame::FrameInput;
 use app_core::preset::{Preset, Settings};
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
@@ -73,10 +72,9 @@ fn rebuild_with(
     let mut latest: Option<Arc<Image>> = None;
     let mut rebuilt = Vec::new();
     for frame in 0..session.n_frames() {
-        let input = FrameInput {
-            shown_pose: scene.physical_pose.clone(),
-            ..alignments.input(frame, &session.frame(frame)?, preset)
-        };
+        let input = alignments
+            .input(frame, &session.frame(frame)?, preset)
+            .with_shown_pose(scene.physical_pose.clone());
         if latest
             .as_ref()
             .is_some_and(|image| image.rgba8 == input.image.rgba().rgba8)

@@ -31,10 +31,7 @@ impl Lamp {
     #[must_use]
     pub fn bulb(position_in_world: DVec3, radius_m: f64, brightness: f64) -> Self {
         Self {
-            light: Light::Sphere {
-                position_in_world,
-                radius_m,
-            },
+            light: Light::sphere(position_in_world, radius_m),
             color: DVec3::splat(brightness),
         }
     }
@@ -43,10 +40,7 @@ impl Lamp {
     #[must_use]
     pub fn sun(direction_to_light_in_world: DVec3, angular_radius_rad: f64, brightness: f64) -> Self {
         Self {
-            light: Light::Directional {
-                direction_to_light_in_world,
-                angular_radius_rad,
-            },
+            light: Light::directional(direction_to_light_in_world, angular_radius_rad),
             color: DVec3::splat(brightness),
         }
     }
@@ -77,6 +71,17 @@ impl Lamp {
                 strength: 1.0,
             },
         }
+    }
+
+    /// What its disc sends: a white surface that faces it has that times the squared sine of its half angle.
+    pub(super) fn radiance(&self) -> DVec3 {
+        let sine_at_1_m = match self.light {
+            Light::Sphere { radius_m, .. } => radius_m,
+            Light::Directional {
+                angular_radius_rad, ..
+            } => angular_radius_rad.sin(),
+        };
+        self.color * sine_at_1_m.powi(-2)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use app_core::scene::{Camera, FacetSlope, Light, ProbePicture, ProbeShape};
+use app_core::scene::{Camera, FacetSlope, ProbePicture, ProbeShape};
 use glam::{DMat4, DVec2, DVec3};
 
 use super::film::Film;
@@ -221,27 +221,9 @@ fn steepness(slope: &FacetSlope, out_m: f64, radius_m: f64) -> f64 {
 
 /// What a lamp's disc sends from a direction.
 fn radiance(lamp: &Lamp, at: DVec3, to: DVec3) -> DVec3 {
-    let (axis, sine) = match lamp.light {
-        Light::Sphere {
-            position_in_world,
-            radius_m,
-        } => {
-            let toward = position_in_world - at;
-            (toward.normalize(), radius_m / toward.length())
-        }
-        Light::Directional {
-            direction_to_light_in_world,
-            angular_radius_rad,
-        } => (direction_to_light_in_world, angular_radius_rad.sin()),
-    };
-    let is_in = to.dot(axis) > 0.0 && to.cross(axis).length() < sine;
-    // A white surface facing it has its radiance times the squared sine.
-    let per_color = match lamp.light {
-        Light::Sphere { radius_m, .. } => radius_m.powi(-2),
-        Light::Directional { .. } => sine.powi(-2),
-    };
-    if is_in {
-        lamp.color * per_color
+    let cone = lamp.cone(at);
+    if to.dot(cone.axis) > 0.0 && to.cross(cone.axis).length() < cone.sine {
+        lamp.radiance()
     } else {
         DVec3::ZERO
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use app_core::frame::FrameInput;
-use app_core::scene::{Image, Plate, Pose, Receiver, Scene, Uncertainty};
+use app_core::scene::{Image, Plate, Pose, Receiver, Scene};
 use app_core::session::Truth;
 use app_core::toy::{Toy, ToyError};
 use glam::DVec3;
@@ -107,7 +107,6 @@ impl Shot {
                 time_secs,
             },
         };
-        let [width_px, height_px] = world.size_px;
         let grounds = world.grounds.iter().enumerate();
         let receivers = grounds.map(|(index, ground)| Receiver {
             name: format!("ground {index}"),
@@ -116,32 +115,20 @@ impl Shot {
             surface: ground.paint.surface(),
         });
         Ok(Self {
-            scene: Scene {
-                name: world.name.clone(),
-                width_px,
-                height_px,
-                toy: Arc::new(toy),
-                world_from_object: world.world_from_object,
-                physical_pose: Pose::Authored,
-                receivers: receivers.collect(),
-                lights: world.lights(),
-                plates: vec![Plate {
-                    camera: world.camera,
-                    image: Arc::clone(&photos.plate),
-                }],
-                probe: None,
-                uncertainty: Uncertainty::default(),
-            },
-            input: FrameInput {
-                image: Arc::clone(&photos.frame).into(),
+            scene: Scene::new(
+                world.size_px,
+                Arc::new(toy),
+                world.world_from_object,
+                receivers.collect(),
+            )
+            .with_name(world.name.clone())
+            .with_lights(world.lights())
+            .with_plates(vec![Plate {
                 camera: world.camera,
-                exposure: 1.0,
-                world_from_object: world.world_from_object,
-                lights: None,
-                light_estimate: None,
-                shown_pose,
-                effect: 1.0,
-            },
+                image: Arc::clone(&photos.plate),
+            }]),
+            input: FrameInput::new(Arc::clone(&photos.frame), world.camera, world.world_from_object)
+                .with_shown_pose(shown_pose),
             truth: photos.truth.clone(),
             glb,
         })

@@ -20,22 +20,7 @@ impl World {
             ground.world_from_plane = *new_from_old * ground.world_from_plane;
         }
         for lamp in &mut self.lamps {
-            lamp.light = match lamp.light {
-                Light::Sphere {
-                    position_in_world,
-                    radius_m,
-                } => Light::Sphere {
-                    position_in_world: new_from_old.transform_point3(position_in_world),
-                    radius_m,
-                },
-                Light::Directional {
-                    direction_to_light_in_world,
-                    angular_radius_rad,
-                } => Light::Directional {
-                    direction_to_light_in_world: new_from_old.transform_vector3(direction_to_light_in_world),
-                    angular_radius_rad,
-                },
-            };
+            lamp.light = lamp.light.moved(new_from_old);
         }
         self
     }
@@ -112,22 +97,9 @@ fn mirrored_ground(ground: &Ground) -> Ground {
 
 fn mirrored_lamp(lamp: &Lamp) -> Lamp {
     Lamp {
-        light: match lamp.light {
-            Light::Sphere {
-                position_in_world,
-                radius_m,
-            } => Light::Sphere {
-                position_in_world: MIRROR * position_in_world,
-                radius_m,
-            },
-            Light::Directional {
-                direction_to_light_in_world,
-                angular_radius_rad,
-            } => Light::Directional {
-                direction_to_light_in_world: MIRROR * direction_to_light_in_world,
-                angular_radius_rad,
-            },
-        },
+        light: lamp
+            .light
+            .map(|position| MIRROR * position, |direction| MIRROR * direction),
         ..*lamp
     }
 }

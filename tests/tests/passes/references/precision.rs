@@ -2,7 +2,6 @@
 //!
 //! A shader that is farther from its reference than these bounds is so by its algorithm.
 
-use app_scene::geometry::light_points::light_points;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use reference::composite::receiver_color;
 use reference::fit::{FitConstants, fit_receiver, fit_toy};
@@ -62,7 +61,7 @@ fn fit_of_the_toy() {
 
 /// A texel counts 256 light points: only a ray within rounding of the edge counts otherwise.
 fn shadow<R: Real>() -> Raster<f64> {
-    let light_points = light_points(&bulb(), &DMat4::IDENTITY, DVec3::ZERO, 256);
+    let light_points = bulb().points_in(&DMat4::IDENTITY, DVec3::ZERO, 256);
     let light_points: Vec<DVec4> = light_points.iter().map(|point| point.as_dvec4()).collect();
     let region = region(UVec2::splat(80), light_points[..1].to_vec());
     let caster = Caster {

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use app_core::scene::Light;
-use app_scene::geometry::light_points::{ambient_directions, light_points};
+use app_scene::geometry::disc::ambient_directions;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use reference::occlusion::{Caster, Occluder};
 use reference::real::Real;
@@ -54,7 +54,8 @@ fn share_hidden(occluder: &Occluder, at: DVec2, points: &[DVec4]) -> f64 {
 #[test]
 fn penumbra_of_an_edge_follows_the_circle_segment() {
     let occluder = square::<f64>();
-    let points: Vec<DVec4> = light_points(&bulb(), &DMat4::IDENTITY, DVec3::ZERO, 4096)
+    let points: Vec<DVec4> = bulb()
+        .points_in(&DMat4::IDENTITY, DVec3::ZERO, 4096)
         .iter()
         .map(|point| point.as_dvec4())
         .collect();

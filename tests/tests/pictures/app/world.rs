@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use app_core::alignment::NoLight;
-use app_core::alignment::{Alignment, AlignmentReport, PoseAlignment, PoseDeviation};
+use app_core::alignment::{Alignment, PoseAlignment, PoseDeviation};
 use app_core::app::{App, GraphicsState, Permission, Recorded, ShellEvent, UserAction};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::FrameInput;
@@ -122,24 +122,8 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
             rotation_rad: 1e-3,
         },
     });
-    Alignment {
-        camera: input.camera,
-        world_from_object: input.world_from_object,
-        lights: None,
-        scene: None,
-        report: AlignmentReport {
-            focal_length: None,
-            camera: None,
-            pose,
-            lights: Vec::new(),
-            light_errors: None,
-            probe: None,
-            discovered: Vec::new(),
-            world_scale: None,
-            no_light: Some(NoLight::PoseUnknown),
-            unexplained: None,
-            is_relit: false,
-        },
-        warnings: Vec::new(),
-    }
+    let mut alignment = Alignment::new(input);
+    alignment.report.pose = pose;
+    alignment.report.no_light = Some(NoLight::PoseUnknown);
+    alignment
 }

@@ -54,17 +54,11 @@ static SMALL: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
         image: small(&plate.image),
     });
     let plates = plates.collect();
-    let small_scene = Scene {
-        width_px: scene.width_px / SHRINK,
-        height_px: scene.height_px / SHRINK,
-        plates,
-        ..scene
-    };
-    let small_input = FrameInput {
-        camera: small_camera(&input.camera),
-        image: small(input.image.rgba()).into(),
-        ..input
-    };
+    let size_px = [scene.width_px / SHRINK, scene.height_px / SHRINK];
+    let small_scene = scene.with_size_px(size_px).with_plates(plates);
+    let camera = small_camera(&input.camera);
+    let image = small(input.image.rgba());
+    let small_input = input.with_camera(camera).with_image(image);
     (small_scene, small_input)
 });
 

@@ -2,7 +2,6 @@
 
 use app_core::Core;
 use app_core::camera_frame::{CameraImage, CodeRange, Display, Fit, LumaCoefficients, YcbcrEncoding};
-use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::wgpu;
@@ -26,11 +25,10 @@ fn planes_are_decoded_on_the_device_as_on_the_processor() {
         for range in [CodeRange::Full, CodeRange::Video] {
             core.set_scene(scene.clone(), Preset::Balanced).unwrap();
             let image = planar(input.image.rgba(), YcbcrEncoding { coefficients, range }).unwrap();
-            let shown = FrameInput {
-                image: image.into(),
-                shown_pose: scene.physical_pose.clone(),
-                ..input.clone()
-            };
+            let shown = input
+                .clone()
+                .with_image(image)
+                .with_shown_pose(scene.physical_pose.clone());
             let picture = picture_of(&mut core, &shown);
             // Half a code of rounding either way.
             assert!(worst(&picture, &shown.image.rgba().rgba8) <= 1);
@@ -50,10 +48,7 @@ fn a_frame_of_planes_gives_the_picture_of_its_pixels() {
     let pixels = CameraImage::Rgba(planes.rgba().clone());
     let [a, b] = [planes, pixels].map(|image| {
         core.set_scene(scene.clone(), Preset::Balanced).unwrap();
-        let input = FrameInput {
-            image,
-            ..input.clone()
-        };
+        let input = input.clone().with_image(image);
         picture_of(&mut core, &input)
     });
     // A code of the frame may be rounded otherwise; what is made of it differs little more.
@@ -67,15 +62,7 @@ fn half_an_effect_is_half_way_in_linear_light() {
     let (scene, input) = (scene(), first_input());
     let mut core = core();
     core.set_scene(scene, Preset::Balanced).unwrap();
-    let mut at = |effect| {
-        picture_of(
-            &mut core,
-            &FrameInput {
-                effect,
-                ..input.clone()
-            },
-        )
-    };
+    let mut at = |effect| picture_of(&mut core, &input.clone().with_effect(effect));
     let (none, whole, half) = (at(0.0), at(1.0), at(0.5));
     assert!(none == input.image.rgba().rgba8, "the camera's picture");
     assert!(worst(&none, &whole) > 30, "nothing is shown");
@@ -100,10 +87,7 @@ fn an_effect_beyond_its_range_is_refused() {
     let mut core = core();
     core.set_scene(scene, Preset::Balanced).unwrap();
     for effect in [-0.1, 1.1, f64::NAN] {
-        let refused = core.frame(&FrameInput {
-            effect,
-            ..input.clone()
-        });
+        let refused = core.frame(&input.clone().with_effect(effect));
         let message = refused.unwrap_err().to_string();
         assert!(message.contains("effect"), "{message}");
     }
@@ -186,10 +170,7 @@ fn a_screen_shows_the_region_over_the_camera_image() {
     let mut app = App::open();
     app.core.set_scene(scene.clone(), Preset::Balanced).unwrap();
     for effect in [1.0, 0.4, 0.0] {
-        let input = FrameInput {
-            effect,
-            ..input.clone()
-        };
+        let input = input.clone().with_effect(effect);
         app.core.frame(&input).unwrap();
         let shown = app.shown([scene.width_px, scene.height_px], Display::default());
         let read = app.core.read_picture().unwrap().rgba8;
@@ -217,11 +198,7 @@ fn a_screen_shows_planes_as_their_pixels() {
         for screen_px in [[scene.width_px, scene.height_px], [333, 197]] {
             let [of_planes, of_pixels] = [&planes, &pixels].map(|image| {
                 let image = image.clone();
-                let input = FrameInput {
-                    image,
-                    effect,
-                    ..input.clone()
-                };
+                let input = input.clone().with_image(image).with_effect(effect);
                 app.core.frame(&input).unwrap();
                 app.shown(screen_px, Display::default())
             });
@@ -292,11 +269,7 @@ fn a_screen_shows_the_picture_turned_and_cropped() {
     };
     let shown_pose = scene.physical_pose.clone();
     app.core
-        .frame(&FrameInput {
-            image: image.clone().into(),
-            shown_pose,
-            ..input
-        })
+        .frame(&input.with_image(image.clone()).with_shown_pose(shown_pose))
         .unwrap();
     for quarter_turns in 0..4 {
         for fit in [Fit::Fill, Fit::Whole] {

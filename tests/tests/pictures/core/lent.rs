@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use app_core::camera_frame::{CameraImage, PlanarImage, PlaneError, Planes};
-use app_core::frame::FrameInput;
 use app_core::gpu::{LentError, LentTextures};
 use app_core::preset::Preset;
 use app_core::wgpu;
@@ -73,10 +72,7 @@ fn lent(app: &App, image: &Arc<PlanarImage>) -> (Result<PlanarImage, LentError>,
 
 fn picture(app: &mut App, image: CameraImage) -> Vec<u8> {
     app.core.set_scene(scene(), Preset::Balanced).unwrap();
-    let input = FrameInput {
-        image,
-        ..first_input()
-    };
+    let input = first_input().with_image(image);
     app.core.frame(&input).unwrap();
     app.core.read_picture().unwrap().rgba8
 }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use app_core::preset::Preset;
-use app_core::scene::Scene;
 use app_core::session::{Capture, GroundTruth};
 use app_core::toy::{Toy, ToyWarning};
 use desk::files::{BUNDLED_SESSION, Folder};
@@ -20,10 +19,7 @@ fn inverted(normal: [f32; 3]) -> [f32; 3] {
 
 pub(crate) fn picture(toy: Toy, preset: Preset) -> Vec<u8> {
     let mut core = core();
-    let scene = Scene {
-        toy: Arc::new(toy),
-        ..scene()
-    };
+    let scene = scene().with_toy(Arc::new(toy));
     core.set_scene(scene, preset).unwrap();
     picture_of(&mut core, &first_input())
 }

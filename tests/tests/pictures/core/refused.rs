@@ -3,7 +3,7 @@
 use app_core::CoreError;
 use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::Preset;
-use app_core::scene::{Light, Pose, Scene};
+use app_core::scene::{Light, Pose};
 use glam::{DMat4, DVec3};
 
 use crate::core::bundled::{core, first_input, open_core, picture_of, scene};
@@ -14,12 +14,7 @@ fn pictures_that_do_not_fit_are_refused() {
     let input = first_input();
     assert!(matches!(open_core().frame(&input), Err(CoreError::NoScene)));
 
-    let wide = Scene {
-        width_px: 9000,
-        height_px: 100,
-        plates: Vec::new(),
-        ..scene()
-    };
+    let wide = scene().with_size_px([9000, 100]).with_plates(Vec::new());
     let refused = core.set_scene(wide, Preset::Balanced);
     assert!(matches!(
         refused,
@@ -29,12 +24,7 @@ fn pictures_that_do_not_fit_are_refused() {
         })
     ));
 
-    let large = Scene {
-        width_px: 8000,
-        height_px: 2000,
-        plates: Vec::new(),
-        ..scene()
-    };
+    let large = scene().with_size_px([8000, 2000]).with_plates(Vec::new());
     let refused = core.set_scene(large, Preset::Balanced).unwrap_err().to_string();
     assert!(
         refused.starts_with("width_px, height_px: 8000 x 2000 px are more than the 12582912"),
@@ -44,10 +34,7 @@ fn pictures_that_do_not_fit_are_refused() {
     core.set_scene(scene(), Preset::Balanced).unwrap();
     let mut cut = input.image.rgba().as_ref().clone();
     cut.rgba8.pop();
-    let refused = core.frame(&FrameInput {
-        image: cut.into(),
-        ..input.clone()
-    });
+    let refused = core.frame(&input.clone().with_image(cut));
     assert!(matches!(
         refused,
         Err(CoreError::SizeDiffers {
@@ -122,10 +109,7 @@ fn a_failed_pose_leaves_nothing_half_learned() {
         time_secs: f64::NAN,
     };
     assert!(matches!(
-        core.frame(&FrameInput {
-            shown_pose,
-            ..input.clone()
-        }),
+        core.frame(&input.clone().with_shown_pose(shown_pose)),
         Err(CoreError::Toy(_))
     ));
     assert!(picture_of(&mut core, &input) == expected);

@@ -19,20 +19,14 @@ use crate::core::bundled::{core, first_input, picture_of, scene, whole};
 fn the_pose_as_authored_is_a_pose_like_any_other() {
     let mut core = core();
     let input = first_input();
-    let posed = Scene {
-        physical_pose: input.shown_pose.clone(),
-        ..scene()
-    };
+    let posed = scene().with_physical_pose(input.shown_pose.clone());
     core.set_scene(posed, Preset::Balanced).unwrap();
     assert!(core.frame(&input).unwrap().region.is_none());
     assert!(
-        core.frame(&FrameInput {
-            shown_pose: Pose::Authored,
-            ..input
-        })
-        .unwrap()
-        .region
-        .is_some()
+        core.frame(&input.with_shown_pose(Pose::Authored))
+            .unwrap()
+            .region
+            .is_some()
     );
 }
 
@@ -44,10 +38,7 @@ fn dimmed(input: &FrameInput) -> FrameInput {
         rgba8: pixels.flat_map(|p| [p[0] / 2, p[1] / 2, p[2] / 2, 255]).collect(),
         ..image.as_ref().clone()
     });
-    FrameInput {
-        image: image.into(),
-        ..input.clone()
-    }
+    input.clone().with_image(image)
 }
 
 #[test]
@@ -74,10 +65,7 @@ fn the_toys_colours_are_those_of_the_latest_picture() {
     let mut core = core();
     let first = first_input();
     let second = dimmed(&first);
-    let at_rest = FrameInput {
-        shown_pose: scene().physical_pose.clone(),
-        ..second.clone()
-    };
+    let at_rest = second.clone().with_shown_pose(scene().physical_pose.clone());
 
     core.set_scene(scene(), Preset::Balanced).unwrap();
     core.frame(&first).unwrap();
@@ -150,9 +138,10 @@ const MAX_RMS: f64 = 0.3;
 fn an_object_that_was_moved_is_learned_anew_where_it_stands() {
     let mut core = core();
     let first = first_frame(&mut core);
-    let turned = |degrees: f64| FrameInput {
-        world_from_object: first.world_from_object * DMat4::from_rotation_y(degrees.to_radians()),
-        ..first.clone()
+    let turned = |degrees: f64| {
+        first
+            .clone()
+            .with_world_from_object(first.world_from_object * DMat4::from_rotation_y(degrees.to_radians()))
     };
     // Of a toy of some 15 cm, 40 cm away, 0.1 px are some 0.07 mm.
     assert_eq!(learned(&mut core, &turned(0.005)), Learned::Nothing);
@@ -180,10 +169,8 @@ fn motion_that_only_the_shadow_shows_is_learned_from() {
     let farther = DMat4::from_translation(camera)
         * DMat4::from_scale(DVec3::splat(1.02))
         * DMat4::from_translation(-camera);
-    let moved = FrameInput {
-        world_from_object: farther * first.world_from_object,
-        ..first
-    };
+    let world_from_object = farther * first.world_from_object;
+    let moved = first.with_world_from_object(world_from_object);
     assert_eq!(learned(&mut core, &moved), Learned::Scene);
 }
 
@@ -196,15 +183,12 @@ fn the_baseline_follows_a_number_of_lights() {
         radius_m: 0.01,
     };
     let lights = vec![scene.lights[0], aside];
-    let lit = FrameInput {
-        lights: Some(lights.as_slice().into()),
-        ..first.clone()
-    };
+    let lit = first.clone().with_lights(Some(lights.as_slice().into()));
     core.set_scene(scene.clone(), Preset::Paper).unwrap();
     core.frame(&first).unwrap();
     core.frame(&lit).unwrap();
     let followed = core.read_picture().unwrap();
-    core.set_scene(Scene { lights, ..scene }, Preset::Paper).unwrap();
+    core.set_scene(scene.with_lights(lights), Preset::Paper).unwrap();
     core.frame(&first).unwrap();
     let fresh = core.read_picture().unwrap();
     let followed = rms([&fresh, &followed]);
@@ -215,10 +199,7 @@ fn the_baseline_follows_a_number_of_lights() {
 fn lights_that_a_frame_brings_are_learned_under() {
     let mut core = core();
     let first = first_frame(&mut core);
-    let lit_by = |lights: &[Light]| FrameInput {
-        lights: Some(lights.into()),
-        ..first.clone()
-    };
+    let lit_by = |lights: &[Light]| first.clone().with_lights(Some(lights.into()));
     let scene = scene();
     let Light::Sphere {
         position_in_world,
@@ -240,10 +221,7 @@ fn lights_that_a_frame_brings_are_learned_under() {
         let input = lit_by(&lights);
         assert_eq!(learned(&mut core, &input), Learned::Scene);
         assert_eq!(learned(&mut core, &input), Learned::Nothing);
-        let scene = Scene {
-            lights,
-            ..scene.clone()
-        };
+        let scene = scene.clone().with_lights(lights);
         let followed = core.read_picture().unwrap();
         let followed = rms([&fresh_picture(&mut core, scene, &input), &followed]);
         assert!(followed < MAX_RMS, "{followed}");
@@ -273,18 +251,15 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
         rgba8: vec![255; first.image.rgba().rgba8.len()],
         ..first.image.rgba().as_ref().clone()
     };
-    let overexposed = FrameInput {
-        image: white.clone().into(),
-        exposure: 2.0,
-        ..first.clone()
-    };
+    let overexposed = first.clone().with_image(white.clone()).with_exposure(2.0);
     assert_eq!(learned(&mut core, &overexposed), Learned::Picture);
     let doubled = gain(&core) / before;
     assert!((doubled - 2.0).abs() < 1e-5, "{doubled}");
-    let again = |exposure: f64| FrameInput {
-        image: white.clone().into(),
-        exposure,
-        ..overexposed.clone()
+    let again = |exposure: f64| {
+        overexposed
+            .clone()
+            .with_image(white.clone())
+            .with_exposure(exposure)
     };
     let still = again(2.0);
     assert_eq!(learned(&mut core, &still), Learned::Picture);
@@ -293,10 +268,7 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
         "the exposure stayed"
     );
     // Told late, of a picture that was learned from: it counts from the next picture on.
-    let late = FrameInput {
-        exposure: 4.0,
-        ..still
-    };
+    let late = still.with_exposure(4.0);
     assert_eq!(learned(&mut core, &late), Learned::Nothing);
     assert_eq!(learned(&mut core, &again(4.0)), Learned::Picture);
     assert!(
@@ -328,13 +300,10 @@ fn the_region_grows_with_a_pose_that_reaches_beyond_it() {
     let lifted = |height_m: f64| {
         let mut trs = toy.authored_transform(root).unwrap().unwrap();
         trs.translation.y += height_m;
-        FrameInput {
-            shown_pose: Pose::Nodes(Arc::new(NodePose {
-                parent_from_node: vec![(root, trs)],
-                ..NodePose::default()
-            })),
-            ..first.clone()
-        }
+        first.clone().with_shown_pose(Pose::Nodes(Arc::new(NodePose {
+            parent_from_node: vec![(root, trs)],
+            ..NodePose::default()
+        })))
     };
     core.set_scene(scene.clone(), Preset::Balanced).unwrap();
     let mut before = core.frame(&lifted(0.0)).unwrap().region.unwrap();

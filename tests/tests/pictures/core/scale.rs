@@ -44,18 +44,17 @@ fn scaled(scale: f64) -> (Scene, FrameInput) {
         camera: camera(&plate.camera, scale),
         image: plate.image.clone(),
     });
+    let plates = plates.collect();
     let world_from_object = DMat4::from_scale(glam::DVec3::splat(scale)) * scene.world_from_object;
-    let scene = Scene {
-        world_from_object,
-        lights: scene.lights.iter().map(|one| light(one, scale)).collect(),
-        plates: plates.collect(),
-        ..scene
-    };
-    let input = FrameInput {
-        camera: camera(&input.camera, scale),
-        world_from_object,
-        ..input
-    };
+    let lights = scene.lights.iter().map(|one| light(one, scale)).collect();
+    let scene = scene
+        .with_world_from_object(world_from_object)
+        .with_lights(lights)
+        .with_plates(plates);
+    let camera = camera(&input.camera, scale);
+    let input = input
+        .with_camera(camera)
+        .with_world_from_object(world_from_object);
     (scene, input)
 }
 

@@ -1,6 +1,5 @@
 //! A pose that is all but the physical one shows what the camera saw.
 
-use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Pose;
 use harness::compare::Pair;
@@ -15,10 +14,7 @@ const JUST_BEGUN_SECS: f64 = 1e-9;
 fn a_clip_that_has_just_begun_is_the_camera_picture() {
     let (scene, input) = (scene(), first_input());
     let clip = scene.toy.find_clip(CLIP).unwrap();
-    let at = |time_secs| FrameInput {
-        shown_pose: Pose::Clip { clip, time_secs },
-        ..input.clone()
-    };
+    let at = |time_secs| input.clone().with_shown_pose(Pose::Clip { clip, time_secs });
     let mut core = core();
     // `best` takes the noise out of the real shadow, whatever moves.
     core.set_scene(scene, Preset::Balanced).unwrap();

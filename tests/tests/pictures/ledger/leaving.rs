@@ -26,17 +26,11 @@ fn a_toy_that_comes_back_finds_its_targets() {
         parent_from_node: vec![(scene.toy.find_node("toy").unwrap(), aside)],
         morph_weights: Vec::new(),
     };
-    let seen = FrameInput {
-        shown_pose: Pose::Nodes(Arc::new(shown)),
-        ..input
-    };
-    let left = FrameInput {
-        camera: Camera {
-            world_from_camera: seen.camera.world_from_camera * DMat4::from_rotation_y(TURN_RAD),
-            ..seen.camera
-        },
-        ..seen.clone()
-    };
+    let seen = input.with_shown_pose(Pose::Nodes(Arc::new(shown)));
+    let left = seen.clone().with_camera(Camera {
+        world_from_camera: seen.camera.world_from_camera * DMat4::from_rotation_y(TURN_RAD),
+        ..seen.camera
+    });
     let mut core = Core::counting();
     core.set_scene(scene, Preset::Balanced).unwrap();
     let mut made_bytes = |input: &FrameInput, is_out: bool| {

@@ -2,7 +2,7 @@
 
 use app_core::preset::{Preset, Settings};
 use app_core::scene::Light;
-use app_scene::geometry::light_points::{ambient_directions, light_in_plane, light_points};
+use app_scene::geometry::disc::ambient_directions;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4};
 
 /// Rounding of a result in f32, relative.
@@ -26,19 +26,12 @@ fn plane_from_world() -> DMat4 {
 /// Points of the bulb around its centre, across the line to the toy, in units of its outline's radius there.
 fn bulb_disc(n_points: usize) -> Vec<DVec2> {
     let plane_from_world = plane_from_world();
-    let Light::Sphere {
-        position_in_world,
-        radius_m,
-    } = BULB
-    else {
-        unreachable!()
-    };
-    let centre = plane_from_world.transform_point3(position_in_world);
+    let centre = plane_from_world.transform_point3(BULB.position_in_world().unwrap());
     let distance_m = centre.distance(TOY);
-    let outline_m = distance_m * (radius_m / distance_m).asin().tan();
+    let outline_m = distance_m * (BULB.radius() / distance_m).asin().tan();
     let axis = (centre - TOY).normalize();
     let (x, y) = axis.any_orthonormal_pair();
-    light_points(&BULB, &plane_from_world, TOY, n_points)
+    BULB.points_in(&plane_from_world, TOY, n_points)
         .into_iter()
         .map(|point| {
             assert_eq!(point.w, 1.0);
@@ -124,13 +117,14 @@ fn a_wide_bulb_fills_the_cone_that_touches_it() {
         position_in_world: DVec3::new(0.0, 1.0, 0.0),
         radius_m: 0.5,
     };
-    let angles_rad = light_points(&bulb, &DMat4::IDENTITY, DVec3::ZERO, 4096)
+    let angles_rad = bulb
+        .points_in(&DMat4::IDENTITY, DVec3::ZERO, 4096)
         .into_iter()
         .map(|point| point.truncate().as_dvec3().angle_between(DVec3::Y));
     let widest_deg = angles_rad.fold(0.0, f64::max).to_degrees();
     assert!((29.9..30.0).contains(&widest_deg), "{widest_deg} degrees");
     // From within there is no such cone.
-    let around = light_points(&bulb, &DMat4::IDENTITY, DVec3::new(0.0, 0.6, 0.0), 16);
+    let around = bulb.points_in(&DMat4::IDENTITY, DVec3::new(0.0, 0.6, 0.0), 16);
     assert!(around.iter().all(|point| point.is_finite()));
 }
 
@@ -140,11 +134,11 @@ fn a_point_light_is_one_point() {
         position_in_world: DVec3::new(-0.7, 0.9, 0.2),
         radius_m: 0.0,
     };
-    let centre = light_in_plane(&bulb, &plane_from_world()).as_vec4();
-    let points = light_points(&bulb, &plane_from_world(), TOY, 4);
+    let centre = bulb.centre_in(&plane_from_world()).as_vec4();
+    let points = bulb.points_in(&plane_from_world(), TOY, 4);
     assert_eq!(points, [centre; 4]);
     // A light inside the toy has no direction to face; its points are numbers all the same.
-    let inside = light_points(&BULB, &DMat4::IDENTITY, DVec3::new(-0.7, 0.9, 0.2), 16);
+    let inside = BULB.points_in(&DMat4::IDENTITY, DVec3::new(-0.7, 0.9, 0.2), 16);
     assert!(inside.iter().all(|point| point.is_finite()));
 }
 
@@ -158,8 +152,9 @@ fn the_sun_is_a_cone_of_unit_directions() {
     };
     let plane_from_world = plane_from_world();
     let axis = plane_from_world.transform_vector3(to_light);
-    assert!((light_in_plane(&sun, &plane_from_world).truncate() - axis).length() < 1e-12);
-    let tangents: Vec<f64> = light_points(&sun, &plane_from_world, TOY, 64)
+    assert!((sun.centre_in(&plane_from_world).truncate() - axis).length() < 1e-12);
+    let tangents: Vec<f64> = sun
+        .points_in(&plane_from_world, TOY, 64)
         .into_iter()
         .map(|direction| {
             assert_eq!(direction.w, 0.0);

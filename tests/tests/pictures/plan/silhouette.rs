@@ -1,7 +1,10 @@
 //! Tiles that no silhouette comes near, against rays: there all points see the same, and what meets the others covers as much
 //! of them as the whole shape.
 
-use app_pipeline::geometry::silhouette::{ByCamera, Edges, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette};
+use app_pipeline::geometry::silhouette::{
+    ByCamera, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette,
+};
+use app_scene::geometry::edges::{Edge, edges};
 use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use measure::ball::ball_mesh;
 
@@ -58,7 +61,7 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    fn find_silhouette(&self, (positions, corners): &Mesh, edges: &Edges) -> (Vec<u32>, Silhouette) {
+    fn find_silhouette(&self, (positions, corners): &Mesh, edges: &[Edge]) -> (Vec<u32>, Silhouette) {
         let viewers = Viewers::around(&self.points).expect("points of one kind");
         let facing = viewers.facing(positions, corners);
         let shape = Shape {
@@ -232,7 +235,7 @@ fn looks(check: &dyn Fn(&Look<'_>)) {
 fn all_points_see_the_same_where_no_outline_is() {
     looks(&|look| {
         for (name, mesh) in meshes() {
-            let (facing, silhouette) = look.find_silhouette(&mesh, &Edges::of(&mesh.1));
+            let (facing, silhouette) = look.find_silhouette(&mesh, &edges(mesh.1.as_chunks().0));
             let what = format!("{name}, by {}", look.name);
             let [n_apart, n_lost, n_inside] = look.check(&mesh, &silhouette);
             assert_eq!(n_apart, 0, "{what}: pixels that are seen in part");
@@ -254,9 +257,9 @@ fn all_points_see_the_same_where_no_outline_is() {
 fn what_is_missing_is_found() {
     looks(&|look| {
         let mesh = ball(Vec3::new(0.0, 0.6, 0.1), 0.5, 12, true);
-        let (_, mut silhouette) = look.find_silhouette(&mesh, &Edges::default());
+        let (_, mut silhouette) = look.find_silhouette(&mesh, &[]);
         assert!(look.check(&mesh, &silhouette)[0] > 0, "by {}", look.name);
-        (_, silhouette) = look.find_silhouette(&mesh, &Edges::of(&mesh.1));
+        (_, silhouette) = look.find_silhouette(&mesh, &edges(mesh.1.as_chunks().0));
         silhouette.corners.truncate(silhouette.corners.len() / 2);
         assert!(look.check(&mesh, &silhouette)[1] > 0, "by {}", look.name);
     });
@@ -274,7 +277,7 @@ fn a_shadow_without_bounds_has_no_outline() {
         region_size_px: SIZE_PX.as_vec2(),
         near_m: 0.1,
     };
-    let edges = Edges::of(&mesh.1);
+    let edges = edges(mesh.1.as_chunks().0);
     let shape = Shape {
         positions: &mesh.0,
         corners: &mesh.1,

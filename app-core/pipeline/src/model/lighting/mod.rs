@@ -15,7 +15,7 @@ use crate::passes::list::passes;
 use crate::passes::toy_mesh::{PoseBuffers, Side, ToyMesh};
 use crate::readback::FloatMap;
 use crate::readback::inject::upload;
-use app_scene::geometry::light_points::ambient_directions;
+use app_scene::geometry::disc::ambient_directions;
 
 passes!(occlusion, self_shadow);
 

@@ -1,6 +1,8 @@
 //! Which triangles are around which vertex, while edges are collapsed.
 
-use std::collections::HashMap;
+use std::collections::HashSet;
+
+use crate::geometry::edges::edges;
 
 /// Vertices with more triangles around them stay: a fan of a whole file's triangles would take hours.
 const MOST_AROUND: usize = 128;
@@ -10,8 +12,8 @@ pub(super) struct Links {
     triangles: Vec<[u32; 3]>,
     /// Of each vertex, those that it is a corner of.
     around: Vec<Vec<u32>>,
-    /// By edge, lower index first, whether it is not passed as often one way as the other.
-    borders: HashMap<[u32; 2], i32>,
+    /// Edges at one side of which there is a surface alone, lower index first.
+    borders: HashSet<[u32; 2]>,
     /// Whether a vertex was an end of a border at first.
     is_on_border: Vec<bool>,
     n_triangles: usize,
@@ -20,18 +22,16 @@ pub(super) struct Links {
 impl Links {
     pub(super) fn new(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
         let mut around = vec![Vec::new(); n_vertices];
-        let mut borders: HashMap<[u32; 2], i32> = HashMap::new();
-        for (index, &[a, b, c]) in (0..).zip(triangles) {
-            for corner in [a, b, c] {
-                around[corner as usize].push(index);
-            }
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *borders.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        for (index, corners) in (0..).zip(triangles) {
+            for corner in corners {
+                around[*corner as usize].push(index);
             }
         }
-        borders.retain(|_, passes| *passes != 0);
+        let edges = edges(triangles);
+        let borders = edges.iter().filter(|edge| edge.is_border).map(|edge| edge.ends);
+        let borders: HashSet<[u32; 2]> = borders.collect();
         let mut is_on_border = vec![false; n_vertices];
-        for end in borders.keys().flatten() {
+        for end in borders.iter().flatten() {
             is_on_border[*end as usize] = true;
         }
         Self {
@@ -49,7 +49,7 @@ impl Links {
 
     /// Whether an edge was one at first with a surface at one side alone.
     pub(super) fn is_border(&self, [a, b]: [u32; 2]) -> bool {
-        self.borders.contains_key(&[a.min(b), a.max(b)])
+        self.borders.contains(&[a.min(b), a.max(b)])
     }
 
     /// Corners of the triangles around a vertex.
