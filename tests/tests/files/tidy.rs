@@ -71,6 +71,8 @@ fn sources(folder: &str, extension: &str) -> Vec<Source> {
 fn rust_sources() -> Vec<Source> {
     let folders = [
         "app-core/src",
+        "app-core/examples",
+        "app-core/tests",
         "app-core/shell/src",
         "tests/desk/src",
         "tests/measure/src",
