@@ -2,7 +2,7 @@
 //!
 //! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
 //! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with an additive model in its place where
-//! that is more accurate: see the architecture below.
+//! that is more accurate: see the [architecture].
 //!
 //! A [`Core`] takes a scene, then frames, and makes a picture of each:
 //!
@@ -56,14 +56,9 @@
 //! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
 //! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
-//! [glossary]: #glossary
-//! [passes]: #passes
-//! [session format]: session/index.html#the-session-format
-//! [spaces]: #spaces-and-units
-#![doc = include_str!("../doc/architecture.md")]
-#![doc = include_str!("../doc/spaces.md")]
-#![doc = include_str!("../doc/passes.md")]
-#![doc = include_str!("../doc/glossary.md")]
+//! How it works, and in which words, is told in the documents of `app-core/doc`: the [architecture], the [spaces] and units,
+//! the [passes] and the [glossary]; the format of sessions stands in [`session`], that of recordings in [`recording`].
+//! `app-core/examples` has programs on a device of their own, with a loop over poses, and with a scene made of values alone.
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, core, governor, gpu, ledger, preset, profile, wgpu};
@@ -85,3 +80,24 @@ pub use app_live::{app, interface, live, self_test};
 pub use app_session as session;
 #[cfg(feature = "session")]
 pub use app_session::recording;
+
+/// A document of `app-core/doc` as a page of its own, so that its links are checked and the first page stays short.
+macro_rules! document {
+    ($name:ident, $text:literal) => {
+        // These definitions win over those of the documents themselves, which are of files.
+        /// [architecture]: crate::architecture
+        /// [glossary]: crate::glossary
+        /// [passes]: crate::passes
+        /// [session format]: crate::session
+        /// [spaces]: crate::spaces
+        ///
+        #[cfg(doc)]
+        #[doc = include_str!($text)]
+        pub mod $name {}
+    };
+}
+
+document!(architecture, "../doc/architecture.md");
+document!(glossary, "../doc/glossary.md");
+document!(passes, "../doc/passes.md");
+document!(spaces, "../doc/spaces.md");

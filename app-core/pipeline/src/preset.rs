@@ -187,7 +187,7 @@ pub struct ModelSettings {
     /// Whether the plate is always kept finer than codes, not only where it was estimated or brought to another exposure.
     pub is_plate_fine: bool,
     /// Whether the real shadow is withheld from all but the first fits, and the physical pose made like any other:
-    /// see [`Inspect::withhold_shadow`](crate::internals::Inspect::withhold_shadow). No preset does so.
+    /// see [`Inspect::withhold_shadow`](crate::core::inspect::Inspect::withhold_shadow). No preset does so.
     pub is_shadow_withheld: bool,
 }
 

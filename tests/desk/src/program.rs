@@ -4,7 +4,14 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use app_core::CoreError;
+use app_core::gpu::GpuError;
+
 use crate::stored::{Stored, StoredError};
+
+/// What helps where there is no graphics adapter.
+const SOFTWARE_DRIVER: &str =
+    "; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one";
 
 /// The top folder of the repository, below which programs write unless another folder is named.
 #[must_use]
@@ -25,7 +32,7 @@ pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
     Ok(session)
 }
 
-/// Success, or failure with one line on standard error that tells the whole cause.
+/// Success, or failure with one line on standard error that tells the whole cause, and what helps where that is known.
 #[must_use]
 pub fn exit_code(result: anyhow::Result<()>) -> ExitCode {
     let Err(error) = result else {
@@ -37,7 +44,11 @@ pub fn exit_code(result: anyhow::Result<()>) -> ExitCode {
         .map(str::trim)
         .collect::<Vec<_>>()
         .join(" ");
+    let advice = match error.downcast_ref() {
+        Some(CoreError::Gpu(GpuError::NoAdapter { .. })) => SOFTWARE_DRIVER,
+        _ => "",
+    };
     // Where even this cannot be written, the exit code still tells.
-    let _ = writeln!(io::stderr(), "error: {message}");
+    let _ = writeln!(io::stderr(), "error: {message}{advice}");
     ExitCode::FAILURE
 }

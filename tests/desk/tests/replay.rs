@@ -257,7 +257,7 @@ fn the_program_says_what_is_wrong() {
     let out_arg = out.to_str().unwrap();
     let missing = out.join("missing");
     let missing_arg = missing.to_str().unwrap();
-    let cases: [(&[&str], i32, &str); 7] = [
+    let cases: [(&[&str], i32, &str); 8] = [
         (
             &["--preset", "dazzling"],
             2,
@@ -271,6 +271,11 @@ fn the_program_says_what_is_wrong() {
             "frames 3..6 are asked for, but the session has 5",
         ),
         (&["--adapter", "abacus"], 1, "\"abacus\""),
+        (
+            &["--adapter", "abacus"],
+            1,
+            "; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers`",
+        ),
         (&[missing_arg], 1, missing_arg),
         (&[out_arg], 1, "capture.json"),
     ];

@@ -12,3 +12,4 @@ mod ledger;
 mod plan;
 mod profile;
 mod self_test;
+mod trace;

@@ -30,9 +30,7 @@ pub enum AdapterChoice {
 #[non_exhaustive]
 pub enum GpuError {
     /// There is no driver, or none that can draw on the surface.
-    #[error(
-        "no graphics adapter: {reason}; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one"
-    )]
+    #[error("no graphics adapter: {reason}")]
     NoAdapter {
         /// Why none fits.
         reason: String,

@@ -26,7 +26,7 @@ pub(crate) mod timer;
 pub(crate) mod uniforms;
 pub(crate) mod work;
 
-pub use context::{AdapterChoice, Gpu, GpuError};
+pub use context::{AdapterChoice, Gpu, GpuError, phone_limits};
 pub use handle::DeviceHandle;
 pub use lent::{LentError, LentTextures};
 pub use quirks::fault_on_surfaces;

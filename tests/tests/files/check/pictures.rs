@@ -93,7 +93,8 @@ fn icc(name: &str, columns: &[[f64; 3]; 3], curve: Vec<u8>) -> Vec<u8> {
         data.extend(bytes);
     }
     let mut header = vec![0; 128];
-    header[16..20].copy_from_slice(b"RGB ");
+    header[8] = 4;
+    header[12..24].copy_from_slice(b"mntrRGB XYZ ");
     header[36..40].copy_from_slice(b"acsp");
     [header, table, data].concat()
 }

@@ -3,74 +3,28 @@
 mod budgets;
 mod leaving;
 mod scaling;
-mod trace;
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 use app_core::Core;
 use app_core::camera_frame::{CameraImage, Display};
 use app_core::frame::{self, FrameInput, FrameReport, PassRun};
 use app_core::preset::Preset;
 use app_core::session::{Capture, Session};
-use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use app_pipeline::core::inspect::Inspect;
-use app_pipeline::gpu::context::phone_limits;
 use desk::files::{BUNDLED_SESSION, Folder};
 use measure::bench::{FRAME_KINDS, with_new};
 use measure::planar::{BT601_FULL, planar};
 
-use trace::{Given, Objects};
-
-/// A device that writes down what it is given.
-struct Traced {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    trace: PathBuf,
-    n_read: usize,
-    objects: Objects,
-}
-
-impl Traced {
-    fn new(name: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        // What an earlier run left.
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-        let opened = pollster::block_on(adapter.unwrap().request_device(&wgpu::DeviceDescriptor {
-            required_limits: phone_limits(),
-            trace: wgpu::Trace::Directory(folder.clone()),
-            ..Default::default()
-        }));
-        let (device, queue) = opened.unwrap();
-        Self {
-            device,
-            queue,
-            trace: folder.join("trace.ron"),
-            n_read: 0,
-            objects: Objects::default(),
-        }
-    }
-
-    /// What the device was given since the last look.
-    fn given(&mut self) -> BTreeMap<String, Given> {
-        let text = fs::read_to_string(&self.trace).unwrap();
-        let given = self.objects.take(&text[self.n_read..]);
-        self.n_read = text.len();
-        given
-    }
-}
+use crate::trace::{Objects, Pass, Traced};
 
 /// A report in the words of a trace.
-fn counted(report: &FrameReport, given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
+fn counted(report: &FrameReport, given: &BTreeMap<String, Pass>) -> BTreeMap<String, Pass> {
     counted_runs(&report.ran, given)
 }
 
-fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Given>) -> BTreeMap<String, Given> {
-    let mut passes: BTreeMap<String, Given> = BTreeMap::new();
+fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Pass>) -> BTreeMap<String, Pass> {
+    let mut passes: BTreeMap<String, Pass> = BTreeMap::new();
     for run in ran {
         let pass = passes.entry(run.pass.to_owned()).or_default();
         let work = run.work;
@@ -99,10 +53,9 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
     let session = session();
     let first = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger");
-    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
     for preset in [Preset::Paper, Preset::Balanced, Preset::Best] {
         let mut without = Core::counting();
-        for core in [&mut core, &mut without] {
+        for core in [&mut traced.core, &mut without] {
             core.set_scene(session.scene().clone(), preset).unwrap();
         }
         // The first frame learns all anew, the others what is new in them.
@@ -112,9 +65,8 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
             steady.clone()
         });
         for (index, input) in [&first].into_iter().chain(&others).enumerate() {
-            traced.given();
-            let report = core.frame(input).unwrap();
-            let given = traced.given();
+            let (report, given) = traced.frame(input);
+            let given = given.passes;
             let what = format!("{preset}, frame {index}");
             let ledger = without.frame(input).unwrap();
             assert_eq!(
@@ -125,7 +77,11 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
             assert_eq!(ledger.ran, report.ran, "{what}");
             assert_eq!(ledger.uploaded_bytes, report.uploaded_bytes, "{what}");
         }
-        assert_eq!(core.memory().held_bytes, without.memory().held_bytes, "{preset}");
+        assert_eq!(
+            traced.core.memory().held_bytes,
+            without.memory().held_bytes,
+            "{preset}"
+        );
         assert!(without.read_picture().is_err());
     }
 }
@@ -136,8 +92,10 @@ fn a_screen_costs_what_a_device_is_given() {
     let session = session();
     let mut input = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger-screen");
-    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    traced
+        .core
+        .set_scene(session.scene().clone(), Preset::Balanced)
+        .unwrap();
     let pixels = input.image.clone();
     let planes = CameraImage::from(planar(pixels.rgba(), BT601_FULL).unwrap());
     let large = [400, 300];
@@ -153,12 +111,15 @@ fn a_screen_costs_what_a_device_is_given() {
     ] {
         input.image = image.clone();
         input.effect = effect;
-        core.frame(&input).unwrap();
-        let screen = core.hidden_screen([width, height]).unwrap();
+        traced.core.frame(&input).unwrap();
+        let screen = traced.core.hidden_screen([width, height]).unwrap();
         traced.given();
-        core.draw_on(&screen, Display::default()).unwrap();
-        let given = traced.given();
-        let work = core.count_present([width, height], Display::default()).unwrap();
+        traced.core.draw_on(&screen, Display::default()).unwrap();
+        let given = traced.given().passes;
+        let work = traced
+            .core
+            .count_present([width, height], Display::default())
+            .unwrap();
         let on_screen = PassRun {
             path: frame::PassGroup::Frame,
             pass: "screen",
@@ -176,11 +137,13 @@ fn what_is_planted_in_a_trace_is_found() {
     let session = session();
     let first = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger-planted");
-    let mut core = Core::on_device(traced.device.clone(), traced.queue.clone()).unwrap();
-    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
-    let mut report = core.frame(&first).unwrap();
-    let text = fs::read_to_string(&traced.trace).unwrap();
-    let honest = Objects::default().take(&text);
+    traced
+        .core
+        .set_scene(session.scene().clone(), Preset::Balanced)
+        .unwrap();
+    let mut report = traced.core.frame(&first).unwrap();
+    let text = traced.text();
+    let honest = Objects::default().take(&text).passes;
     assert_eq!(counted(&report, &honest), honest);
     for (from, to) in [
         ("instance_count: 32,", "instance_count: 31,"),
@@ -196,10 +159,9 @@ fn what_is_planted_in_a_trace_is_found() {
             .replace(from, to)
             .replace("load_op: load,(", "load_op: load,\n((");
         assert_ne!(planted, text, "{from}");
-        let planted = Objects::default().take(&planted);
+        let planted = Objects::default().take(&planted).passes;
         assert_ne!(counted(&report, &planted), planted, "{from}");
     }
     report.ran.pop();
     assert_ne!(counted(&report, &honest), honest);
-    traced.given();
 }

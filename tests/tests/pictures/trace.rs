@@ -1,10 +1,99 @@
-//! What a device was given, by its own trace: draws, attachments and bindings of each pass, worked out from nothing else.
+//! What a device was given, by its own trace: objects, and draws, attachments and bindings of each pass, worked out from
+//! nothing else.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use app_core::Core;
+use app_core::frame::{FrameInput, FrameReport};
+use app_core::wgpu::{self, Instance, InstanceDescriptor};
+use app_pipeline::gpu::context::phone_limits;
+
+/// A core on a device that writes down what it is given.
+pub(crate) struct Traced {
+    pub(crate) core: Core,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    trace: PathBuf,
+    /// What was read of the trace.
+    n_read: usize,
+    objects: Objects,
+}
+
+impl Traced {
+    pub(crate) fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        // What an earlier run left.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        let opened = pollster::block_on(adapter.unwrap().request_device(&wgpu::DeviceDescriptor {
+            required_limits: phone_limits(),
+            trace: wgpu::Trace::Directory(folder.clone()),
+            ..Default::default()
+        }));
+        let (device, queue) = opened.unwrap();
+        Self {
+            core: Core::on_device(device.clone(), queue.clone()).unwrap(),
+            device,
+            queue,
+            trace: folder.join("trace.ron"),
+            n_read: 0,
+            objects: Objects::default(),
+        }
+    }
+
+    /// The whole trace.
+    pub(crate) fn text(&self) -> String {
+        fs::read_to_string(&self.trace).unwrap()
+    }
+
+    /// What the device was given since the last look.
+    pub(crate) fn given(&mut self) -> Given {
+        let text = self.text();
+        let given = self.objects.take(&text[self.n_read..]);
+        self.n_read = text.len();
+        given
+    }
+
+    /// Makes the picture of a frame; with its report, what the device was given for it.
+    pub(crate) fn frame(&mut self, input: &FrameInput) -> (FrameReport, Given) {
+        self.given();
+        let report = self.core.frame(input).unwrap();
+        (report, self.given())
+    }
+}
+
+/// What a device was given.
+#[derive(Debug, Default)]
+pub(crate) struct Given {
+    /// By the passes' labels.
+    pub(crate) passes: BTreeMap<String, Pass>,
+    /// How often each action that makes an object.
+    pub(crate) created: BTreeMap<String, u64>,
+}
+
+impl Given {
+    /// Objects of which the action that makes them has `what` in its name.
+    pub(crate) fn n_created(&self, what: &str) -> u64 {
+        let of_kind = self.created.iter().filter(|(action, _)| action.contains(what));
+        of_kind.map(|(_, n)| n).sum()
+    }
+
+    /// How often each pass ran.
+    pub(crate) fn runs(&self) -> BTreeMap<&str, u32> {
+        let passes = self.passes.iter();
+        passes
+            .map(|(label, pass)| (label.as_str(), pass.n_runs))
+            .collect()
+    }
+}
 
 /// Work of a pass, over all of its runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Given {
+pub(crate) struct Pass {
     pub(crate) n_runs: u32,
     pub(crate) n_draws: u32,
     pub(crate) triangles: u64,
@@ -107,25 +196,27 @@ fn n_drawn_from(text: &[&str], first: usize) -> u64 {
 }
 
 impl Objects {
-    /// Takes a part of a trace; returns the passes in it.
-    pub(crate) fn take(&mut self, trace: &str) -> BTreeMap<String, Given> {
+    /// Takes a part of a trace; returns what is in it.
+    pub(crate) fn take(&mut self, trace: &str) -> Given {
         let lines: Vec<&str> = trace.lines().collect();
-        let mut passes = BTreeMap::new();
+        let mut given = Given::default();
         let mut at = 0;
         while at < lines.len() {
             let text = block(&lines, at);
             let line = lines[at].trim_start();
             if line.starts_with("Create") {
+                let action = line.split('(').next().unwrap_or_default();
+                *given.created.entry(action.to_owned()).or_default() += 1;
                 self.create(line, text);
                 at += text.len();
             } else if line.starts_with("RunRenderPass") || line.starts_with("RunComputePass") {
-                self.pass(text, &mut passes);
+                self.pass(text, &mut given.passes);
                 at += text.len();
             } else {
                 at += 1;
             }
         }
-        passes
+        given
     }
 
     fn create(&mut self, line: &str, text: &[&str]) {
@@ -174,7 +265,7 @@ impl Objects {
         texture.size[0] * texture.size[1] * view.n_layers * texture.texel_bytes
     }
 
-    fn pass(&self, text: &[&str], passes: &mut BTreeMap<String, Given>) {
+    fn pass(&self, text: &[&str], passes: &mut BTreeMap<String, Pass>) {
         let label = text
             .iter()
             .find_map(|line| line.trim().strip_prefix("label: Some(\""));
@@ -228,7 +319,7 @@ impl Objects {
     }
 
     /// Pixels of a pass and bytes that its attachments load; those that they store are added.
-    fn attachments(&self, text: &[&str], given: &mut Given) -> (u64, u64) {
+    fn attachments(&self, text: &[&str], given: &mut Pass) -> (u64, u64) {
         let (mut n_pixels, mut read, mut current) = (None, 0, None);
         let first = text
             .iter()

@@ -1,0 +1,64 @@
+//! A loop over frames whose poses are the program's own: the llama turns its head, and each pass is timed.
+//!
+//! `cargo run -p app-core --example live_loop`
+
+mod folder;
+
+use std::error::Error;
+use std::sync::Arc;
+
+use app_core::frame::{FrameInput, Path};
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use app_core::scene::Pose;
+use app_core::session::Session;
+use app_core::toy::{NodePose, Toy, ToyError};
+use app_core::{Core, wgpu};
+use glam::DQuat;
+
+/// How far the head turns from frame to frame, in radians.
+const STEP_RAD: f64 = 0.1;
+const N_FRAMES: u32 = 4;
+
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+    let session = folder::bundled_session()?;
+    let toy = &session.scene().toy;
+    let instance = wgpu::Instance::default();
+    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
+    core.set_scene(session.scene().clone(), Preset::Balanced)?;
+    // Times are taken on the device, where it can; a program that does not ask pays nothing.
+    core.time_passes(true)?;
+
+    // A camera that stands still: one picture for all frames. A live app brings a new one with each.
+    let mut input = FrameInput::from(&session.frame(0)?);
+    let mut before = None;
+    for frame in 0..N_FRAMES {
+        input.shown_pose = head_turned(toy, STEP_RAD * f64::from(frame))?;
+        let report = core.frame(&input)?;
+
+        println!("frame {frame}: {} passes", report.ran.len());
+        for time in core.read_pass_times()? {
+            println!("  {:7} {:16} {:8.3} ms", time.path.name(), time.pass, time.gpu_ms);
+        }
+        // The first frame learns the place: lights, surfaces, what the toy hides. Later ones only draw.
+        let learns = report.ran.iter().any(|run| run.path == Path::Capture);
+        assert_eq!(learns, frame == 0);
+
+        // Reading back waits for the device; an app shows the picture with `Core::present` or `Core::draw_on`.
+        let picture = core.read_picture()?;
+        assert_ne!(before.as_ref(), Some(&picture));
+        before = Some(picture);
+    }
+    Ok(())
+}
+
+/// The pose with the head turned about its own vertical axis: nodes that are not named stay as authored.
+fn head_turned(toy: &Toy, angle_rad: f64) -> Result<Pose, ToyError> {
+    let head = toy.find_node("head")?;
+    let mut nodes = NodePose::default();
+    if let Some(mut transform) = toy.authored_transform(head)? {
+        transform.rotation *= DQuat::from_rotation_y(angle_rad);
+        nodes.parent_from_node.push((head, transform));
+    }
+    Ok(Pose::Nodes(Arc::new(nodes)))
+}
