@@ -7,7 +7,7 @@ mod folder;
 use std::error::Error;
 use std::sync::Arc;
 
-use app_core::frame::{FrameInput, Path};
+use app_core::frame::{FrameInput, PassGroup};
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Pose;
@@ -41,7 +41,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             println!("  {:7} {:16} {:8.3} ms", time.path.name(), time.pass, time.gpu_ms);
         }
         // The first frame learns the place: lights, surfaces, what the toy hides. Later ones only draw.
-        let learns = report.ran.iter().any(|run| run.path == Path::Capture);
+        let learns = report.ran.iter().any(|run| run.path == PassGroup::Capture);
         assert_eq!(learns, frame == 0);
 
         // Reading back waits for the device; an app shows the picture with `Core::present` or `Core::draw_on`.

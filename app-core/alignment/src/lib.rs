@@ -113,7 +113,7 @@ impl Alignment {
             camera: input.camera,
             world_from_object: input.world_from_object,
             lights: None,
-            relit_plates: None,
+            scene: None,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::scene::{Camera, Intrinsics, Light, Pose, Receiver, Scene, Surface, Uncertainty};
+use app_core::scene::{Camera, Intrinsics, Light, Pose, Receiver, Scene, Surface};
 use app_core::toy::{NodePose, Toy};
 use app_core::{Core, wgpu};
 use glam::{DMat4, DQuat, DVec2, DVec3};
@@ -29,45 +29,28 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             * DMat4::from_rotation_x(-0.66),
     };
     // What stays the same: toy, place of the toy, what catches shadows, lights.
-    let scene = Scene {
-        name: "box".to_owned(),
-        width_px: SIZE_PX[0],
-        height_px: SIZE_PX[1],
-        toy: Arc::clone(&toy),
-        world_from_object: DMat4::IDENTITY,
-        physical_pose: Pose::Authored,
-        receivers: vec![Receiver {
-            name: "table".to_owned(),
-            world_from_plane: DMat4::IDENTITY,
-            half_extent_m: DVec2::splat(1.0),
-            surface: Surface::Uniform,
-        }],
-        lights: vec![Light::Directional {
-            direction_to_light_in_world: TO_LIGHT,
-            angular_radius_rad: 0.0,
-        }],
-        plates: Vec::new(),
-        probe: None,
-        uncertainty: Uncertainty::default(),
+    let table = Receiver {
+        name: "table".to_owned(),
+        world_from_plane: DMat4::IDENTITY,
+        half_extent_m: DVec2::splat(1.0),
+        surface: Surface::Uniform,
     };
+    let lamp = Light::Directional {
+        direction_to_light_in_world: TO_LIGHT,
+        angular_radius_rad: 0.0,
+    };
+    let scene = Scene::new(SIZE_PX, Arc::clone(&toy), DMat4::IDENTITY, vec![table]).with_lights(vec![lamp]);
     let node = toy.find_node("box")?;
     let mut turned = toy.authored_transform(node)?.ok_or("authored as a matrix")?;
     turned.rotation = DQuat::from_rotation_y(0.8);
 
     // What each frame brings: the photograph, where camera and toy are in it, and the pose to be shown.
-    let input = FrameInput {
-        image: Arc::new(made::photograph(&camera)).into(),
-        camera,
-        exposure: 1.0,
-        world_from_object: DMat4::IDENTITY,
-        lights: None,
-        light_estimate: None,
-        shown_pose: Pose::Nodes(Arc::new(NodePose {
-            parent_from_node: vec![(node, turned)],
-            morph_weights: Vec::new(),
-        })),
-        effect: 1.0,
-    };
+    let pose = Pose::Nodes(Arc::new(NodePose {
+        parent_from_node: vec![(node, turned)],
+        morph_weights: Vec::new(),
+    }));
+    let photograph = made::photograph(&camera);
+    let input = FrameInput::new(photograph, camera, DMat4::IDENTITY).with_shown_pose(pose);
 
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;

@@ -281,7 +281,7 @@ impl Out {
 struct Run<'a> {
     preset: Preset,
     core: &'a mut Core,
-    turned_down: &'static [Step],
+    turned_down: &'static [QualityStep],
     out: Option<Out>,
     follower: Follower,
     frames: Vec<FrameEntry>,

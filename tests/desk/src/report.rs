@@ -123,8 +123,6 @@ pub struct AlignmentEntry {
     pub report: AlignmentReport,
     /// What could not be aligned.
     pub warnings: Vec<AlignmentWarning>,
-    /// Whether the plates are taken in another light than they were photographed in.
-    pub is_relit: bool,
     /// Lights on the session's list, where that was put aside.
     pub n_listed: usize,
     /// Each light that a probe tells, against the nearest light of that list, as seen from the probe.
@@ -141,7 +139,6 @@ impl From<&Aligned> for AlignmentEntry {
         Self {
             cpu_ms: aligned.cpu_ms,
             warnings: aligned.alignment.warnings.clone(),
-            is_relit: aligned.alignment.relit_plates.is_some(),
             n_listed: aligned.put_aside.len(),
             probe_against_listed: told.map(|light| aligned.error_of_told(light)).collect(),
             discovered_against_listed: discovered

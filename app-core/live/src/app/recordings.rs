@@ -8,6 +8,7 @@ use super::notice::Notice;
 use super::recorder::Recorder;
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
+use app_scene::scene::Scene;
 use app_session::recording::{Ending, Limits, LiveFrame, RecordingJob};
 
 impl App {
