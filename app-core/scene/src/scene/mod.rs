@@ -13,7 +13,6 @@ use std::fmt;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3};
-use serde::Serialize;
 
 use crate::toy::Toy;
 
