@@ -194,8 +194,8 @@ pub struct ToyRecord {
     pub physical_pose: PoseRecord,
 }
 
-/// A pose of the toy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A pose of the toy; by default nodes stand as authored.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct PoseRecord {
     /// Animation of the model: its name, or `#N` for the N-th of the file, counted from 0; a name wins, an unknown one is
@@ -236,7 +236,7 @@ pub enum SurfaceRecord {
 }
 
 /// All kinds of light in one record: an enum tagged by `kind` would lose the path of a bad field.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(description = "A light.", transform = needs_of_its_kind))]
 pub struct LightRecord {
@@ -262,11 +262,12 @@ pub struct LightRecord {
 }
 
 /// What a light is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LightKind {
     /// A bulb; needs `position` and `radius`.
+    #[default]
     Sphere,
     /// A light too far away for its distance to matter; needs `direction_to_light` and `angular_radius_deg`.
     Directional,
@@ -289,7 +290,7 @@ pub struct BackgroundRecord {
 }
 
 /// A camera frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct FrameRecord {
     /// When the frame was taken, seconds from an origin of the session's own.

@@ -62,18 +62,12 @@ impl CaptureRecord {
 }
 
 impl PoseRecord {
-    /// Nodes as authored.
-    pub const AUTHORED: Self = Self {
-        clip: None,
-        time: 0.0,
-    };
-
     /// A clip by its name, or by its number where another clip of that name comes before it. Poses of single nodes cannot
     /// be told: they become the authored one.
     #[must_use]
     pub fn new(pose: &Pose, toy: &Toy) -> Self {
         let Pose::Clip { clip, time_secs } = pose else {
-            return Self::AUTHORED;
+            return Self::default();
         };
         let name = toy.clip_names().into_iter().nth(clip.index());
         let name = name.filter(|name| toy.find_clip(name).ok() == Some(*clip));
@@ -88,42 +82,34 @@ impl ProbeRecord {
     /// A probe whose pictures are at `paths`, in their order; none without any.
     #[must_use]
     pub fn new(probe: &Probe, paths: &[String]) -> Option<Self> {
-        let mut pictures = probe
-            .pictures
-            .iter()
-            .zip(paths)
-            .map(|(picture, path)| ProbePictureRecord {
-                image: path.clone(),
-                exposure_ratio: Some(picture.exposure_ratio),
-                intrinsics: Some((&picture.camera.intrinsics).into()),
-                world_from_camera: picture.camera.world_from_camera.to_cols_array(),
-                world_from_lens: Some(picture.world_from_probe.to_cols_array()),
-            });
-        let (first, path) = probe.pictures.first().zip(paths.first())?;
-        pictures.next();
-        let slope = match &probe.shape {
-            ProbeShape::FresnelLens { slope, .. } => Some(slope),
-            ProbeShape::MirrorBall { .. } => None,
+        let pictures = probe.pictures.iter().zip(paths);
+        let mut pictures = pictures.map(|(picture, path)| ProbePictureRecord {
+            image: path.clone(),
+            exposure_ratio: Some(picture.exposure_ratio),
+            intrinsics: Some((&picture.camera.intrinsics).into()),
+            world_from_camera: picture.camera.world_from_camera.to_cols_array(),
+            world_from_lens: Some(picture.world_from_probe.to_cols_array()),
+        });
+        let first = pictures.next()?;
+        let (kind, slope) = match &probe.shape {
+            ProbeShape::FresnelLens { slope, .. } => (ProbeKind::FresnelLens, slope),
+            ProbeShape::MirrorBall { .. } => (ProbeKind::MirrorBall, &FacetSlope::Hemisphere),
+        };
+        let (focal_length, facets) = match slope {
+            FacetSlope::Hemisphere => (None, &[][..]),
+            FacetSlope::Focal { focal_m } => (Some(*focal_m), &[][..]),
+            FacetSlope::Table(facets) => (None, &facets[..]),
         };
         Some(Self {
-            kind: match slope {
-                Some(_) => ProbeKind::FresnelLens,
-                None => ProbeKind::MirrorBall,
-            },
-            world_from_lens: first.world_from_probe.to_cols_array(),
+            kind,
+            world_from_lens: first.world_from_lens?,
             radius: probe.shape.radius_m(),
-            focal_length: match slope {
-                Some(FacetSlope::Focal { focal_m }) => Some(*focal_m),
-                _ => None,
-            },
-            facets: match slope {
-                Some(FacetSlope::Table(facets)) => facets.iter().map(FacetRecord::from).collect(),
-                _ => Vec::new(),
-            },
-            image: path.clone(),
-            exposure_ratio: first.exposure_ratio,
-            intrinsics: Some((&first.camera.intrinsics).into()),
-            world_from_camera: Some(first.camera.world_from_camera.to_cols_array()),
+            focal_length,
+            facets: facets.iter().map(FacetRecord::from).collect(),
+            image: first.image,
+            exposure_ratio: first.exposure_ratio?,
+            intrinsics: first.intrinsics,
+            world_from_camera: Some(first.world_from_camera),
             pictures: pictures.collect(),
         })
     }
@@ -174,29 +160,24 @@ impl From<&Receiver> for ReceiverRecord {
 
 impl From<&Light> for LightRecord {
     fn from(light: &Light) -> Self {
-        let of_kind = |kind| Self {
-            kind,
-            position: None,
-            radius: None,
-            direction_to_light: None,
-            angular_radius_deg: None,
-        };
         match *light {
             Light::Sphere {
                 position_in_world,
                 radius_m,
             } => Self {
+                kind: LightKind::Sphere,
                 position: Some(position_in_world.to_array()),
                 radius: Some(radius_m),
-                ..of_kind(LightKind::Sphere)
+                ..Self::default()
             },
             Light::Directional {
                 direction_to_light_in_world,
                 angular_radius_rad,
             } => Self {
+                kind: LightKind::Directional,
                 direction_to_light: Some(direction_to_light_in_world.to_array()),
                 angular_radius_deg: Some(angular_radius_rad.to_degrees()),
-                ..of_kind(LightKind::Directional)
+                ..Self::default()
             },
         }
     }

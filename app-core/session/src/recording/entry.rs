@@ -36,8 +36,7 @@ impl LiveFrame {
             light_estimate: self.light_estimate.as_ref().map(Into::into),
             world_from_camera: self.camera.world_from_camera.to_cols_array(),
             animation: PoseRecord::new(&self.shown_pose, toy),
-            truth: None,
-            mask: None,
+            ..FrameRecord::default()
         }
     }
 }

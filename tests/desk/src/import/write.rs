@@ -189,13 +189,8 @@ fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> 
             time: time_s,
             image: frame.image.clone(),
             intrinsics: Some(projection(frame.intrinsics)),
-            world_from_object: None,
-            exposure: None,
-            light_estimate: None,
             world_from_camera: world_from_camera.to_cols_array(),
-            animation: PoseRecord::AUTHORED,
-            truth: None,
-            mask: None,
+            ..FrameRecord::default()
         }
     };
     let mut frames: Vec<_> = imported.frames.iter().enumerate().map(entry).collect();
@@ -227,7 +222,7 @@ fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> 
         toy: ToyRecord {
             file: "toy.glb".to_owned(),
             world_from_object: place,
-            physical_pose: PoseRecord::AUTHORED,
+            physical_pose: PoseRecord::default(),
         },
         receivers: entries("--receiver", &lacking.receiver)?,
         lights: entries("--light", &lacking.light)?,

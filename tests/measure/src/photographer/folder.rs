@@ -40,16 +40,12 @@ fn index(shot: &Shot) -> Index {
         probe: &(0..n_pictures).map(probe_file).collect::<Vec<_>>(),
     };
     let frame = FrameRecord {
-        time: 0.0,
         image: "frame.png".to_owned(),
-        intrinsics: None,
-        world_from_object: None,
-        exposure: None,
-        light_estimate: None,
         world_from_camera: shot.input.camera.world_from_camera.to_cols_array(),
         animation: PoseRecord::new(&shot.input.shown_pose, &scene.toy),
         truth: Some("truth.png".to_owned()),
         mask: Some("mask.png".to_owned()),
+        ..FrameRecord::default()
     };
     let capture = CaptureRecord {
         frames: vec![frame],
