@@ -174,31 +174,32 @@ impl<P: Phone> Shell<P> {
     }
 
     fn call_platform(&mut self, command: PlatformCommand) {
-            match command {
-                PlatformCommand::AskPermission => self.phone.ask_for_camera(),
-                PlatformCommand::OpenSettings => self.phone.open_settings(),
-                PlatformCommand::RunTracking {
+        match command {
+            PlatformCommand::AskPermission => self.phone.ask_for_camera(),
+            PlatformCommand::OpenSettings => self.phone.open_settings(),
+            PlatformCommand::RunTracking {
+                finds_planes,
+                is_new_world,
+            } => {
+                let run = Run {
                     finds_planes,
                     is_new_world,
-                } => {
-                    let run = Run {
-                        finds_planes,
-                        is_new_world,
-                    };
-                    let event = self.feed.run(&mut self.phone, run);
-                    self.tell_some(event);
-                }
-                PlatformCommand::PauseTracking => self.feed.pause(),
-                PlatformCommand::HoldAnchor {
-                    id,
-                    world_from_anchor,
-                } => self.feed.hold(id, &world_from_anchor),
-                PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
-                PlatformCommand::ReopenDevice => self.wants_device = true,
-                PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
-                // ARCore keeps exposure and frame rate to itself.
-                PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) | PlatformCommand::FrameRate(_) => {
-                }
+                };
+                let event = self.feed.run(&mut self.phone, run);
+                self.tell_some(event);
             }
+            PlatformCommand::PauseTracking => self.feed.pause(),
+            PlatformCommand::HoldAnchor {
+                id,
+                world_from_anchor,
+            } => self.feed.hold(id, &world_from_anchor),
+            PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
+            PlatformCommand::ReopenDevice => self.wants_device = true,
+            PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
+            // ARCore keeps exposure and frame rate to itself.
+            PlatformCommand::LockExposure(_)
+            | PlatformCommand::Underexpose(_)
+            | PlatformCommand::FrameRate(_) => {}
+        }
     }
 }

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use app_core::Core;
-use app_core::app::{Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand};
+use app_core::app::{
+    Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
+};
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;

@@ -1,8 +1,6 @@
 //! A loop over frames whose poses are the program's own: the llama turns its head, and each pass is timed.
 //!
-//! `cargo run -p app-core --example live_loop`
-
-mod folder;
+//! `cargo run -p app-core --features fs --example live_loop`
 
 use std::error::Error;
 use std::sync::Arc;
@@ -11,7 +9,7 @@ use app_core::frame::{FrameInput, PassGroup};
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Pose;
-use app_core::session::Session;
+use app_core::session::{Capture, Folder, Session};
 use app_core::toy::{NodePose, Toy, ToyError};
 use app_core::{Core, wgpu};
 use glam::DQuat;
@@ -20,8 +18,11 @@ use glam::DQuat;
 const STEP_RAD: f64 = 0.1;
 const N_FRAMES: u32 = 4;
 
+/// The session that comes with the project: a jointed wooden llama on a table, under one bulb.
+const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sessions/llama");
+
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    let session = folder::bundled_session()?;
+    let session = Capture::open(Folder::open(SESSION)?)?;
     let toy = &session.scene().toy;
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;

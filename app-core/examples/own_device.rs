@@ -1,16 +1,17 @@
 //! The pipeline on a device that the program opened for itself, as an engine does that draws more than this picture.
 //!
-//! `cargo run -p app-core --example own_device`
-
-mod folder;
+//! `cargo run -p app-core --features fs --example own_device`
 
 use std::error::Error;
 
 use app_core::camera_frame::Display;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
-use app_core::session::Session;
+use app_core::session::{Capture, Folder, Session};
 use app_core::{Core, gpu, wgpu};
+
+/// The session that comes with the project: a jointed wooden llama on a table, under one bulb.
+const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sessions/llama");
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     // Any device will do that has the limits of a phone. It may have more of them, and features of any kind.
@@ -23,7 +24,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     // Device and queue are handles: the program keeps its own.
     let mut core = Core::on_device(device.clone(), queue.clone())?;
 
-    let session = folder::bundled_session()?;
+    let session = Capture::open(Folder::open(SESSION)?)?;
     core.set_scene(session.scene().clone(), Preset::Balanced)?;
     let input = FrameInput::from(&session.frame(0)?);
     core.frame(&input)?;

@@ -1,7 +1,5 @@
 //! The examples run: they are what a stranger copies first.
 
-#![expect(clippy::duplicate_mod, reason = "two examples read the same folder")]
-
 use std::error::Error;
 
 #[path = "../examples/live_loop.rs"]

@@ -184,7 +184,6 @@ impl MetalView {
             return;
         }
         if let Some(link) = self.ivars().display_link.get() {
-            #[allow(clippy::cast_precision_loss, reason = "some dozens a second")]
             let rate = frames_per_s as f32;
             link.setPreferredFrameRateRange(CAFrameRateRange {
                 minimum: rate,

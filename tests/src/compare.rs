@@ -165,7 +165,6 @@ impl<T: Texels> Pair<'_, T> {
 impl Difference {
     /// Share of texels with a channel that differs by more than `tolerance`, or with a NaN; 0 to 1.
     #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "texels of one picture")]
     pub fn share_above(&self, tolerance: f64) -> f64 {
         let is_within = |difference: &&f64| **difference <= tolerance;
         let n_within = self.per_texel.iter().filter(is_within).count();
@@ -212,11 +211,7 @@ impl Difference {
             }
             // Even the smallest difference is to be seen.
             let share = (difference / full).clamp(0.0, 1.0);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "64 to 255"
-            )]
+            #[expect(clippy::cast_possible_truncation, reason = "64 to 255")]
             let red = (64.0 + 191.0 * share) as u8;
             [red, 32, 32, 255]
         });

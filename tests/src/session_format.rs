@@ -15,7 +15,8 @@ pub const WHOLE: &str = "capture.json";
 /// Lines before and after a table that is made.
 const BEGIN: &str = "<!-- keys -->\n";
 const END: &str = "<!-- end of keys -->\n";
-const HEAD: &str = "\n| key | type | range | needed | meaning | example |\n| --- | --- | --- | --- | --- | --- |\n";
+const HEAD: &str =
+    "\n| key | type | range | needed | meaning | example |\n| --- | --- | --- | --- | --- | --- |\n";
 
 /// The schema from the types that the reader has now.
 #[must_use]

@@ -75,7 +75,6 @@ fn a_material_takes_little_beside_its_textures() {
     let n_materials = many.materials().len();
     assert!(n_materials > 1000, "{n_materials}");
     let (many_mib, n_many_objects) = shown(many);
-    #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
     let kib = 1024.0 * (many_mib - few_mib) / n_materials as f64;
     println!("{kib:.1} KiB a material");
     assert!(kib <= MAX_MATERIAL_KIB, "{kib} KiB a material");

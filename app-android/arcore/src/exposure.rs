@@ -41,7 +41,6 @@ impl Session {
                 speed.cast::<i32>().read_unaligned(),
             )
         };
-        #[allow(clippy::cast_precision_loss, reason = "a part of a second")]
         let duration_s = 1e-9 * time_ns as f64;
         let iso = f64::from(iso);
         let exposure = Exposure { duration_s, iso };

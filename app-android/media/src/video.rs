@@ -116,7 +116,6 @@ impl Encoder {
         };
         #[allow(
             clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
             reason = "some hours of microseconds, which do not run backwards"
         )]
         let time_us = (1e6 * since_s).round() as u64;

@@ -91,11 +91,7 @@ fn chroma_of(rows: [&[u8]; 2]) -> [u8; 2] {
     [cb, cr].map(|chroma| code(128.0 + 224.0 / 255.0 * chroma))
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the conversion saturates"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "the conversion saturates")]
 fn code(value: f32) -> u8 {
     value.round() as u8
 }

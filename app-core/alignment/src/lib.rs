@@ -58,8 +58,8 @@ use app_scene::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use lights::Watched;
-use picture::Mask;
 use photograph::{MOST_OUTLINE_PX, Photograph};
+use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 

@@ -157,7 +157,6 @@ impl Rasterizer {
         // Triangles that face the eye turn to the left, and rows go down: edges that go down have them on their right.
         let is_end = u32::from(is_down != is_left);
         for line in first..end {
-            #[allow(clippy::cast_precision_loss, reason = "lines of a picture")]
             let y = (line as f64 + 0.5) / rows;
             let x = a.x + (y - a.y) * slope;
             // Sub-rows have their samples in different places within a column: upright edges are as exact as slanted ones.
@@ -221,9 +220,8 @@ impl Rasterizer {
             let mut n_samples = 0;
             out.values.extend(self.more[..width].iter().map(|more| {
                 n_samples += more;
-                #[allow(clippy::cast_precision_loss, reason = "at most 128")]
-                let covered = OF_SAMPLE * n_samples as f32;
-                covered
+
+                OF_SAMPLE * n_samples as f32
             }));
         }
     }
@@ -266,7 +264,6 @@ fn rectangle(corners: &[DVec3], size_px: IVec2) -> Option<Coverage> {
 /// The least whole number that is not below a value of a picture's size; 0 for a negative one.
 #[allow(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     reason = "bounded by the callers; the library's own rounding is a call, here in the innermost loop"
 )]
 fn round_up(value: f64) -> usize {
@@ -288,7 +285,6 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
     let top = a.y.min(b.y).min(c.y);
     let bottom = a.y.max(b.y).max(c.y);
     for row in round_up((top - 0.5).min(limit))..round_up((bottom - 0.5).min(limit)) {
-        #[allow(clippy::cast_precision_loss, reason = "rows of a picture")]
         let y = row as f64 + 0.5;
         let Some([left, right]) = crossing([a, b, c], y) else {
             continue;
@@ -296,7 +292,6 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
         let width = f64::from(out.size_px.x);
         let columns = round_up((left - 0.5).min(width))..round_up((right - 0.5).min(width));
         for column in columns {
-            #[allow(clippy::cast_precision_loss, reason = "columns of a picture")]
             let at = DVec2::new(column as f64 + 0.5, y);
             let inverse = (at_a + slope.dot(at - a.truncate())).max(farthest).min(nearest);
             #[allow(clippy::cast_possible_truncation, reason = "a depth, to 7 digits")]

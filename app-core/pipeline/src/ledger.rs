@@ -4,7 +4,7 @@
 //! with; [`Core::counting`](crate::Core::counting) makes such reports without a device.
 
 use crate::frame::FrameReport;
-use crate::gpu::pass_run::{PassRun, PassGroup};
+use crate::gpu::pass_run::{PassGroup, PassRun};
 use crate::gpu::work::Work;
 
 /// Bytes of a mebibyte.
@@ -70,7 +70,6 @@ impl Ledger {
 
     /// Copies of the screen: each is a read and a write of all of its pixels, of four bytes.
     #[must_use]
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
     pub fn copies(&self, bytes: u64) -> f64 {
         let [width, height] = self.screen_px.map(u64::from);
         let copy = 2 * SCREEN_PIXEL_BYTES * width * height;
@@ -130,7 +129,6 @@ impl Ledger {
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
 fn mebibytes(bytes: u64) -> f64 {
     bytes as f64 / MEBIBYTE
 }

@@ -28,9 +28,9 @@ use app_scene::toy::ToyWarning;
 use app_scene::words::Number;
 
 pub use app_scene::scene::FieldError;
-pub use capture::{Capture, ScenePaths, record};
 #[cfg(feature = "schema")]
 pub use capture::schema;
+pub use capture::{Capture, ScenePaths, record};
 pub use error::{PictureError, SessionError, SessionErrorKind};
 pub use files::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, PathError, check_path};
 #[cfg(feature = "fs")]

@@ -54,7 +54,6 @@ impl VideoEncoder for MotionJpeg {
 
 #[allow(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     reason = "the conversion saturates, and what is no number becomes 0"
 )]
 fn n_pictures_until(since_s: f64) -> usize {

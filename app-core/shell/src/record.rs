@@ -34,7 +34,11 @@ pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, 
         ),
         Err(error) => job.without_file(&error),
     };
-    let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let file = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     Recorded { file, outcome }
 }
 

@@ -106,7 +106,11 @@ impl Worker {
     #[must_use]
     pub fn with(self, pace: Pace, toy_file: Arc<[u8]>) -> Self {
         let toy_file = ToyFile::of(toy_file);
-        Self { pace, toy_file, ..self }
+        Self {
+            pace,
+            toy_file,
+            ..self
+        }
     }
 
     /// Does what a command asks for.

@@ -152,7 +152,6 @@ fn expose(device: &AVCaptureDevice, exposure: &Exposure) {
 
 fn seconds(time: CMTime) -> f64 {
     let CMTime { value, timescale, .. } = time;
-    #[allow(clippy::cast_precision_loss, reason = "a part of a second")]
     let value = value as f64;
     value / f64::from(timescale)
 }

@@ -9,9 +9,9 @@ use app_core::alignment::{
 };
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
+use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Scene};
 use app_core::session::{Session, SessionFrame};
-use app_core::probe::TrackedLight;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
 
@@ -146,9 +146,7 @@ impl LightError {
     fn nearest(found: &SeenLight, listed: impl Iterator<Item = SeenLight>) -> Option<Self> {
         let error = |(index, listed): (usize, SeenLight)| Self {
             index,
-            direction_rad: found
-                .direction_in_world
-                .angle_between(listed.direction_in_world),
+            direction_rad: found.direction_in_world.angle_between(listed.direction_in_world),
             distance_ratio: found
                 .distance_m
                 .zip(listed.distance_m)

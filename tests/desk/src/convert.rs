@@ -178,11 +178,7 @@ fn write_frames(
 }
 
 /// Nanoseconds of a time in seconds; nought before the origin.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a cast saturates"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
 fn time_ns(secs: f64) -> u64 {
     (secs * 1e9).round() as u64
 }

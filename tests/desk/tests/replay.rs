@@ -94,12 +94,7 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
     assert_eq!(
         out.names(),
-        [
-            &picture_file(3),
-            &picture_file(4),
-            INPUTS_FOLDER,
-            MAPS_FOLDER
-        ],
+        [&picture_file(3), &picture_file(4), INPUTS_FOLDER, MAPS_FOLDER],
         "what was whole stays, and no remnants"
     );
 

@@ -233,7 +233,6 @@ fn mean_taps(core: &mut Core, inputs: &[FrameInput]) -> Result<Option<f64>, Core
         let texels = map.iter().flat_map(|map| &map.texels);
         taps.extend(texels.map(|texel| f64::from(texel[0])).filter(|taps| *taps > 0.0));
     }
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 texels")]
     let n_texels = taps.len() as f64;
     Ok((!taps.is_empty()).then(|| taps.iter().sum::<f64>() / n_texels))
 }

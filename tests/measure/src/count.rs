@@ -25,7 +25,6 @@ pub struct Counted {
 impl Counted {
     /// The peak in units of 2^20 bytes.
     #[must_use]
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
     pub fn peak_mib(&self) -> f64 {
         self.peak_bytes as f64 / 1048576.0
     }

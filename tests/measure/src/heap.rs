@@ -16,7 +16,6 @@ static HEAP: Counted = Counted {
 /// MiB held now.
 #[must_use]
 pub fn heap_mib() -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "memories are far smaller than 2^52")]
     let n_bytes = HEAP.n_bytes.load(Ordering::Relaxed) as f64;
     n_bytes / f64::from(1 << 20)
 }

@@ -12,11 +12,7 @@ pub const BT601_FULL: YcbcrEncoding = YcbcrEncoding {
     range: CodeRange::Full,
 };
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "from 0 to 255"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn code(value: f64) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
 }

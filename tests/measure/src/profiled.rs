@@ -191,7 +191,6 @@ fn frames_of(profile: &Profile, kind: &str) -> Vec<(f64, f64)> {
 }
 
 fn task_rows(profile: &Profile, frames: &[(f64, f64)], heads: Vec<String>) -> Vec<Vec<String>> {
-    #[allow(clippy::cast_precision_loss, reason = "a handful of frames")]
     let per_frame = 1e-3 / frames.len() as f64;
     let is_within = |ts: f64| frames.iter().any(|(begin, end)| (*begin..*end).contains(&ts));
     let mean_ms = |threads: &[u32], wanted: &dyn Fn(&str) -> bool| -> f64 {

@@ -50,14 +50,12 @@ pub fn moved_mib(counted: &Counted) -> f64 {
         .filter(|run| run.pass != SCREEN)
         .map(|run| run.work.bytes_moved())
         .sum();
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
     let bytes = bytes as f64;
     bytes / 1048576.0
 }
 
 /// Triangles in thousands.
 fn kilotriangles(counted: &Counted) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52")]
     let triangles = counted.ledger.total().triangles() as f64;
     triangles / 1e3
 }

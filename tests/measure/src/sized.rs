@@ -56,11 +56,7 @@ impl Filling {
     }
 
     /// The nearest pixel of each.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "within the picture"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "within the picture")]
     fn image(&self, image: &Image) -> Image {
         let nearest = |at: u32, axis: usize, most: u32| {
             let from = (f64::from(at) + 0.5 + self.cut_px[axis]) / self.scale;

@@ -10,7 +10,6 @@ use super::real::{Real, Vector};
 /// Where light point `i` of `n_points` is seen from within a pixel, from its top left corner, in pixels: a lattice of as many
 /// rows and columns.
 #[must_use]
-#[allow(clippy::cast_precision_loss, reason = "a handful of points")]
 pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
     let [column, row] = [47, 53].map(|step| (i * step % n_points) as f64);
     (DVec2::new(column, row) + 0.5) / n_points as f64
@@ -124,7 +123,6 @@ pub fn hidden_share<R: Real>(
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
         n_hidden += f64::from(u8::from(is_hidden));
     }
-    #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
     let n_points = caster.light_points.len() as f64;
     Some(n_hidden / n_points)
 }

@@ -113,7 +113,6 @@ fn vogel(k: u32, n: u32) -> DVec2 {
     ((f64::from(k) + 0.5) / f64::from(n)).sqrt() * DVec2::from_angle(f64::from(k) * golden_angle_rad)
 }
 
-#[allow(clippy::cast_precision_loss, reason = "a handful of taps")]
 fn count(blockers: &[f64]) -> f64 {
     blockers.len() as f64
 }

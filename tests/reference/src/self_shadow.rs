@@ -28,7 +28,6 @@ pub fn received<R: Real>(
         let in_sight = points
             .iter()
             .filter(|point| !occluder.stands_between(from.into(), **point));
-        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
         let visibility = R::from_f64(in_sight.count() as f64) / R::from_f64(points.len() as f64);
         received[i] = (cosine * visibility).to_f64();
     }

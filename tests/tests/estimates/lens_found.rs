@@ -68,7 +68,6 @@ fn bent(image: &Image, lens: Distortion) -> Image {
 /// Codes between four pixels; their centres have whole numbers.
 #[expect(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     reason = "places within the picture, and codes"
 )]
 fn between(image: &Image, at: [f64; 2]) -> [u8; 4] {

@@ -117,11 +117,7 @@ impl View {
     }
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a cast saturates"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "a cast saturates")]
 fn rounded(code: f64) -> u8 {
     code.round() as u8
 }
@@ -174,7 +170,6 @@ fn off(image: &Image, codes: &[f64]) -> f64 {
         .chunks_exact(4)
         .zip(codes)
         .map(|(pixel, code)| (f64::from(pixel[0]) - code).powi(2));
-    #[allow(clippy::cast_precision_loss, reason = "far below 2^52")]
     let n = codes.len() as f64;
     (squares.sum::<f64>() / n).sqrt()
 }
@@ -438,7 +433,7 @@ fn whatever_is_offered_is_answered() {
     let mut taker = PlateTaker::default();
     let odd = [f64::NAN, f64::INFINITY, -1.0, 0.0, 0.02, 1e300];
     let pick = |random: &mut Random, n: usize| {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below n")]
+        #[allow(clippy::cast_possible_truncation, reason = "below n")]
         let picked = (random.uniform() * n as f64) as usize;
         picked.min(n - 1)
     };

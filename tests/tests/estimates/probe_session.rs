@@ -87,7 +87,11 @@ fn the_shadow_makes_exact_what_the_probe_tells() {
     let entry = AlignmentEntry::from(alignments.of(0).unwrap());
     let probe = entry.report.probe.unwrap();
     assert_eq!(
-        (probe.lights.len(), probe.rejected.len(), entry.report.discovered.len()),
+        (
+            probe.lights.len(),
+            probe.rejected.len(),
+            entry.report.discovered.len()
+        ),
         (2, 0, 2)
     );
     let before_deg = of_each(entry.probe_against_listed);

@@ -1,11 +1,6 @@
 //! The printed card: its lengths, its pattern, its file.
 
-#![expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "dots of a page"
-)]
+#![expect(clippy::cast_possible_truncation, reason = "dots of a page")]
 
 use app_core::card::{Gray, PATTERN_M, REFERENCE_PX, reference};
 use app_session::tags::png_chunks;

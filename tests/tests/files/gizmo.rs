@@ -26,7 +26,6 @@ fn middle_of(picture: &Image, color: [u8; 3]) -> DVec2 {
     let places = pixels.filter(|(_, pixel)| pixel[..3] == color);
     let places = places.map(|(index, _)| {
         let width = picture.width_px as usize;
-        #[allow(clippy::cast_precision_loss, reason = "pixels of a picture")]
         DVec2::new((index % width) as f64, (index / width) as f64)
     });
     let (sum, n) = places.fold((DVec2::ZERO, 0.0), |(sum, n), at| (sum + at, n + 1.0));

@@ -202,7 +202,7 @@ fn whatever_is_in_a_file_is_answered() {
     assert!(taken.iter().all(|n| *n > 200), "{taken:?}");
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below n")]
+#[expect(clippy::cast_possible_truncation, reason = "below n")]
 fn pick(random: &mut Random, n: usize) -> usize {
     ((random.uniform() * n as f64) as usize).min(n.saturating_sub(1))
 }

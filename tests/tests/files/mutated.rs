@@ -68,12 +68,7 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
 fn changed(whole: &[u8], changes: &[Change]) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     for change in changes {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
-            reason = "a place in a small file"
-        )]
+        #[expect(clippy::cast_possible_truncation, reason = "a place in a small file")]
         let place = |fraction: &f64| (fraction * bytes.len() as f64) as usize;
         match change {
             Change::Byte(at, byte) => {

@@ -65,7 +65,11 @@ fn plates_of_the_published_method_follow_each_picture() {
                 let mut core = core_on(with_plates.clone(), preset).unwrap();
                 for (index, (frame, gain)) in frames.iter().zip(GAINS).enumerate() {
                     let report = core.frame(&input(&here, frame)).unwrap();
-                    let path = if index == 0 { PassGroup::Capture } else { PassGroup::Frame };
+                    let path = if index == 0 {
+                        PassGroup::Capture
+                    } else {
+                        PassGroup::Frame
+                    };
                     assert!(
                         report
                             .ran

@@ -21,14 +21,12 @@ const MAX_OFF: f64 = 0.005;
 
 /// A camera of `n` around the toy.
 fn around(index: usize, n: usize) -> Stand {
-    #[expect(clippy::cast_precision_loss, reason = "at most some hundreds")]
     let angle_rad = TAU * index as f64 / n as f64;
     Stand::seen_from(setup(), DMat4::from_rotation_y(angle_rad).transform_vector3(HERE))
 }
 
 /// Exposure and white balance of a plate: 1 for the first, and up to a factor of two either way.
 fn gain(index: usize) -> DVec3 {
-    #[expect(clippy::cast_precision_loss, reason = "at most some hundreds")]
     let angle_rad = 2.1 * index as f64;
     DVec3::new(1.0, 0.7, -0.8).map(|scale| (scale * angle_rad.sin()).exp2())
 }

@@ -191,11 +191,7 @@ fn image(linear: &Raster<DVec3>) -> Image {
 
 /// The 8-bit code of a linear value.
 pub(crate) fn code(linear: f64) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 255"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let code = unrounded_code(linear).round() as u8;
     code
 }

@@ -1,7 +1,8 @@
 //! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
 
 use app_core::governor::{
-    BALANCED_QUALITY_LADDER, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned, UP_FRAMES, WINDOW,
+    BALANCED_QUALITY_LADDER, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned, UP_FRAMES,
+    WINDOW,
 };
 
 /// A screen's frame at 60 Hz.

@@ -36,7 +36,7 @@ fn faults(picture: &Image) -> Vec<(&'static str, Image)> {
     };
     let gamma = |code: u8| {
         let linear = f64::from(code) / 255.0;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+        #[expect(clippy::cast_possible_truncation, reason = "a code")]
         let code = (255.0 * linear.powf(1.1)).round() as u8;
         code
     };

@@ -230,7 +230,13 @@ impl<'a> Tour<'a> {
         self.shoot("recorded")?;
         self.press("Share log and recording")?;
         self.shoot("shared")?;
-        if self.desk.keeping.toy_to_pick.as_ref().is_some_and(|path| path.is_dir()) {
+        if self
+            .desk
+            .keeping
+            .toy_to_pick
+            .as_ref()
+            .is_some_and(|path| path.is_dir())
+        {
             self.press("Another toy")?;
             self.shoot("choose_toy")?;
             self.press("Back")?;

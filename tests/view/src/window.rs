@@ -103,7 +103,10 @@ impl Shell {
         let history = starts::begin(&self.options.keeping.out);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
-        self.options.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
+        self.options
+            .hold
+            .into_iter()
+            .for_each(|hold| live.set_target_fps(hold));
         live.set_clock(clock());
         let mut desk = Desk::new(live, feed, self.options.keeping.clone(), Pace::Live);
         desk.tell(ShellEvent::Started(history));

@@ -45,7 +45,6 @@ fn table(entries: &[(Entry, u64)]) -> (String, bool) {
         "", "bytes", "recorded", "change", "budget"
     );
     for (entry, bytes) in entries {
-        #[allow(clippy::cast_precision_loss, reason = "a percentage of some megabytes")]
         let change = 100.0 * (*bytes as f64 / entry.recorded.max(1) as f64 - 1.0);
         let verdict = if *bytes > entry.budget { "  TOO LARGE" } else { "" };
         let Entry {

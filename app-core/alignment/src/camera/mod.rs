@@ -135,7 +135,6 @@ impl Finder {
                     Some(points_of(of_level, receivers, &camera_from_world, most))
                 })
                 .collect();
-            #[allow(clippy::cast_precision_loss, reason = "a handful of levels")]
             let robust = ROBUST + ROBUST_STEP * level as f64;
             let search = Search::new((camera, uncertainty), picture, &templates, robust);
             if level == 0 && search.n_points() < LEAST_POINTS {

@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec3, IVec2};
 
 use super::brightness::Plane;
-use crate::receivers::{SeenReceiver, receiver_at};
 use crate::picture::places;
+use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Camera, Receiver};
 
 /// Change of brightness from pixel to pixel, below which a pixel is noise.

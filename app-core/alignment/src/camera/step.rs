@@ -129,7 +129,6 @@ impl<'a> Search<'a> {
             let relative = (self.error(met, &gains) / self.robust).powi(2);
             1.0 - relative / (1.0 + relative)
         });
-        #[allow(clippy::cast_precision_loss, reason = "points of a picture")]
         let n_points = self.n_points().div_ceil(stride).max(1) as f64;
         1.0 - errors.sum::<f64>() / n_points
     }

@@ -159,12 +159,7 @@ fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
 }
 
 fn quantile(values: &mut [f64], part: f64) -> f64 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "an index"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "an index")]
     let index = (part * (values.len() - 1) as f64) as usize;
     *values.select_nth_unstable_by(index, f64::total_cmp).1
 }

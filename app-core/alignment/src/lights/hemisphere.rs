@@ -73,7 +73,6 @@ pub(super) fn climb(from: &Lamp, mut score: impl FnMut(&Lamp) -> f64) -> (f64, L
     for _ in 0..N_HALVINGS {
         let middle = best.1;
         for turn in 0..N_TURNS {
-            #[allow(clippy::cast_precision_loss, reason = "a handful")]
             let angle = TAU * turn as f64 / N_TURNS as f64;
             let at = by_rad * DVec2::from_angle(angle);
             let mut step = [0.0; N_PARTS];

@@ -84,7 +84,6 @@ impl Lamp {
 pub(super) fn disc(n_points: usize) -> Vec<DVec2> {
     let mut points: Vec<DVec2> = vogel_disc(n_points).collect();
     let mean_of = |values: &mut dyn Iterator<Item = DVec2>| {
-        #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
         let n = n_points as f64;
         values.sum::<DVec2>() / n
     };

@@ -114,7 +114,7 @@ impl Relight {
     }
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+#[allow(clippy::cast_possible_truncation, reason = "a code")]
 fn code_of(linear: f32) -> u8 {
     (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
 }

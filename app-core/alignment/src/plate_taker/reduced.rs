@@ -56,9 +56,7 @@ impl Reduced {
                 add_detail(&rows, tile_px, tiles);
             }
         }
-        #[allow(clippy::cast_precision_loss, reason = "squares of far fewer than 2^24 pixels")]
         let n = (factor * factor) as f32;
-        #[allow(clippy::cast_precision_loss, reason = "255 times the same")]
         let luma = sums.iter().map(|sum| *sum as f32 / n).collect();
         let (detail, noise) = detail_and_noise(&details);
         Some(Self {
@@ -115,7 +113,6 @@ fn add_detail(rows: &[Vec<u8>; 3], tile_px: usize, tiles: &mut [Energy]) {
             fine += middle.1 * middle.1 + across * across;
             noise += both * both;
         }
-        #[allow(clippy::cast_precision_loss, reason = "precise to a ten-millionth")]
         let (fine, noise, n) = (fine as f32, noise as f32, n as f32);
         tile.fine += fine;
         tile.noise += noise;
@@ -140,7 +137,6 @@ fn detail_and_noise(tiles: &[Energy]) -> (f32, f32) {
         return (0.0, 0.0);
     };
     let most = &fine[fine.len() - fine.len().div_ceil(10)..];
-    #[allow(clippy::cast_precision_loss, reason = "at most 40 x 40")]
     let most = most.iter().sum::<f32>() / most.len() as f32;
     (most - noise, *noise)
 }

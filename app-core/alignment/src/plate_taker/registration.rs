@@ -57,7 +57,6 @@ pub(super) fn register(one: &Reduced, other: &Reduced) -> Option<Registration> {
     is_finite.then_some(registration)
 }
 
-#[allow(clippy::cast_precision_loss, reason = "sides of pictures")]
 fn to_px(squares: f64, factor: usize) -> f64 {
     squares * factor as f64
 }
@@ -71,7 +70,6 @@ struct Fit<'a> {
 }
 
 impl<'a> Fit<'a> {
-    #[allow(clippy::cast_precision_loss, reason = "at most 160")]
     fn new(one: &'a Reduced) -> Self {
         let [columns, rows] = one.size;
         let mut gradients = vec![[0.0; 2]; columns * rows];
@@ -94,7 +92,6 @@ impl<'a> Fit<'a> {
     fn place(&self, at: usize) -> [f32; 2] {
         let columns = self.one.size[0];
         let half = self.middle[0].max(self.middle[1]);
-        #[allow(clippy::cast_precision_loss, reason = "at most 160")]
         let [x, y] = [at % columns, at / columns].map(|place| place as f32);
         [(x - self.middle[0]) / half, (y - self.middle[1]) / half]
     }
@@ -110,7 +107,6 @@ impl<'a> Fit<'a> {
     /// Where there is little texture, gain and offset cannot be told apart, but both together can.
     fn gain(&self, unknown: &SVector<f32, N_UNKNOWN>) -> f64 {
         let sum: f64 = self.one.luma.iter().map(|luma| f64::from(*luma)).sum();
-        #[allow(clippy::cast_precision_loss, reason = "at most 160 x 160")]
         let mean = sum / self.one.luma.len() as f64;
         let change = f64::from(unknown[4]) * mean + f64::from(unknown[5]);
         // A code is the least that pictures differ by.
@@ -122,7 +118,6 @@ impl<'a> Fit<'a> {
         let columns = self.one.size[0];
         let residual = |(at, luma): (usize, &f32)| {
             let moved = self.moved(unknown, self.place(at));
-            #[allow(clippy::cast_precision_loss, reason = "at most 160")]
             let seen = sample(
                 other,
                 [(at % columns) as f32 + moved[0], (at / columns) as f32 + moved[1]],
@@ -188,10 +183,6 @@ impl<'a> Fit<'a> {
     }
 
     /// Part of all tiles that differ by more than noise and edges explain.
-    #[allow(
-        clippy::cast_precision_loss,
-        reason = "numbers of tiles and of squares in one"
-    )]
     fn changed(&self, residuals: &[Option<f32>]) -> f64 {
         let spread = self.spread(residuals);
         let least = LEAST_CODES.max(4.0 * spread);
@@ -244,12 +235,7 @@ impl<'a> Fit<'a> {
 }
 
 /// Bilinear; none beyond the border.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "checked to be within the picture"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "checked to be within the picture")]
 fn sample(picture: &Reduced, [x, y]: [f32; 2]) -> Option<f32> {
     let [columns, rows] = picture.size;
     let is_within = x >= 0.0 && y >= 0.0 && x <= (columns - 1) as f32 && y <= (rows - 1) as f32;

@@ -74,7 +74,6 @@ impl Stack {
         for (code, end) in (0..u8::MAX).zip(&mut ends) {
             *end = linear_from_srgb((f32::from(code) + 0.5) / 255.0);
         }
-        #[allow(clippy::cast_precision_loss, reason = "a few")]
         let part = 1.0 / self.n as f32;
         let code = |sum: &f32| {
             let light = part * sum;

@@ -227,7 +227,6 @@ impl<'a> Search<'a> {
         let level = self.pyramid.level(0);
         let (coverage, elements) = self.outline(motion, level);
         let measured = matte::measure(level, &coverage, &elements, band);
-        #[allow(clippy::cast_precision_loss, reason = "pixels of an outline")]
         let share = measured.len() as f64 / elements.len() as f64;
         (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))
     }

@@ -92,7 +92,6 @@ fn turns(most_rad: f64) -> impl Iterator<Item = f64> {
     let turns = (1..=n).flat_map(|step| [f64::from(step), -f64::from(step)]);
     let is_all_round = f64::from(n) * TURN_RAD > PI - 0.5 * TURN_RAD;
     let n_turns = if is_all_round { 2 * n - 1 } else { 2 * n };
-    #[allow(clippy::cast_sign_loss, reason = "no fewer than none")]
     let turns = turns.take(n_turns.max(0) as usize);
     std::iter::once(0.0).chain(turns).map(|step| step * TURN_RAD)
 }

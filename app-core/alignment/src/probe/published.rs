@@ -44,7 +44,6 @@ pub(super) fn lights(
 
 /// Equation 3.
 fn mean_px(pixels: &[UVec2]) -> Option<DVec2> {
-    #[allow(clippy::cast_precision_loss, reason = "fewer than a picture's pixels")]
     let n_pixels = pixels.len() as f64;
     let sum: DVec2 = pixels.iter().map(|pixel| middle_px(*pixel)).sum();
     (!pixels.is_empty()).then(|| sum / n_pixels)

@@ -1,7 +1,9 @@
 //! What happens when a person does something, or the platform changes.
 
 use super::App;
-use super::event::{ArSession, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction, WorkCommand};
+use super::event::{
+    ArSession, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction, WorkCommand,
+};
 use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
@@ -9,7 +11,10 @@ use super::table::table_at;
 
 impl App {
     pub(super) fn act(&mut self, action: UserAction, commands: &mut Vec<ShellCommand>) {
-        let is_on_picture = matches!(action, UserAction::Tap(_) | UserAction::Drag { .. } | UserAction::Twist(_));
+        let is_on_picture = matches!(
+            action,
+            UserAction::Tap(_) | UserAction::Drag { .. } | UserAction::Twist(_)
+        );
         if is_on_picture && self.phone_check.is_some() {
             return;
         }

@@ -132,10 +132,13 @@ impl App {
             let job = place.job(self.time_s, input);
             if std::mem::take(&mut self.wants_anchor) {
                 let (id, world_from_anchor) = place.anchor();
-                commands.push(PlatformCommand::HoldAnchor {
-                    id,
-                    world_from_anchor,
-                }.into());
+                commands.push(
+                    PlatformCommand::HoldAnchor {
+                        id,
+                        world_from_anchor,
+                    }
+                    .into(),
+                );
             }
             commands.extend(job.map(|job| WorkCommand::Align(Box::new(job)).into()));
         }

@@ -44,7 +44,11 @@ use start::Start;
 pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use app_alignment::plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use app_alignment::pose_filter::{PoseFilter, PoseNoise, PoseStep};
-pub use event::{ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent, Thermal, UserAction, WorkCommand};
+pub use event::{
+    ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent,
+    Thermal, UserAction, WorkCommand,
+};
+pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
 pub use log::Log;
 pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
@@ -52,7 +56,6 @@ pub use phone_check::{CheckInk, PhoneQuestion};
 pub use platform::Obstacle;
 pub use playback::Playback;
 pub use show::Show;
-pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
 pub use step::{Cause, Step};
 
 use notice::Notices;

@@ -1,6 +1,8 @@
 //! What the platform grants, and what it is asked for.
 
-use super::event::{ArSession, GraphicsState, Permission, PlatformCommand, ShellCommand, Thermal, WorkCommand};
+use super::event::{
+    ArSession, GraphicsState, Permission, PlatformCommand, ShellCommand, Thermal, WorkCommand,
+};
 use super::step::Step;
 use app_scene::camera_frame::Tracking;
 use app_session::recording::RecordingJob;
@@ -159,10 +161,13 @@ impl Commanded {
         }
         let is_run_anew = (wanted.tracking, wanted.finds_planes) != (self.tracking, self.finds_planes);
         if wanted.tracking && (is_run_anew || is_new_world) {
-            commands.push(PlatformCommand::RunTracking {
-                finds_planes: wanted.finds_planes,
-                is_new_world,
-            }.into());
+            commands.push(
+                PlatformCommand::RunTracking {
+                    finds_planes: wanted.finds_planes,
+                    is_new_world,
+                }
+                .into(),
+            );
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
         }

@@ -2,8 +2,8 @@
 
 use super::App;
 use super::event::{ShellCommand, WorkCommand};
-use super::notice::Notice;
 use super::launch_history::{LaunchHistory, N_GOOD_FRAMES, Simplified};
+use super::notice::Notice;
 use app_pipeline::preset::Preset;
 
 /// The start under way.

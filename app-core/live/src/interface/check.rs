@@ -81,7 +81,6 @@ fn free_place(ui: &Ui) -> Pos2 {
 
 /// One below the other.
 fn patches(ui: &Ui, colours: &[Color32]) {
-    #[allow(clippy::cast_precision_loss, reason = "two or three")]
     let n = colours.len() as f32;
     let mut middle = free_place(ui) - vec2(0.0, 0.5 * (n - 1.0) * PATCH_POINTS);
     for colour in colours {

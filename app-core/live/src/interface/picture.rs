@@ -27,7 +27,11 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
         // Screens have y downwards: a turn to the right is a negative one, seen from above.
         actions.push(UserAction::Twist(-f64::from(fingers.rotation_delta)));
     } else if response.clicked() {
-        actions.extend(response.interact_pointer_pos().map(|at| UserAction::Tap(pixel(at))));
+        actions.extend(
+            response
+                .interact_pointer_pos()
+                .map(|at| UserAction::Tap(pixel(at))),
+        );
     } else if response.dragged() {
         let delta = response.drag_delta();
         actions.extend(response.interact_pointer_pos().map(|at| UserAction::Drag {

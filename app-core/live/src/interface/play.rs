@@ -102,7 +102,9 @@ fn menu(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
         (text::START_OVER, UserAction::StartOver),
     ];
     ui.horizontal_wrapped(|ui| {
-        let restore = app.simplified().map(|_| (text::RESTORE, UserAction::RestorePreset));
+        let restore = app
+            .simplified()
+            .map(|_| (text::RESTORE, UserAction::RestorePreset));
         for (label, action) in entries.into_iter().chain(restore) {
             if other(ui, label) {
                 actions.push(action);

@@ -117,7 +117,6 @@ pub fn check(picture: &Image, preset: Preset) -> Result<Difference, SelfTestErro
         for (actual, expected) in actual.iter().zip(expected) {
             let codes = (actual - expected).abs();
             difference.worst_codes = difference.worst_codes.max(codes);
-            #[allow(clippy::cast_precision_loss, reason = "some hundred")]
             let n = (3 * expected_blocks()) as f64;
             difference.mean_codes += codes / n;
         }
@@ -135,11 +134,7 @@ pub fn kept(picture: &Image) -> String {
     let mut text = String::new();
     for row in means(picture).chunks(N_COLUMNS) {
         let words = row.iter().map(|mean| {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a mean of bytes"
-            )]
+            #[allow(clippy::cast_possible_truncation, reason = "a mean of bytes")]
             let [r, g, b] = mean.map(|code| code.round() as u8);
             format!("{r:02x}{g:02x}{b:02x}")
         });
@@ -181,7 +176,6 @@ fn expected_blocks() -> usize {
 /// Mean codes of the blocks, row after row. Codes, not light: dark parts are to count as much as they are seen.
 fn means(picture: &Image) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; expected_blocks()];
-    #[allow(clippy::cast_precision_loss, reason = "64")]
     let n = (BLOCK_PX * BLOCK_PX) as f64;
     let rows = picture.rgba8.chunks_exact(4 * SIZE_PX[0] as usize);
     for (y, row) in rows.enumerate() {

@@ -162,11 +162,7 @@ fn code(linear: f64) -> u8 {
 }
 
 /// The nearest code of 8 bits of a value from 0 to 1.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a code of 8 bits"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "a code of 8 bits")]
 fn code_of(value: f32) -> u8 {
     (255.0 * value).round().clamp(0.0, 255.0) as u8
 }

@@ -1,7 +1,7 @@
 //! The plan of the baseline.
 
 use crate::geometry::rect::PixelRect;
-use crate::plan::{SkippedWork, SceneFacts};
+use crate::plan::{SceneFacts, SkippedWork};
 use crate::preset::BaselineSettings;
 use app_scene::scene::MAX_LIGHTS;
 

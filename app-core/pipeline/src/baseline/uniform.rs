@@ -84,7 +84,6 @@ pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &Baselin
 
 /// Each light's ratio, such that the product over all lights is `of_all`: shadows of AR products multiply.
 fn ratio_per_light(of_all: f32, n_lights: usize) -> f32 {
-    #[allow(clippy::cast_precision_loss, reason = "at most MAX_LIGHTS")]
     let n_lights = n_lights.max(1) as f32;
     of_all.powf(n_lights.recip())
 }

@@ -39,11 +39,7 @@ impl Baseline {
 fn sets_in(terms: &FloatMap) -> SeenSets {
     let mut needed = SeenSets::default();
     for term in &terms.texels {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "labels are small whole numbers"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "labels are small whole numbers")]
         let label = term[3] as usize;
         if let Some(sets) = needed.get_mut(label / N_SETS).filter(|_| label > 0) {
             *sets |= 1 << (label % N_SETS);

@@ -260,7 +260,10 @@ impl Core {
     /// # Errors
     /// When there is no scene.
     pub fn set_quality_reductions(&mut self, steps: &[QualityStep]) -> Result<(), CoreError> {
-        self.stage.as_mut().ok_or(CoreError::NoScene)?.set_quality_reductions(steps);
+        self.stage
+            .as_mut()
+            .ok_or(CoreError::NoScene)?
+            .set_quality_reductions(steps);
         Ok(())
     }
 
@@ -400,7 +403,11 @@ fn drop_preview(gpu: &Gpu, preview: &mut Option<Preview>) {
 }
 
 /// The picture that was made or taken last.
-fn latest<'a>(gpu: &Gpu, preview: Option<&'a Preview>, stage: Option<&'a Stage>) -> Option<ComposedFrame<'a>> {
+fn latest<'a>(
+    gpu: &Gpu,
+    preview: Option<&'a Preview>,
+    stage: Option<&'a Stage>,
+) -> Option<ComposedFrame<'a>> {
     let of_stage = || stage.map(|stage| stage.composed(gpu));
     preview.map(|preview| preview.composed(gpu)).or_else(of_stage)
 }

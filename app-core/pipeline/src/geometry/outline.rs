@@ -82,13 +82,10 @@ fn bin(offset: DVec3) -> (usize, [DVec3; N_KEPT]) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     #[allow(
         clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
         reason = "from 0 to a handful; what is not a number becomes 0"
     )]
     let cell =
         |at: f64| ((0.5 * (at / along.abs() + 1.0) * N_SIDE_BINS as f64) as usize).min(N_SIDE_BINS - 1);
-    #[allow(clippy::cast_precision_loss, reason = "a handful")]
     let middle = |cell: usize| (cell as f64 + 0.5) * 2.0 / N_SIDE_BINS as f64 - 1.0;
     let at = [cell(offset[u]), cell(offset[v])];
     let mut outwards = DVec3::ZERO;

@@ -34,7 +34,6 @@ impl Viewers {
         if points.iter().any(|point| point.w.to_bits() != w.to_bits()) {
             return None;
         }
-        #[allow(clippy::cast_precision_loss, reason = "some dozens")]
         let centre = points.iter().map(|point| point.xyz()).sum::<Vec3>() / points.len() as f32;
         let radius = points
             .iter()

@@ -231,7 +231,6 @@ impl Grid {
     }
 
     /// Where a column or a row begins.
-    #[allow(clippy::cast_precision_loss, reason = "pixels of a picture")]
     fn px(&self, tile: u32) -> f32 {
         (tile * self.tile_px) as f32
     }
@@ -248,12 +247,7 @@ impl Grid {
 }
 
 /// The tiles between two places, both within; none where all of that is beyond the target.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "clamped to the number of tiles"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "clamped to the number of tiles")]
 fn span(tile_px: f32, between_px: [f32; 2], n_tiles: u32) -> Option<Range<u32>> {
     let [first, last] = between_px.map(|px| (px / tile_px).floor());
     // What is no number is everywhere.

@@ -86,7 +86,9 @@ impl QualityStep {
     pub fn apply(&self, settings: &mut ModelSettings) {
         let points = self.value as usize;
         match self.setting {
-            QualitySetting::AmbientDivisor => settings.ambient_divisor = settings.ambient_divisor.max(self.value),
+            QualitySetting::AmbientDivisor => {
+                settings.ambient_divisor = settings.ambient_divisor.max(self.value)
+            }
             QualitySetting::AmbientDirections => {
                 settings.n_ambient_directions = settings.n_ambient_directions.min(points);
             }

@@ -243,7 +243,6 @@ impl Governor {
         if whole.is_nan() || steps.is_empty() {
             return;
         }
-        #[allow(clippy::cast_precision_loss, reason = "a handful of steps")]
         let each = (whole / expected).max(0.0).powf(1.0 / steps.len() as f64);
         for (gain, step) in steps.iter_mut().zip(&self.ladder[low..high]) {
             // The rate of frames brings what it says.

@@ -37,7 +37,6 @@ impl Window {
 
     /// None until it is full.
     pub(super) fn mean(&self) -> Option<f64> {
-        #[allow(clippy::cast_precision_loss, reason = "a handful")]
         let n = self.size as f64;
         Some(self.full()?.sum::<f64>() / n)
     }

@@ -104,7 +104,9 @@ impl PipelineCache {
 
     /// The compute pipeline of `spec`, compiled at the first call.
     pub(crate) fn compute(&self, device: &Device, bindings: &BindingCache, spec: &ComputeSpec) -> Compute {
-        cached(&self.computes, spec, || self.compile_compute(device, bindings, spec))
+        cached(&self.computes, spec, || {
+            self.compile_compute(device, bindings, spec)
+        })
     }
 
     /// Drops everything, to be compiled anew.

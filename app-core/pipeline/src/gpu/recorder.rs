@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::bindings::{Resource, Slot};
 use super::buffer::Buffer;
 use super::context::Gpu;
-use super::pass_run::{PassRun, PassGroup};
+use super::pass_run::{PassGroup, PassRun};
 use super::pipeline::{Compute, Draw, Pipeline};
 use super::stages::{StageTime, Stages};
 use super::texture::{Texture, TextureView};

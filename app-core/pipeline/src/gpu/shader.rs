@@ -104,7 +104,6 @@ macro_rules! mirrors {
         $crate::gpu::shader::Mirrors {
             path: $path,
             structs: &[$($(<$of as $crate::gpu::shared::Shared>::MIRROR),*)?],
-            #[allow(clippy::cast_precision_loss, clippy::cast_lossless, reason = "small whole numbers, and f32")]
             constants: &[$($((stringify!($constant), $constant as f64)),*)?],
         }
     };

@@ -1,7 +1,7 @@
 //! Time stamps: device time of each pass of the latest submission, on request.
 
 use super::context::{Gpu, GpuError, Opened};
-use super::pass_run::{PassTime, PassGroup};
+use super::pass_run::{PassGroup, PassTime};
 
 /// Maximum number of timed passes of one submission.
 const MAX_TIMED: u32 = 512;
@@ -71,10 +71,6 @@ impl Timer {
         let ms_per_tick = f64::from(opened.queue.get_timestamp_period()) * 1e-6;
         let mut times: Vec<PassTime> = Vec::new();
         for (&(path, pass), stamp) in self.passes.iter().zip(stamps.chunks_exact(2)) {
-            #[allow(
-                clippy::cast_precision_loss,
-                reason = "a difference of ticks within one frame is far below 2^52"
-            )]
             let gpu_ms = stamp[1].saturating_sub(stamp[0]) as f64 * ms_per_tick;
             match times
                 .iter_mut()

@@ -7,7 +7,7 @@ use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
 use crate::passes::toy_mesh::CasterLod;
-use crate::plan::{SkippedWork, SceneFacts};
+use crate::plan::{SceneFacts, SkippedWork};
 use crate::preset::ModelSettings;
 use app_scene::scene::MAX_LIGHTS;
 
@@ -238,7 +238,6 @@ const HARD_PX: f64 = 4.0;
 
 /// Points over a light: fewer of a soft one where that still is one for each pixel of its penumbra.
 fn n_light_points(penumbra_px: f64, settings: &ModelSettings) -> usize {
-    #[allow(clippy::cast_precision_loss, reason = "at most 64")]
     let is_narrow = penumbra_px > HARD_PX && penumbra_px <= settings.n_narrow_light_points as f64;
     if is_narrow {
         settings.n_narrow_light_points

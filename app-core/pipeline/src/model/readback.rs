@@ -97,7 +97,6 @@ impl Model {
         let covered = &self.drawn.by_pass.coverage.covered;
         let origin_px = self.region.plan.toy_box.origin_px;
         let mut map = self.read_box(gpu, (covered, origin_px), [0.0, 0.0, 0.0, 1.0])?;
-        #[allow(clippy::cast_precision_loss, reason = "fewer than 256 codes")]
         let all = (COVERED_CODES * N_POSITIONS) as f32 / 255.0;
         map.texels.iter_mut().for_each(|texel| texel[0] /= all);
         Ok(map)

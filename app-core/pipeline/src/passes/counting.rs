@@ -19,7 +19,6 @@ use crate::gpu::recorder::{Attachment, Group, Recorder, Render};
 use crate::gpu::texture::Texture;
 use crate::passes::toy_mesh::{Corners, PoseBuffers};
 
-
 /// Format of the depths that order the instances.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 

@@ -3,11 +3,11 @@
 use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
 
 use crate::geometry::anchored::AnchoredReceiver;
-use crate::geometry::silhouette::{ByCamera, OntoReceiver, Viewers};
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
-use crate::geometry::view::View;
 use crate::geometry::seen::Caster;
+use crate::geometry::silhouette::{ByCamera, OntoReceiver, Viewers};
+use crate::geometry::view::View;
 use crate::gpu::bindings::Slot;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::shader::{Mirrors, mirrors};
@@ -126,7 +126,6 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         *slot = receiver_plane(view, rect, layout, receiver);
     }
     let end_px = rect.origin_px + rect.size_px;
-    #[allow(clippy::cast_precision_loss, reason = "a few pixels")]
     let fade = |is_inner: bool| if is_inner { BORDER_PX as f32 } else { 0.0 };
     #[allow(clippy::cast_possible_truncation, reason = "at most four")]
     let count = |n: usize, most: usize| n.min(most) as u32;

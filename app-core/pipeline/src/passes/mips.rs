@@ -37,11 +37,7 @@ fn decoded([r, g, b, a]: [u8; 4], linear_of_code: &[f32; 256]) -> Texel {
 }
 
 fn encoded(level: &[Texel]) -> Vec<u8> {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 255"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let code = |value: f32| (255.0 * value).round() as u8;
     let codes = level.iter().flat_map(|[r, g, b, a]| {
         let [r, g, b] = [r, g, b].map(|value| code(srgb_from_linear(*value)));

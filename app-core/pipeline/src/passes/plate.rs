@@ -13,7 +13,8 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::passes::globals::GLOBALS_GROUP;
 use app_scene::scene::MAX_RECEIVERS;
 
-pub(crate) const SHADER: Shader = shader!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]);
+pub(crate) const SHADER: Shader =
+    shader!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]);
 const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
 /// Format of a plate that is finer than codes, as where gains have been applied; alpha marks photographed pixels.
 pub(crate) const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;

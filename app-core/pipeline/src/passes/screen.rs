@@ -108,8 +108,12 @@ impl Pass {
             size_px: screen.size_px(),
         };
         let region = composed.region.filter(|overlay| overlay.effect > 0.0);
-        let inside =
-            region.and_then(|overlay| Some((overlay, shown_rect(&overlay.rect, image_from_screen)?.common(&all)?)));
+        let inside = region.and_then(|overlay| {
+            Some((
+                overlay,
+                shown_rect(&overlay.rect, image_from_screen)?.common(&all)?,
+            ))
+        });
         let beside = inside.map_or_else(|| vec![all], |(_, inside)| all.beside(&inside).collect());
         let frame = &composed.frame;
         let of_frame = by_form(&self.frame, frame);
@@ -129,7 +133,12 @@ impl Pass {
     }
 
     /// What draws the region, and what it reads.
-    fn of_region(&self, recorder: &Recorder<'_>, frame: &Frame<'_>, overlay: &RegionOverlay<'_>) -> (&Draw, Vec<Group>) {
+    fn of_region(
+        &self,
+        recorder: &Recorder<'_>,
+        frame: &Frame<'_>,
+        overlay: &RegionOverlay<'_>,
+    ) -> (&Draw, Vec<Group>) {
         let bind = |draw| recorder.bind(draw, GROUP_REGION, &[overlay.picture.light.into()]);
         if overlay.effect < 1.0 {
             let draw = by_form(&self.mixed, frame);

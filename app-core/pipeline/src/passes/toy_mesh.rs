@@ -9,9 +9,9 @@ use std::sync::OnceLock;
 use glam::{UVec2, Vec4};
 use wgpu::{BufferUsages, VertexFormat};
 
-use crate::geometry::silhouette::{Projection, Shape, Viewers, find_silhouette};
 use crate::geometry::rect::PixelRect;
 use crate::geometry::seen::{mark_seen, seen_rect};
+use crate::geometry::silhouette::{Projection, Shape, Viewers, find_silhouette};
 use crate::geometry::tiles::Tiles;
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
@@ -154,12 +154,7 @@ pub(crate) struct ToyMesh {
 }
 
 impl ToyMesh {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        toy: &Toy,
-        physical: &PosedMesh,
-        casting: &Casting<'_>,
-    ) -> Self {
+    pub(crate) fn new(gpu: &Gpu, toy: &Toy, physical: &PosedMesh, casting: &Casting<'_>) -> Self {
         let materials = Materials::new(gpu, toy);
         let (casters, shadow_indices) = casters(toy, casting.simplified);
         let shape = toy.shadow_indices();

@@ -39,7 +39,6 @@ pub fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3>
             pairs.extend(gain_of(&shared).map(|gain| PairGain {
                 plates: [later, earlier],
                 gain,
-                #[allow(clippy::cast_precision_loss, reason = "at most 48 x 48")]
                 n_samples: shared.len() as f64,
             }));
         }

@@ -62,7 +62,6 @@ impl<'a> Shot<'a> {
             )?;
             sum += DVec3::from_array([0, 1, 2].map(|channel| linear_of_code[usize::from(codes[channel])]));
         }
-        #[allow(clippy::cast_precision_loss, reason = "49")]
         let n_pixels = (side * side) as f64;
         Some(sum / n_pixels)
     }

@@ -29,11 +29,7 @@ pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
     let values = map.texels.iter().flat_map(|texel| &texel[..n_channels]);
     let values = values.map(|value| value.clamp(0.0, 1.0));
     let is_half = format.block_copy_size(None) == Some(2 * u32::from(format.components()));
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 255"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let texels: Vec<u8> = if is_half {
         values
             .flat_map(|value| f16_from_f32(value).to_le_bytes())
@@ -48,11 +44,7 @@ pub(crate) fn upload(gpu: &Gpu, map: &FloatMap, like: &Texture) -> Texture {
 /// The IEEE 754 half nearest to a number in [0, 1].
 fn f16_from_f32(value: f32) -> u16 {
     const SMALLEST_NORMAL: f32 = 1.0 / 16384.0;
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "at most 0x3c00"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "at most 0x3c00")]
     if value < SMALLEST_NORMAL {
         (value * 16_777_216.0).round() as u16
     } else {

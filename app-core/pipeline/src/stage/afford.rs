@@ -13,8 +13,8 @@ use crate::model::Model;
 use crate::model::plan::Plan;
 use crate::model::state::SceneState;
 use crate::model::state::grids::grids_over;
-use crate::passes::pictures::{Frame, Picture, Pictures};
 use crate::passes::globals::globals;
+use crate::passes::pictures::{Frame, Picture, Pictures};
 use crate::passes::present::REGION_FORMAT;
 use crate::plan::{Change, FrameDelta};
 use crate::preset::ModelSettings;
@@ -68,7 +68,11 @@ impl Stage {
             } = *first.get_or_insert(cost);
             if !cost.is_too_much() {
                 if !self.turned_down.is_empty() {
-                    let what = self.turned_down.iter().map(|step: &QualityStep| step.what).collect();
+                    let what = self
+                        .turned_down
+                        .iter()
+                        .map(|step: &QualityStep| step.what)
+                        .collect();
                     self.cost_warning = Some(Warning::TurnedDown {
                         what,
                         triangles,
@@ -115,7 +119,6 @@ impl Stage {
         };
         model.update_coverage_tiles(&self.toy, delta);
         model.encode(&mut recorder, &self.toy, &pictures, delta);
-        #[allow(clippy::cast_precision_loss, reason = "at most 64")]
         let count = |n: usize| n as f64;
         let by_lights = plan.n_light_points.iter().zip(&covered.by_lights_px);
         let by_lights: f64 = by_lights.map(|(n_points, px)| count(*n_points) * px).sum();
@@ -132,7 +135,6 @@ impl Stage {
     fn covered(&self, footprint: &Footprint) -> Covered {
         let (layout, view) = (self.layout(), &footprint.view);
         let world_from_anchor = layout.world_from_anchor();
-        #[allow(clippy::cast_precision_loss, reason = "fewer than 2^52 pixels")]
         let most_px = n_pixels(footprint.region.size_px) as f64;
         let image_px = |point: DVec3| {
             let at = view.image_px_from(&world_from_anchor, point.extend(1.0));

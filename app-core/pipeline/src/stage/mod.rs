@@ -28,7 +28,7 @@ use crate::passes::pictures::{ComposedFrame, Frame, Pictures, RegionOverlay};
 use crate::passes::present;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::toy_mesh::{Casting, ToyMesh};
-use crate::plan::{Change, SkippedWork, FrameDelta};
+use crate::plan::{Change, FrameDelta, SkippedWork};
 use crate::plates::store::PlateStore;
 use crate::preset::{Preset, Settings};
 use crate::readback::inject::InjectedVisibility;
@@ -157,12 +157,7 @@ impl Stage {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
             physical_outline: Outline::around(&posed),
-            toy: ToyMesh::new(
-                gpu,
-                &scene.toy,
-                &posed,
-                &casting(&scene.toy, preset),
-            ),
+            toy: ToyMesh::new(gpu, &scene.toy, &posed, &casting(&scene.toy, preset)),
             posed,
             camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
@@ -213,12 +208,14 @@ impl Stage {
     }
 
     fn overlay(&self) -> Option<RegionOverlay<'_>> {
-        self.method().zip(self.effect).map(|(method, effect)| RegionOverlay {
-            picture: method.picture(),
-            rect: method.region(),
-            #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
-            effect: effect as f32,
-        })
+        self.method()
+            .zip(self.effect)
+            .map(|(method, effect)| RegionOverlay {
+                picture: method.picture(),
+                rect: method.region(),
+                #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+                effect: effect as f32,
+            })
     }
 
     /// Draws that picture into a texture of its size: codes.

@@ -22,9 +22,8 @@ impl Stamp {
     #[must_use]
     pub fn age_ms(&self, now_ns: i64) -> Option<f64> {
         let age_ns = now_ns.checked_sub(self.time_ns)?;
-        #[allow(clippy::cast_precision_loss, reason = "at most a second")]
-        let age_ms = (0..=OLDEST_NS).contains(&age_ns).then(|| age_ns as f64 / 1e6);
-        age_ms
+
+        (0..=OLDEST_NS).contains(&age_ns).then(|| age_ns as f64 / 1e6)
     }
 }
 
@@ -97,7 +96,6 @@ fn after(latest: Stamp, stamp: Stamp) -> Arrival {
     }
     // In 128 bits, since clocks may begin anywhere.
     let elapsed_ns = i128::from(stamp.time_ns) - i128::from(latest.time_ns);
-    #[allow(clippy::cast_precision_loss, reason = "seconds")]
     let elapsed_s = elapsed_ns as f64 * 1e-9;
     if elapsed_s < 0.0 {
         Arrival::Late

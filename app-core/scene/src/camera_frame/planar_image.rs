@@ -175,11 +175,7 @@ fn neighbours(luma: u32, n: u32) -> [(u32, f32); 2] {
     [(own, 0.75), (other, 0.25)]
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "from 0 to 255"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn code(srgb: f32) -> u8 {
     (255.0 * srgb).round() as u8
 }

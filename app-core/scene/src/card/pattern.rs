@@ -32,11 +32,7 @@ impl Gray {
     /// Nothing on it.
     #[must_use]
     pub fn white(size_m: DVec2, dots_per_m: u32) -> Self {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "some thousand dots"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "some thousand dots")]
         let size_px = (size_m * f64::from(dots_per_m))
             .to_array()
             .map(|side| side.round() as u32);
@@ -51,11 +47,7 @@ impl Gray {
     fn fill(&mut self, [from_m, to_m]: [DVec2; 2], code: u8, is_inside: impl Fn(DVec2) -> bool) {
         let dots_per_m = f64::from(self.dots_per_m);
         let [width, height] = self.size_px;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped to the picture"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "clamped to the picture")]
         let within = |at: f64, side: u32| (at * dots_per_m).floor().clamp(0.0, f64::from(side)) as u32;
         for y in within(from_m.y, height)..within(to_m.y + 1.0 / dots_per_m, height) {
             for x in within(from_m.x, width)..within(to_m.x + 1.0 / dots_per_m, width) {
@@ -76,7 +68,7 @@ impl Gray {
 /// The square pattern alone, small, as a platform takes it to know the card by.
 #[must_use]
 pub fn reference() -> Gray {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "4000")]
+    #[allow(clippy::cast_possible_truncation, reason = "4000")]
     let dots_per_m = (f64::from(REFERENCE_PX) / PATTERN_M).round() as u32;
     let mut pattern = Gray::white(DVec2::splat(PATTERN_M), dots_per_m);
     leaves(
@@ -90,11 +82,7 @@ pub fn reference() -> Gray {
 /// Leaves over a rectangle: corner and size.
 pub fn leaves(gray: &mut Gray, [at, size_m]: [DVec2; 2], random: &mut SplitMix) {
     let area = [at, at + size_m];
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "some thousand"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "some thousand")]
     let n = (LEAVES_PER_M2 * size_m.x * size_m.y) as usize;
     for _ in 0..n {
         let center = at + DVec2::new(random.uniform(), random.uniform()) * size_m;
@@ -103,11 +91,7 @@ pub fn leaves(gray: &mut Gray, [at, size_m]: [DVec2; 2], random: &mut SplitMix) 
         let radius = (large + (small - large) * random.uniform()).powf(-0.5);
         let turn = DMat2::from_angle(std::f64::consts::TAU * random.uniform());
         let (kind, gray_of) = (random.uniform(), random.uniform());
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "below six"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "below six")]
         let code = GRAYS[((gray_of * 6.0) as usize).min(5)];
         let reach = DVec2::splat(1.5 * radius);
         let bounds = [(center - reach).max(area[0]), (center + reach).min(area[1])];

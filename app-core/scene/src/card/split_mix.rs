@@ -20,8 +20,7 @@ impl SplitMix {
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^= z >> 31;
-        #[allow(clippy::cast_precision_loss, reason = "53 bits are kept")]
-        let unit = ((z >> 11) + 1) as f64 / (1u64 << 53) as f64;
-        unit
+
+        ((z >> 11) + 1) as f64 / (1u64 << 53) as f64
     }
 }

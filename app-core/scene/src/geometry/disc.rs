@@ -18,7 +18,6 @@ pub fn ambient_directions(n_directions: usize) -> Vec<Vec4> {
 /// Source: Vogel 1979 (sunflower spiral).
 pub fn vogel_disc(n_points: usize) -> impl Iterator<Item = DVec2> {
     let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    #[allow(clippy::cast_precision_loss, reason = "a handful of points")]
     (0..n_points).map(move |i| {
         let radius = ((i as f64 + 0.5) / n_points as f64).sqrt();
         radius * DVec2::from_angle(i as f64 * golden_angle_rad)

@@ -83,11 +83,7 @@ fn kept(was: [f32; 3], is: [f32; 3]) -> f32 {
 }
 
 fn code_of_linear(linear: f32) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 255"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let code = (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8;
     code
 }
@@ -146,11 +142,7 @@ fn line(at_px: f64, n_pixels: u32) -> [(usize, f32); SIDE] {
         (0.5 * t - 0.5) * t * t,
     ];
     let steps = [-1.0, 0.0, 1.0, 2.0];
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a pixel's index"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "a pixel's index")]
     let index = |step: f64| (first + step).clamp(0.0, last) as usize;
     [0, 1, 2, 3].map(|i| (index(steps[i]), weights[i]))
 }

@@ -69,12 +69,7 @@ fn casters(toy: &Toy) -> Vec<Caster> {
     levels
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "a part of a number of triangles"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "a part of a number of triangles")]
 fn fewer(n_triangles: usize) -> usize {
     (STEP * n_triangles as f64) as usize
 }

@@ -17,9 +17,7 @@ use {
     schemars::JsonSchema,
 };
 
-pub use estimates::{
-    LightEstimateRecord, LightUncertaintyRecord, PoseUncertaintyRecord, UncertaintyRecord,
-};
+pub use estimates::{LightEstimateRecord, LightUncertaintyRecord, PoseUncertaintyRecord, UncertaintyRecord};
 pub use probe::{FacetRecord, ProbeKind, ProbePictureRecord, ProbeRecord};
 
 /// What `format` has to say.

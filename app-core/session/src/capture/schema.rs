@@ -1,8 +1,8 @@
 //! JSON Schema of `capture.json`, from the records that the reader fills.
 
+use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
-use schemars::Schema;
 use serde_json::Value;
 
 use super::record::Index;

@@ -1,9 +1,9 @@
 //! From a scene to the records of `capture.json`: the way back of the checks.
 
 use super::record::{
-    BackgroundRecord, CaptureRecord, Encoding, FacetRecord, IntrinsicsRecord, LensRecord, LightEstimateRecord,
-    LightKind, LightRecord, LightUncertaintyRecord, PoseRecord, PoseUncertaintyRecord, ProbeKind,
-    ProbePictureRecord, ProbeRecord, ReceiverRecord, SurfaceRecord, ToyRecord, UncertaintyRecord,
+    BackgroundRecord, CaptureRecord, Encoding, FacetRecord, IntrinsicsRecord, LensRecord,
+    LightEstimateRecord, LightKind, LightRecord, LightUncertaintyRecord, PoseRecord, PoseUncertaintyRecord,
+    ProbeKind, ProbePictureRecord, ProbeRecord, ReceiverRecord, SurfaceRecord, ToyRecord, UncertaintyRecord,
 };
 use app_scene::lens::Distortion;
 use app_scene::scene::{
@@ -29,7 +29,8 @@ impl CaptureRecord {
     #[must_use]
     pub fn new(scene: &Scene, intrinsics: &Intrinsics, paths: ScenePaths) -> Self {
         let plates = scene.plates.iter().zip(paths.plates);
-        let uncertainty = Some(&scene.uncertainty).filter(|uncertainty| **uncertainty != Uncertainty::default());
+        let uncertainty =
+            Some(&scene.uncertainty).filter(|uncertainty| **uncertainty != Uncertainty::default());
         Self {
             name: scene.name.clone(),
             width: scene.width_px,

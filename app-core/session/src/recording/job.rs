@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::codec::{PictureCodec, png};
 use super::error::{Stop, WriteError};
-use super::queue::{RecordingSender, RecordingReceiver, queue};
+use super::queue::{RecordingReceiver, RecordingSender, queue};
 use super::writer::{Limits, Writer};
 use crate::ScenePaths;
 use crate::record::{CaptureRecord, Index};

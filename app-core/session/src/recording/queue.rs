@@ -236,7 +236,6 @@ impl RecordingReceiver {
     ) -> Result<(), WriteError> {
         let encoder = self.encoder.as_mut();
         let encoder = encoder.ok_or_else(|| WriteError::Picture("nobody encodes it".to_owned()))?;
-        #[allow(clippy::cast_precision_loss, reason = "exact up to 104 days")]
         let time_secs = 1e-9 * time_ns as f64;
         let before = encoder.latest.as_ref();
         if let Some((_, number, path)) = before.filter(|(image, ..)| image.is(&live.image)) {

@@ -48,7 +48,8 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
         }
         let is_camera_moved = alignment.report.camera.is_some_and(|camera| camera.is_applied);
         if is_camera_moved {
-            index["frames"][frame]["world_from_camera"] = json!(alignment.camera.world_from_camera.to_cols_array());
+            index["frames"][frame]["world_from_camera"] =
+                json!(alignment.camera.world_from_camera.to_cols_array());
         }
         // Where none was found in place of the list, it stays.
         if let Some(lights) = alignment.lights.as_ref().filter(|lights| !lights.is_empty()) {

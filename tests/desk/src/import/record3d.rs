@@ -70,7 +70,6 @@ fn time_s(file: &str, index: usize, times_s: &[f64], fps: Option<f64>) -> Result
             ImportReason::NotANumber(fps.to_string()),
         ));
     }
-    #[expect(clippy::cast_precision_loss, reason = "frames")]
     let time_s = index as f64 / fps;
     number(file, "fps", time_s).map(Some)
 }

@@ -38,7 +38,6 @@ pub(super) fn parse(odometry: &str, matrix: Option<&str>, paths: &[String]) -> R
         };
         let index = match row.cell("frame") {
             Some(_) => row.number("frame")?,
-            #[expect(clippy::cast_precision_loss, reason = "a line's number")]
             None => place as f64,
         };
         let names = ["jpg", "jpeg", "png"].map(|kind| format!("rgb/{index:06}.{kind}"));

@@ -168,18 +168,25 @@ pub fn write(
             .with_context(|| frame.image.clone())?;
         write_whole(&file, &picture)?;
     }
-    write_whole(&out.join(SESSION_FILE), &serde_json::to_vec_pretty(&Index::from(index))?)?;
+    write_whole(
+        &out.join(SESSION_FILE),
+        &serde_json::to_vec_pretty(&Index::from(index))?,
+    )?;
     Ok(Capture::open(Folder::open(out)?)?)
 }
 
 /// `capture.json`.
-fn index(name: &str, files: &Folder, imported: &Imported, lacking: &Lacking) -> anyhow::Result<CaptureRecord> {
+fn index(
+    name: &str,
+    files: &Folder,
+    imported: &Imported,
+    lacking: &Lacking,
+) -> anyhow::Result<CaptureRecord> {
     let first = imported.frames.first().context("no frame")?;
     let [width, height] = size_px(files, &first.image)?;
     let (rotation, metres) = lacking.world_from_recorded(imported)?;
     let begin_s = first.time_s.unwrap_or(0.0);
     let entry = |(place, frame): (usize, &ImportedFrame)| {
-        #[expect(clippy::cast_precision_loss, reason = "frames")]
         let counted_s = lacking.fps.map_or(0.0, |fps| place as f64 / fps);
         let time_s = frame.time_s.map_or(counted_s, |time_s| time_s - begin_s);
         let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();

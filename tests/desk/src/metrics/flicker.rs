@@ -113,7 +113,6 @@ impl Follower {
 /// The mean, region by region; none of none.
 #[must_use]
 pub fn mean_flicker(all: &[Flicker]) -> Option<Flicker> {
-    #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 frames")]
     let n = all.len() as f64;
     let mean = |region: fn(&Flicker) -> f64| all.iter().map(region).sum::<f64>() / n;
     (!all.is_empty()).then(|| Flicker {

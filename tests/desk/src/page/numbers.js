@@ -162,7 +162,7 @@ function makeFit() {
 
 function showSkipped() {
   const lists = data.presets.map(preset => el("div", {}, el("b", {}, preset.report.preset),
-    el("ul", {}, entry(preset).skipped.map(({ what, why }) => el("li", {}, `${what}: ${why}`)))));
+    el("ul", {}, entry(preset).skipped.map(({ what, reason }) => el("li", {}, `${what}: ${reason}`)))));
   const wasOpen = at("skipped").querySelector("details")?.open ?? false;
   at("skipped").replaceChildren(el("details", { open: wasOpen, style: "margin: 0" },
     el("summary", {}, "Work left out of this frame, and why"), el("div", { class: "columns" }, lists)));

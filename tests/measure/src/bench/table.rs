@@ -130,7 +130,6 @@ fn counts(kind: Option<&KindTimes>) -> [Field; 6] {
         Field::Number(ledger.map(Ledger::copies_moved)),
         Field::Number(counted.map(Counted::peak_mib)),
         kind.map_or(Field::None, |kind| Field::Whole(kind.n_made)),
-        #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 bytes")]
         Field::Number(kind.map(|kind| kind.made_bytes as f64 / 1024.0)),
     ]
 }

@@ -159,7 +159,6 @@ impl Withheld {
 impl Errors {
     /// RMSE of what was made, in 8-bit codes, that of no shadow, and the number of pixels.
     fn cells(&self) -> [String; 3] {
-        #[allow(clippy::cast_precision_loss, reason = "far fewer than 2^52 pixels")]
         let n = 3.0 * self.n_pixels as f64;
         let rmse = |sum: f64| {
             if n > 0.0 {

@@ -66,9 +66,7 @@ fn take(place: &Place<'_>, camera: &Camera, [x, y]: [usize; 2]) -> Pixel {
     let step = 1.0 / f64::from(n_across);
     let mut sum = Pixel::default();
     for (row, column) in (0..n_across).flat_map(|row| (0..n_across).map(move |column| (row, column))) {
-        #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
         let u = x as f64 + step * (f64::from(column) + 0.5);
-        #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
         let v = y as f64 + step * (f64::from(row) + 0.5);
         let sample = look(place, camera, [u, v], (2 * (row % 2) + column % 2) as usize);
         sum.light += sample.light;
@@ -159,11 +157,7 @@ fn encoded(linear: f64) -> f64 {
 }
 
 fn byte(code: f64) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it is from 0 to 255 by then"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "it is from 0 to 255 by then")]
     let byte = code.round().clamp(0.0, 255.0) as u8;
     byte
 }

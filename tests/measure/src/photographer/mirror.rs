@@ -101,11 +101,8 @@ impl Mirror {
         let from = probe_from_world.transform_point3(eye);
         let mut fine = vec![DVec3::ZERO; width * height];
         for (index, light) in fine.iter_mut().enumerate() {
-            #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
             let at = DVec2::new((index % width) as f64, (index / width) as f64);
-            #[allow(clippy::cast_precision_loss, reason = "a handful")]
             let in_window = (at + 0.5) / N_ACROSS as f64;
-            #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
             let [u, v] = (in_window + DVec2::from_array(window.first.map(|first| first as f64))).to_array();
             let sight = DVec3::new((u - k.cx_px) / k.fx_px, (k.cy_px - v) / k.fy_px, -1.0);
             let along = camera.world_from_camera.transform_vector3(sight).normalize();
@@ -145,11 +142,7 @@ impl Mirror {
         };
         let reach_px = reach_m * k.fx_px.max(k.fy_px) / (-in_camera.z - reach_m) + 8.0;
         let bound = |at: f64, side: usize| {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "negative ones become 0"
-            )]
+            #[allow(clippy::cast_possible_truncation, reason = "negative ones become 0")]
             let at = at as usize;
             at.min(side)
         };
@@ -262,13 +255,8 @@ fn blurred(fine: &[DVec3], [width, height]: [usize; 2], blur_px: f64) -> Vec<DVe
 
 /// Weights of the fine pixels of a pixel and of as many more on either side as the spot reaches.
 fn spot(blur_px: f64) -> Vec<f64> {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a few pixels"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "a few pixels")]
     let margin = (4.0 * blur_px).ceil() as usize * N_ACROSS;
-    #[allow(clippy::cast_precision_loss, reason = "a few pixels")]
     let place_px = |index: usize| (index as f64 + 0.5) / N_ACROSS as f64;
     let n = N_ACROSS + 2 * margin;
     let weight = |index: usize| {

@@ -79,7 +79,6 @@ impl<'a> Place<'a> {
     /// The world without its toy.
     #[must_use]
     pub fn empty(world: &'a World) -> Self {
-        #[allow(clippy::cast_precision_loss, reason = "four patterns")]
         let patterns = |n: u32| array::from_fn(|i| disc(n, i as f64 / N_PATTERNS as f64));
         let planes = world.grounds.iter();
         Self {
@@ -140,7 +139,6 @@ impl<'a> Place<'a> {
     }
 
     fn mean(&self, of_pattern: impl Fn(usize) -> DVec3) -> DVec3 {
-        #[allow(clippy::cast_precision_loss, reason = "four patterns")]
         let n_patterns = N_PATTERNS as f64;
         (0..N_PATTERNS).map(of_pattern).sum::<DVec3>() / n_patterns
     }
@@ -221,7 +219,6 @@ impl<'a> Place<'a> {
                 reached += cosine;
             }
         }
-        #[allow(clippy::cast_precision_loss, reason = "a few hundred rays")]
         let weight = cone.weight() / pattern.len() as f64;
         [reached, total].map(|sum| weight * sum)
     }
@@ -279,7 +276,6 @@ impl<'a> Place<'a> {
                 Some(_) => DVec3::ZERO,
             }
         });
-        #[allow(clippy::cast_precision_loss, reason = "a few hundred rays")]
         let n_rays = pattern.len() as f64;
         light.sum::<DVec3>() / n_rays
     }

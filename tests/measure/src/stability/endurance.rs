@@ -80,7 +80,6 @@ struct Round {
 
 impl Rounds {
     /// What is seen at a place of each round.
-    #[allow(clippy::cast_precision_loss, reason = "a few dozen places")]
     fn world_at(&self, place: usize) -> World {
         let phase = TAU * place as f64 / self.n_places as f64;
         let world = small();
@@ -93,7 +92,6 @@ impl Rounds {
     }
 
     /// Exposure of a frame.
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand frames")]
     fn exposure_of(&self, frame: usize) -> f64 {
         let n_frames = (self.n - 2) * self.n_places;
         let phase = TAU * N_WAVES * frame as f64 / n_frames as f64;
@@ -120,7 +118,6 @@ impl Rounds {
         Ok(Shot::told(world, &films.develop(&sensor), &ToyFile::default())?)
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand frames")]
     fn run(&self, lab: &mut Lab, preset: Preset, places: &[(World, Films)]) -> anyhow::Result<Vec<Round>> {
         let mut rounds = Vec::with_capacity(self.n);
         for round in 0..self.n {

@@ -40,7 +40,6 @@ impl Gap {
         }
         worst.sort_unstable();
         let rank = worst.len() - worst.len().div_ceil(1000);
-        #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
         let (n_values, n_bytes) = (3.0 * worst.len() as f64, n_bytes as f64);
         Self {
             rms: (squares / n_values).sqrt(),

@@ -70,7 +70,6 @@ fn judge(lab: &mut Lab, label: Label, world: &World, is_due: bool) -> anyhow::Re
         let numbers: &[f32] = cast_slice(bytemuck::bytes_of(fit));
         numbers.iter().filter(|number| !number.is_finite()).count()
     });
-    #[allow(clippy::cast_precision_loss, reason = "a fit has a few hundred numbers")]
     let mut finite = label.row("fit", FINITE, n_not_finite as f64);
     finite.note = fit.map_or_else(
         || "no fit: the frame passes through".to_owned(),
@@ -80,7 +79,6 @@ fn judge(lab: &mut Lab, label: Label, world: &World, is_due: bool) -> anyhow::Re
     let mut warned = if is_due {
         label.row("warning", WARNED, if n_of_fit == 0 { 1.0 } else { 0.0 })
     } else {
-        #[allow(clippy::cast_precision_loss, reason = "a handful")]
         let n = n_of_fit as f64;
         label.row("warning", SILENT, n)
     };

@@ -88,9 +88,8 @@ fn n_black(picture: &app_core::scene::Image, shot: &Shot) -> f64 {
         .zip(truth)
         .zip(mask)
         .filter(|((pixel, truth), mask)| mask[0] > 0 && is_black(pixel) && !is_black(truth));
-    #[allow(clippy::cast_precision_loss, reason = "pictures are far smaller than 2^52")]
-    let n = black.count() as f64;
-    n
+
+    black.count() as f64
 }
 
 /// A toy that is aside at one moment of a clip, at the key of that number.

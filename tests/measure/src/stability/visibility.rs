@@ -195,7 +195,6 @@ fn mean_error(a: &[f64], b: &[f64]) -> f64 {
 
 /// No number where there are none.
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "a few hundred")]
     let n = values.len() as f64;
     values.sum::<f64>() / n
 }

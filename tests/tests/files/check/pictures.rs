@@ -43,11 +43,7 @@ fn parametric(curve: &[f64]) -> Vec<u8> {
 fn sampled() -> Vec<u8> {
     let sample = |index: u16| {
         let linear = app_scene::geometry::color::linear_from_srgb(f32::from(index) / 1023.0);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "from 0 to 65,535"
-        )]
+        #[expect(clippy::cast_possible_truncation, reason = "from 0 to 65,535")]
         let sample = (65_535.0 * linear).round() as u16;
         sample.to_be_bytes()
     };

@@ -64,12 +64,7 @@ fn a_cut_recording_is_read_up_to_its_last_whole_chunk() {
     }
     let mut random = Random::new(3);
     for _ in 0..300 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
-            reason = "a place in a small file"
-        )]
+        #[expect(clippy::cast_possible_truncation, reason = "a place in a small file")]
         let n_bytes = (random.uniform() * small.bytes.len() as f64) as usize;
         cut(&small, n_bytes);
     }

@@ -41,7 +41,7 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
     let mut parts = Parts::good();
     let photo = RgbImage::from_fn(SIZE_PX[0], SIZE_PX[1], |x, y| {
         let [u, v] = of_pinhole([f64::from(x) + 0.5, f64::from(y) + 0.5]);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+        #[allow(clippy::cast_possible_truncation, reason = "a code")]
         let code = pattern(u, v).round() as u8;
         Rgb([code; 3])
     });

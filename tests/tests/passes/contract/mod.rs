@@ -57,10 +57,19 @@ fn shaders_import_parts_that_exist() {
         let imports = shader.imports();
         for (index, path) in imports.iter().enumerate() {
             let text = fs::read_to_string(folder.join(format!("{path}.wgsl"))).expect(path);
-            assert_eq!(shader.source().matches(&text).count(), 1, "{}: {path}", shader.name);
+            assert_eq!(
+                shader.source().matches(&text).count(),
+                1,
+                "{}: {path}",
+                shader.name
+            );
             let needed = text.lines().filter_map(|line| line.strip_prefix("//#import "));
             for needed in needed {
-                assert!(imports[..index].contains(&needed), "{}: {path} needs {needed}", shader.name);
+                assert!(
+                    imports[..index].contains(&needed),
+                    "{}: {path} needs {needed}",
+                    shader.name
+                );
             }
         }
     }

@@ -72,7 +72,6 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
 
 /// What a fit starts from: gain 1, and half of the light from all lights together.
 pub(crate) fn start(n_lights: usize) -> Solution {
-    #[allow(clippy::cast_precision_loss, reason = "two lights")]
     let direct_fraction = 0.5 / n_lights as f64;
     Solution {
         gain: DVec3::ONE,

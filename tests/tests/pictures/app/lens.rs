@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
-use app_core::app::{App, GraphicsState, LensFailure, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
+use app_core::app::{
+    App, GraphicsState, LensFailure, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent, Step,
+    UserAction, WorkCommand,
+};
 use app_core::camera_frame::CameraFrame;
 use app_core::card::{card_from_lens, lens_shape};
 use app_core::scene::Probe;

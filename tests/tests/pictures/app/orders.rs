@@ -1,6 +1,9 @@
 //! Whatever happens in whatever order, what the shell is asked for makes sense.
 
-use app_core::app::{AlignJob, AlignedJob, App, ArSession, GraphicsState, Notice, Permission, PlatformCommand, Saved, ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand};
+use app_core::app::{
+    AlignJob, AlignedJob, App, ArSession, GraphicsState, Notice, Permission, PlatformCommand, Saved,
+    ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand,
+};
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
 use app_core::recording::{Ending, RecordingJob};
@@ -244,7 +247,9 @@ impl Platform {
             ShellCommand::Platform(PlatformCommand::PauseTracking) => !self.runs,
             ShellCommand::Platform(PlatformCommand::LockExposure(_)) => !self.runs,
             // Only what is held can be darkened.
-            ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => !self.runs || !self.is_locked || *is_on == self.is_dark,
+            ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => {
+                !self.runs || !self.is_locked || *is_on == self.is_dark
+            }
             ShellCommand::Platform(PlatformCommand::KeepAwake(is_on)) => *is_on == self.is_awake,
             ShellCommand::Work(WorkCommand::Video(is_on)) => *is_on == self.makes_video,
             ShellCommand::Work(WorkCommand::Record(job)) => job.is_some() == self.records,
@@ -403,8 +408,16 @@ proptest! {
 #[test]
 fn a_platform_that_is_asked_for_nonsense_says_so() {
     let mut platform = Platform::default();
-    assert!(platform.obey(ShellCommand::Platform(PlatformCommand::PauseTracking)).is_err());
-    assert!(platform.obey(ShellCommand::Work(WorkCommand::Video(false))).is_err());
+    assert!(
+        platform
+            .obey(ShellCommand::Platform(PlatformCommand::PauseTracking))
+            .is_err()
+    );
+    assert!(
+        platform
+            .obey(ShellCommand::Work(WorkCommand::Video(false)))
+            .is_err()
+    );
     platform.runs = true;
     assert_eq!(
         platform.check(&world::app()).err().as_deref(),

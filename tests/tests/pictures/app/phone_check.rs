@@ -1,6 +1,8 @@
 //! The questions of a new phone: what is drawn for them lies where it should, and the answers are kept.
 
-use app_core::app::{App, CheckInk, Notice, PhoneQuestion, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction};
+use app_core::app::{
+    App, CheckInk, Notice, PhoneQuestion, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction,
+};
 use app_core::camera_frame::Tracking;
 use glam::{DVec2, DVec3};
 

@@ -10,7 +10,9 @@ use app_core::Core;
 use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
 use app_core::gpu::AdapterChoice;
-use app_core::recording::{Ending, Limits, PictureCodec, Recording, RecordingJob, RecordingOptions, RecordingOutcome, Topic};
+use app_core::recording::{
+    Ending, Limits, PictureCodec, Recording, RecordingJob, RecordingOptions, RecordingOutcome, Topic,
+};
 use app_core::scene::{Pose, Scene};
 use app_core::session::{
     Capture, Files, GroundTruth, Session, SessionError, SessionFrame, SessionWarning, Truth,
@@ -386,7 +388,10 @@ fn frames_never_wait_and_what_is_missing_is_told() {
         file: "a.mcap".to_owned(),
         outcome: outcome.clone(),
     }));
-    assert!(matches!(commands[..], [ShellCommand::Work(WorkCommand::Record(None))]));
+    assert!(matches!(
+        commands[..],
+        [ShellCommand::Work(WorkCommand::Record(None))]
+    ));
     let recording = Recording::open(bytes).unwrap();
     assert!(recording.losses().is_empty());
     let notes = recording.notes();

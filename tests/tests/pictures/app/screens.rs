@@ -169,6 +169,9 @@ fn a_finger_presses_the_button_below_it() {
         }
         actions
     };
-    assert_eq!(press([0.5 * (left + right), 0.5 * (top + bottom)]), [UserAction::Begin]);
+    assert_eq!(
+        press([0.5 * (left + right), 0.5 * (top + bottom)]),
+        [UserAction::Begin]
+    );
     assert_eq!(press([5.0, 5.0]), []);
 }

@@ -1,7 +1,10 @@
 //! Starts that come to no end lead to the simplest preset, and back from there.
 
 use app_core::Core;
-use app_core::app::{App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent, Simplified, UserAction, WorkCommand};
+use app_core::app::{
+    App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent,
+    Simplified, UserAction, WorkCommand,
+};
 use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
@@ -66,7 +69,10 @@ fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
     }
     let mut app = phone.start();
     assert_eq!(app.preset(Preset::Best), Preset::Flat);
-    assert_eq!(app.notice(), Some(&Notice::Simplified(Simplified::FailedLaunches)));
+    assert_eq!(
+        app.notice(),
+        Some(&Notice::Simplified(Simplified::FailedLaunches))
+    );
     // It stays so, however good it is, until the person wants it otherwise.
     phone.draw(&mut app, N_GOOD_FRAMES);
     let mut app = phone.start();

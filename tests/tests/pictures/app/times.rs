@@ -54,7 +54,6 @@ fn playing() -> (Live, Arc<AtomicU64>) {
     let mut live = Live::new(core, world::toy(), Preset::Flat);
     let now_ms = Arc::new(AtomicU64::new(0));
     let clock = Arc::clone(&now_ms);
-    #[expect(clippy::cast_precision_loss, reason = "a few seconds")]
     live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
     for event in [
         ShellEvent::Foreground(true),

@@ -35,7 +35,10 @@ fn a_toy_is_chosen_from_the_files_that_there_are() {
     let mut app = world::at_ghost();
     assert!(labels(&app).contains(&"Another toy".to_owned()));
     let asked = app.event(ShellEvent::User(UserAction::PickToy));
-    assert!(matches!(asked[..], [ShellCommand::Work(WorkCommand::PickToy)]), "{asked:?}");
+    assert!(
+        matches!(asked[..], [ShellCommand::Work(WorkCommand::PickToy)]),
+        "{asked:?}"
+    );
     let files = || ShellEvent::ToyFiles(vec!["Llama".to_owned(), "fox.glb".to_owned()]);
     let _ = app.event(files());
     let listed = labels(&app);

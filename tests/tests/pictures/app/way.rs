@@ -26,7 +26,9 @@ impl Person {
     pub(crate) fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
             match command {
-                ShellCommand::Work(WorkCommand::Align(job)) => self.tell(ShellEvent::Aligned(Some(Box::new(job.run())))),
+                ShellCommand::Work(WorkCommand::Align(job)) => {
+                    self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
+                }
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 _ => {}
             }

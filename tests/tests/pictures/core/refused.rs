@@ -83,7 +83,10 @@ fn values_that_cannot_be_are_refused_by_name() {
         assert!(refused.starts_with(&format!("{field}: ")), "{field}: {refused}");
     }
     let report = core.frame(&good).unwrap();
-    assert!(report.ran.iter().all(|run| run.path == PassGroup::Frame), "{report:?}");
+    assert!(
+        report.ran.iter().all(|run| run.path == PassGroup::Frame),
+        "{report:?}"
+    );
     assert!(core.read_picture().unwrap().rgba8 == expected);
 
     let mut tilted = scene;

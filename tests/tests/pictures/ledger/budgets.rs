@@ -201,7 +201,10 @@ fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
     for n_steps in 1..=BALANCED_QUALITY_LADDER.len() {
         let step = BALANCED_QUALITY_LADDER[n_steps - 1];
         let (first, now) = triangles(&BALANCED_QUALITY_LADDER[..n_steps]);
-        let is_fewer = !matches!(step.setting, QualitySetting::AmbientDivisor | QualitySetting::FramesPerSecond);
+        let is_fewer = !matches!(
+            step.setting,
+            QualitySetting::AmbientDivisor | QualitySetting::FramesPerSecond
+        );
         assert_eq!(now < before, is_fewer, "{}: {before}, {now}", step.what);
         assert_eq!(first, Some(Change::View), "{}: nothing is forgotten", step.what);
         before = now;

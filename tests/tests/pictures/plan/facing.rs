@@ -7,7 +7,6 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// A closed ball about the origin, of radius 1: positions, and corners counter-clockwise seen from outside.
 fn ball(n_around: u32, n_along: u32) -> (Vec<Vec3>, Vec<u32>) {
-    #[expect(clippy::cast_precision_loss, reason = "some dozens")]
     let at = |ring: u32, step: u32| {
         let (polar, turn) = (
             0.5 * TAU * ring as f32 / n_along as f32,
@@ -59,7 +58,6 @@ fn what_a_point_sees_stays_and_about_half_of_a_ball_goes() {
                 "{name}: {triangle:?} is lost"
             );
         }
-        #[expect(clippy::cast_precision_loss, reason = "some thousands")]
         let part = facing.len() as f64 / corners.len() as f64;
         assert!(part < most, "{name}: {part} of all is kept");
     }

@@ -43,7 +43,6 @@ fn bulb_disc(n_points: usize) -> Vec<DVec2> {
 }
 
 fn mean<T: Copy + std::iter::Sum<T> + std::ops::Div<f64, Output = T>>(values: &[T]) -> T {
-    #[expect(clippy::cast_precision_loss, reason = "a handful")]
     let n = values.len() as f64;
     values.iter().copied().sum::<T>() / n
 }

@@ -110,7 +110,8 @@ fn the_model_runs_its_passes_in_this_order() {
     let means = "residual fill tint tint_fill appearance";
     let scene = format!("{observed} lit fill fit fit_solve estimate residual tint tint_fill appearance");
     let view = format!("{observed} fit fit_solve lit fill estimate residual tint tint_fill appearance");
-    let [residual, tint] = ["residual fill", "tint tint_fill"].map(|mean| format!("fit fit_solve {mean} {DRAWN}"));
+    let [residual, tint] =
+        ["residual fill", "tint tint_fill"].map(|mean| format!("fit fit_solve {mean} {DRAWN}"));
     assert_eq!(
         runs(Preset::Balanced, false),
         [
@@ -155,7 +156,11 @@ fn the_published_method_runs_its_passes_in_this_order() {
     let ran = runs(Preset::Flat, true);
     assert_eq!(
         ran[0],
-        expected(Change::Scene, "plate masks warp pcss eligible", "warp pcss retarget")
+        expected(
+            Change::Scene,
+            "plate masks warp pcss eligible",
+            "warp pcss retarget"
+        )
     );
 }
 
@@ -163,10 +168,7 @@ fn the_published_method_runs_its_passes_in_this_order() {
 #[test]
 fn a_paused_toy_is_not_drawn_again() {
     for (preset, colours) in [
-        (
-            Preset::Balanced,
-            "fit fit_solve tint tint_fill toy composite",
-        ),
+        (Preset::Balanced, "fit fit_solve tint tint_fill toy composite"),
         (Preset::Paper, "plate search box_filter retarget"),
     ] {
         let (mut core, input) = counting(preset, true);

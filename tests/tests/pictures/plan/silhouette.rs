@@ -69,8 +69,7 @@ impl Look<'_> {
             corners,
             edges,
         };
-        let silhouette =
-            find_silhouette(shape, &viewers, self.projection, corners, SIZE_PX).expect("bounds");
+        let silhouette = find_silhouette(shape, &viewers, self.projection, corners, SIZE_PX).expect("bounds");
         (facing, silhouette)
     }
 

@@ -109,11 +109,7 @@ fn run(args: Args) -> Result<()> {
     live.set_clock(clock());
     let mut desk = Desk::new(live, feed, keeping, Pace::Repeatable);
     desk.tell(ShellEvent::Started(history));
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "pixels of a screen"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "pixels of a screen")]
     let size_px = args
         .size
         .map(|points| (f64::from(points) * args.scale).round() as u32);

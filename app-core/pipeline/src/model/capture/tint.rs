@@ -10,8 +10,8 @@ use crate::model::capture::gbuffer;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{TintGrid, Tints};
-use crate::passes::pictures::ByForm;
 pub(crate) use crate::passes::list::NoTargets as Targets;
+use crate::passes::pictures::ByForm;
 
 pub(crate) const SHADER: Shader = shader!("capture/tint");
 /// The sampling stride, in region pixels; then the grid, the sums and their inputs.

@@ -88,7 +88,6 @@ impl Evidence {
     /// Pixels of the receivers that show the real shadow, each as far as it is hidden from a light.
     #[must_use]
     pub(crate) fn n_shadow_pixels(&self) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most the pixels of a picture")]
         let step = self.step as f64;
         step * self.hidden
     }
@@ -132,7 +131,6 @@ impl Share {
         self.n_of_kind += usize::from(is_of_kind);
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "at most 65,536")]
     fn value(&self) -> Option<f64> {
         (self.n >= FEWEST_PIXELS).then(|| self.n_of_kind as f64 / self.n as f64)
     }
@@ -156,7 +154,6 @@ impl Spread {
         }
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "at most three of 65,536")]
     fn value(&self) -> Option<f64> {
         let n = (self.n >= 3 * FEWEST_PIXELS).then_some(self.n as f64)?;
         let mean = self.sum / n;

@@ -21,7 +21,8 @@ use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::passes::pictures::{ByForm, Picture, fill_parts, n_pixels_of};
 use crate::passes::present::REGION_FORMAT;
 
-pub(crate) const SHADER: Shader = shader!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]);
+pub(crate) const SHADER: Shader =
+    shader!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]);
 const SLOTS: &[Slot] = &[
     Slot::uniform::<Grids>(),
     Slot::Read,

@@ -13,8 +13,8 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::model::state::solution::{Scene, SeenScene};
-use crate::passes::pictures::Frame;
 use crate::passes::list::passes;
+use crate::passes::pictures::Frame;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::FrameDelta;
 

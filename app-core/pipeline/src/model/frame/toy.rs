@@ -17,8 +17,8 @@ use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{TintGrid, Tints};
-use crate::passes::pictures::ByForm;
 use crate::passes::materials::MATERIAL_GROUP;
+use crate::passes::pictures::ByForm;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = shader!("frame/toy");

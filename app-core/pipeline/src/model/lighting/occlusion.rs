@@ -16,10 +16,13 @@ use crate::gpu::texture::{Texture, fractions, half_float};
 use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS_GROUP, GlobalsOnDevice};
-use crate::passes::toy_mesh::{Corners, CasterLod, PoseBuffers, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::toy_mesh::{
+    CasterLod, Corners, PoseBuffers, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh,
+};
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
-pub(crate) const SHADER: Shader = shader!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]);
+pub(crate) const SHADER: Shader =
+    shader!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of points of one light.
@@ -100,7 +103,6 @@ impl PartOfMap {
     ///
     /// In 8 bits whole codes, of which all points take all 255: of 16, 32 and 64 points it is off by less than 1/255. Floats of 16
     /// bits are exact.
-    #[allow(clippy::cast_precision_loss, reason = "at most 255")]
     fn share(&self, n_points: u32) -> [f32; 4] {
         let n_points = n_points.max(1);
         let of_each = if self.format == AMBIENT_FORMAT {
@@ -294,9 +296,7 @@ impl Pass {
                 let instances = receiver * points.n_points..(receiver + 1) * points.n_points;
                 let n_plain = inputs.n_whole_shadows(points, receiver);
                 let drawn = (&corners, inputs.pose);
-                draws
-                    .cover
-                    .count(&mut render, &groups, drawn, instances, n_plain);
+                draws.cover.count(&mut render, &groups, drawn, instances, n_plain);
             }
         }
     }

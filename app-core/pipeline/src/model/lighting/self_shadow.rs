@@ -18,7 +18,8 @@ use app_scene::geometry::bounds::Sphere;
 use app_scene::scene::MAX_LIGHTS;
 
 /// The maps, for passes that read them.
-pub(crate) const SELF_SHADOW_MAPS: Mirrors = mirrors!("common/self_shadow", structs: [SelfShadow], constants: [MAX_TILES]);
+pub(crate) const SELF_SHADOW_MAPS: Mirrors =
+    mirrors!("common/self_shadow", structs: [SelfShadow], constants: [MAX_TILES]);
 pub(crate) const SHADER: Shader = shader!("lighting/self_shadow");
 /// Group of the maps, in this pass and where they are read.
 pub(crate) const GROUP_SELF_SHADOW: usize = 3;

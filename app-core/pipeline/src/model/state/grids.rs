@@ -66,7 +66,6 @@ pub fn grids_over(rects: &[PlaneRect]) -> Grids {
 
 #[allow(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     reason = "at most 64 cells a side; metres in f32 as shaders have them"
 )]
 fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {

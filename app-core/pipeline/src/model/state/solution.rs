@@ -6,8 +6,8 @@ use crate::gpu::pipeline::Pipeline;
 use crate::gpu::recorder::{Group, Recorder};
 use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
-use crate::passes::pictures::{Encoding, Frame};
 use crate::passes::globals::Globals;
+use crate::passes::pictures::{Encoding, Frame};
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
 /// WGSL part of the solution.
@@ -88,7 +88,6 @@ impl SeenScene<'_> {
 
 /// The solution to start from, which also stands where a frame has no valid pixel.
 pub(crate) fn start(n_lights: usize) -> Fit {
-    #[allow(clippy::cast_precision_loss, reason = "at most four lights")]
     let direct_fraction = PRIOR_DIRECT_FRACTION / n_lights.max(1) as f32;
     let mut receiver = ReceiverFit {
         bounce: [PRIOR_BOUNCE; 4],

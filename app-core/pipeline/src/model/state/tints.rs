@@ -11,7 +11,8 @@ use app_scene::geometry::bounds::Sphere;
 /// WGSL part of the grids.
 pub(crate) const TINT_GRID: Mirrors = mirrors!("common/tint_grid", structs: [TintGrid]);
 /// WGSL part of their cells.
-pub(crate) const TINT_CELL: Mirrors = mirrors!("common/tint_cells", constants: [TINT_SIDE, TINT_CELLS, N_TINT_SUMS]);
+pub(crate) const TINT_CELL: Mirrors =
+    mirrors!("common/tint_cells", constants: [TINT_SIDE, TINT_CELLS, N_TINT_SUMS]);
 /// Trilinear interpolation between cells.
 pub(crate) const BETWEEN_TINTS: Mirrors = mirrors!("common/between_tints", constants: [TINT_PYRAMID]);
 
