@@ -215,6 +215,126 @@ pub struct BaselineSettings {
     pub n_filter_taps: u32,
 }
 
+/// A setting that cannot be.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("settings, {field}: {value} is not {needed}")]
+pub struct SettingsError {
+    /// The field.
+    pub field: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// The values that it may have, in words.
+    pub needed: &'static str,
+}
+
+impl SettingsError {
+    fn unless(is_allowed: bool, field: &'static str, value: f64, needed: &'static str) -> Result<(), Self> {
+        let error = Self { field, value, needed };
+        if is_allowed { Ok(()) } else { Err(error) }
+    }
+}
+
+impl From<Preset> for Settings {
+    fn from(preset: Preset) -> Self {
+        preset.settings()
+    }
+}
+
+impl Settings {
+    /// Refuses what shaders and their uniforms have no room for.
+    ///
+    /// # Errors
+    /// When a setting is out of its range.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        match self {
+            Self::Model(settings) => settings.check(),
+            Self::Baseline(settings) => settings.check(),
+        }
+    }
+}
+
+impl ModelSettings {
+    fn check(&self) -> Result<(), SettingsError> {
+        let points = [
+            ("n_light_points", self.n_light_points),
+            ("n_narrow_light_points", self.n_narrow_light_points),
+            ("n_ambient_directions", self.n_ambient_directions),
+        ];
+        for (field, n) in points {
+            SettingsError::unless([16, 32, 64].contains(&n), field, n as f64, "16, 32 or 64")?;
+        }
+        let sides = [
+            ("ambient_divisor", self.ambient_divisor, 1..=16, "from 1 to 16"),
+            (
+                "self_shadow_tile_px",
+                self.self_shadow_tile_px,
+                16..=1024,
+                "from 16 to 1024",
+            ),
+        ];
+        for (field, n, range, needed) in sides {
+            SettingsError::unless(range.contains(&n), field, f64::from(n), needed)?;
+        }
+        let counts = [
+            ("n_toy_draws", self.n_toy_draws, [1, 4], "1 or 4"),
+            ("n_toy_samples", self.n_toy_samples, [1, 4], "1 or 4"),
+            (
+                "n_coverage_positions",
+                self.n_coverage_positions,
+                [16, 32],
+                "16 or 32",
+            ),
+        ];
+        for (field, n, allowed, needed) in counts {
+            SettingsError::unless(allowed.contains(&n), field, f64::from(n), needed)?;
+        }
+        let n = self.n_toy_draws;
+        let are_sampled = n == 1 || self.n_toy_samples == 4;
+        SettingsError::unless(are_sampled, "n_toy_draws", n.into(), "1 with one sample a pixel")?;
+        let n = self.n_self_shadow_points;
+        let is_allowed = (1..=16).contains(&n);
+        SettingsError::unless(is_allowed, "n_self_shadow_points", n as f64, "from 1 to 16")
+    }
+}
+
+impl BaselineSettings {
+    fn check(&self) -> Result<(), SettingsError> {
+        let ratio = self.constant_ratio.unwrap_or(0.0);
+        SettingsError::unless(
+            (0.0..=1.0).contains(&ratio),
+            "constant_ratio",
+            ratio.into(),
+            "from 0 to 1",
+        )?;
+        let step_px = self.ring_step_px;
+        SettingsError::unless(
+            (0.25..=64.0).contains(&step_px),
+            "ring_step_px",
+            step_px.into(),
+            "from 0.25 to 64",
+        )?;
+        let widths_px = [
+            ("eligible_margin_px", self.eligible_margin_px),
+            ("box_radius_px", self.box_radius_px),
+            ("seam_px", self.seam_px),
+        ];
+        for (field, width_px) in widths_px {
+            let is_allowed = (0..=256).contains(&width_px);
+            SettingsError::unless(is_allowed, field, width_px.into(), "from 0 to 256")?;
+        }
+        let counts = [
+            ("n_ring_directions", self.n_ring_directions),
+            ("n_rings", self.n_rings),
+            ("n_blocker_taps", self.n_blocker_taps),
+            ("n_filter_taps", self.n_filter_taps),
+        ];
+        for (field, n) in counts {
+            SettingsError::unless((1..=1024).contains(&n), field, n.into(), "from 1 to 1024")?;
+        }
+        Ok(())
+    }
+}
+
 /// A preset name that does not exist.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("preset \"{asked}\" is not built; there are {known}")]

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::gpu::context::GpuError;
+use crate::preset::SettingsError;
 use app_scene::scene::InputError;
 use app_scene::toy::ToyError;
 
@@ -16,6 +17,9 @@ pub enum CoreError {
     /// The toy cannot be posed.
     #[error(transparent)]
     Toy(#[from] ToyError),
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
     /// A frame came before there was a scene.
     #[error("a frame came before its scene")]
     NoScene,

@@ -23,7 +23,7 @@ use crate::model::Model;
 use crate::passes::pictures::ComposedFrame;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;
-use crate::preset::Preset;
+use crate::preset::Settings;
 use crate::stage::Stage;
 use crate::stage::method::Method;
 use app_scene::camera_frame::{CameraImage, Display};
@@ -223,13 +223,19 @@ impl Core {
         Ok(())
     }
 
-    /// Takes a scene; what was learned of the one before is forgotten.
+    /// Takes a scene, and a [`Preset`](crate::preset::Preset) or [`Settings`] of the caller's; what was learned of the one before is
+    /// forgotten.
     ///
     /// # Errors
-    /// When a value of it cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
-    pub fn set_scene(&mut self, scene: impl Into<Arc<Scene>>, preset: Preset) -> Result<(), CoreError> {
-        let scene = scene.into();
+    /// When a value of either cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
+    pub fn set_scene(
+        &mut self,
+        scene: impl Into<Arc<Scene>>,
+        settings: impl Into<Settings>,
+    ) -> Result<(), CoreError> {
+        let (scene, settings) = (scene.into(), settings.into());
         scene.check()?;
+        settings.check()?;
         self.check_sides([scene.width_px, scene.height_px])?;
         for plate in &scene.plates {
             check_size("plate", &scene, &Arc::clone(&plate.image).into())?;
@@ -237,12 +243,12 @@ impl Core {
         let toy_in_object = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         self.stage = None;
         self.gpu.release_groups();
-        for compiled in self.warm_up(preset) {
+        for compiled in self.warm_up(settings) {
             compiled?;
         }
         let stage = self
             .gpu
-            .guarded(|| Stage::new(&self.gpu, scene, preset, &toy_in_object))??;
+            .guarded(|| Stage::new(&self.gpu, scene, settings, &toy_in_object))??;
         self.stage = Some(stage);
         Ok(())
     }

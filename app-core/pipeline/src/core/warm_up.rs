@@ -5,18 +5,18 @@ use std::sync::Arc;
 use super::Core;
 use crate::gpu::context::{Gpu, GpuError};
 use crate::passes::list::WarmUp as Compile;
-use crate::preset::Preset;
+use crate::preset::Settings;
 use crate::stage::method;
 
 impl Core {
-    /// Compiles what the frames of `preset` need, one pass a step: on another thread, or a few steps between two frames of
+    /// Compiles what frames with these settings need, one pass a step: on another thread, or a few steps between two frames of
     /// the shell's own. What has not been compiled until then, [`Core::set_scene`] compiles; what reads pictures that come as pixels
     /// rather than as a phone's planes, the first frames with such.
     #[must_use]
-    pub fn warm_up(&self, preset: Preset) -> WarmUp {
+    pub fn warm_up(&self, settings: impl Into<Settings>) -> WarmUp {
         WarmUp {
             gpu: Arc::clone(&self.gpu),
-            left: method::warm_ups(preset).into_iter(),
+            left: method::warm_ups(settings.into()).into_iter(),
         }
     }
 }

@@ -90,7 +90,7 @@ impl Stage {
         if self.lights.used.is_empty() {
             return warned(Warning::NoLight);
         }
-        let needs_plate = matches!(self.preset.settings(), Settings::Baseline(_));
+        let needs_plate = matches!(self.settings, Settings::Baseline(_));
         if needs_plate && self.scene.plates.is_empty() {
             return warned(Warning::NoPlate);
         }

@@ -13,14 +13,14 @@ use crate::passes::list::WarmUp;
 use crate::passes::pictures::{Picture, Pictures};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{FrameDelta, SkippedWork};
-use crate::preset::{Preset, Settings};
+use crate::preset::Settings;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use app_scene::scene::Image;
 
-/// Everything that the frames of a preset run, to be compiled.
-pub(crate) fn warm_ups(preset: Preset) -> Vec<WarmUp> {
-    let of_method = match preset.settings() {
+/// Everything that frames with these settings run, to be compiled.
+pub(crate) fn warm_ups(settings: Settings) -> Vec<WarmUp> {
+    let of_method = match settings {
         Settings::Model(_) => [
             model::lighting::WARM_UPS,
             model::capture::WARM_UPS,

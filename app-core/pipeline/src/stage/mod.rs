@@ -30,7 +30,7 @@ use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::toy_mesh::{Casting, ToyMesh};
 use crate::plan::{Change, FrameDelta, SkippedWork};
 use crate::plates::store::PlateStore;
-use crate::preset::{Preset, Settings};
+use crate::preset::Settings;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use app_scene::camera_frame::CameraImage;
@@ -48,7 +48,7 @@ use supported::{Lights, Receivers};
 /// A scene on the device.
 pub(crate) struct Stage {
     scene: Arc<Scene>,
-    preset: Preset,
+    settings: Settings,
     receivers: Vec<AnchoredReceiver>,
     /// Indices of `receivers` in the scene's list.
     receiver_indices: Vec<usize>,
@@ -113,9 +113,9 @@ struct MethodState {
     is_placement_outdated: bool,
 }
 
-/// How a preset draws the toy's shadows: the baseline draws whole shapes, as published.
-fn casting(toy: &Toy, preset: Preset) -> Casting<'_> {
-    let settings = match preset.settings() {
+/// How settings draw the toy's shadows: the baseline draws whole shapes, as published.
+fn casting(toy: &Toy, settings: Settings) -> Casting<'_> {
+    let settings = match settings {
         Settings::Model(settings) => Some(settings),
         Settings::Baseline(_) => None,
     };
@@ -132,7 +132,7 @@ impl Stage {
     pub(crate) fn new(
         gpu: &Gpu,
         scene: Arc<Scene>,
-        preset: Preset,
+        settings: Settings,
         toy_in_object: &toy::Bounds,
     ) -> Result<Self, ToyError> {
         let bounds_in_object = Bounds {
@@ -157,7 +157,7 @@ impl Stage {
             bounds_in_object,
             physical_bounds: Bounds::around(posed.points()),
             physical_outline: Outline::around(&posed),
-            toy: ToyMesh::new(gpu, &scene.toy, &posed, &casting(&scene.toy, preset)),
+            toy: ToyMesh::new(gpu, &scene.toy, &posed, &casting(&scene.toy, settings)),
             posed,
             camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
@@ -171,7 +171,7 @@ impl Stage {
             receivers_warning: receivers.warning,
             effect: None,
             output: OnceLock::new(),
-            preset,
+            settings,
             world_from_object: scene.world_from_object,
             is_object_placed: true,
             scene,
@@ -187,7 +187,7 @@ impl Stage {
 
     /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
     pub(crate) fn withhold_shadow(&mut self) {
-        if matches!(self.preset.settings(), Settings::Model(_)) {
+        if matches!(self.settings, Settings::Model(_)) {
             self.is_shadow_withheld = true;
             self.state = None;
         }

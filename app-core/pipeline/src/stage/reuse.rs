@@ -104,7 +104,7 @@ impl Stage {
     /// Starts from nothing.
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         self.drop_method(gpu);
-        let method = match self.preset.settings() {
+        let method = match self.settings {
             Settings::Model(settings) => match self.affordable(settings, footprint) {
                 Some(plan) => self.model(gpu, plan, footprint),
                 None => return,
@@ -134,7 +134,7 @@ impl Stage {
             return;
         };
         let region = region_in(&state.method, footprint);
-        state.method = match (self.preset.settings(), state.method) {
+        state.method = match (self.settings, state.method) {
             (Settings::Model(settings), Method::Model(model)) => {
                 let known = &model.region.plan;
                 let facts = self.facts(footprint, (region, Some(known)));
@@ -164,7 +164,7 @@ impl Stage {
     /// Follows the object and the lights to another place, from where all is learned anew.
     fn relocate(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         if let Some(state) = &self.state
-            && let (Settings::Model(settings), Method::Model(model)) = (self.preset.settings(), &state.method)
+            && let (Settings::Model(settings), Method::Model(model)) = (self.settings, &state.method)
         {
             let known = &model.region.plan;
             let region = region_in(&state.method, footprint);

@@ -1,140 +1,17 @@
 //! Whatever happens in whatever order, what the shell is asked for makes sense.
 
 use app_core::app::{
-    AlignJob, AlignedJob, App, ArSession, GraphicsState, Notice, Permission, PlatformCommand, Saved,
-    ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand,
+    AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent,
+    Show, Step, UserAction, WorkCommand,
 };
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
 use app_core::recording::{Ending, RecordingJob};
 use glam::DVec2;
 use proptest::prelude::*;
-use proptest::sample::select;
 
+use super::happenings::{Happening, happening};
 use crate::app::world;
-
-/// Something that happens.
-#[derive(Clone, Debug)]
-pub(crate) enum Happening {
-    Permission(Permission),
-    Foreground(bool),
-    Surface(bool),
-    Graphics(GraphicsState),
-    ArSession(ArSession),
-    /// So many frames, 33 ms apart, 17 or 50.
-    Frames(u8, i64, Tracking),
-    /// The last one once more, or an older one.
-    StaleFrame(bool),
-    NewWorld,
-    Thermal(Thermal),
-    MemoryLow,
-    Restarted,
-    /// It finds the toy so far from where it is drawn, in pixels, or sees too little of it.
-    AlignmentEnds(Option<f64>),
-    /// It runs as it would, on a picture that shows no toy.
-    AlignmentRuns,
-    AlignmentDies,
-    OtherToy(bool),
-    Saved(Saved),
-    /// The first or the last recording ends, asked or not.
-    RecordingEnds(bool),
-    FreeSpace(u64),
-    User(UserAction),
-}
-
-fn happening() -> impl Strategy<Value = Happening> {
-    let permission = select(vec![
-        Permission::Unknown,
-        Permission::Granted,
-        Permission::Denied,
-        Permission::Barred,
-    ]);
-    let device = select(vec![
-        GraphicsState::Starting,
-        GraphicsState::Ready,
-        GraphicsState::Lost,
-        GraphicsState::Unsupported,
-    ]);
-    let ar_session = select(vec![
-        ArSession::Able,
-        ArSession::Interrupted,
-        ArSession::Failed,
-        ArSession::Unsupported,
-    ]);
-    let tracking = prop_oneof![
-        4 => Just(Tracking::Normal),
-        1 => select(vec![Tracking::Starting, Tracking::TooFast, Tracking::Relocalising]),
-    ];
-    let thermal = select(vec![
-        Thermal::Nominal,
-        Thermal::Fair,
-        Thermal::Serious,
-        Thermal::Critical,
-    ]);
-    let saved = select(vec![Saved::Done, Saved::NoRoom, Saved::NotAllowed, Saved::Failed]);
-    prop_oneof![
-        1 => permission.prop_map(Happening::Permission),
-        1 => any::<bool>().prop_map(Happening::Foreground),
-        1 => any::<bool>().prop_map(Happening::Surface),
-        1 => device.prop_map(Happening::Graphics),
-        1 => ar_session.prop_map(Happening::ArSession),
-        8 => (1_u8..20, select(vec![17_i64, 33, 50]), tracking).prop_map(|(n, ms, tracking)| Happening::Frames(n, ms, tracking)),
-        1 => any::<bool>().prop_map(Happening::StaleFrame),
-        1 => Just(Happening::NewWorld),
-        1 => thermal.prop_map(Happening::Thermal),
-        1 => Just(Happening::MemoryLow),
-        1 => Just(Happening::Restarted),
-        4 => select(vec![Some(0.1), Some(0.1), Some(1.9), None]).prop_map(Happening::AlignmentEnds),
-        1 => Just(Happening::AlignmentRuns),
-        1 => Just(Happening::AlignmentDies),
-        1 => any::<bool>().prop_map(Happening::OtherToy),
-        1 => saved.prop_map(Happening::Saved),
-        1 => any::<bool>().prop_map(Happening::RecordingEnds),
-        1 => select(vec![0, u64::MAX]).prop_map(Happening::FreeSpace),
-        12 => action().prop_map(Happening::User),
-    ]
-}
-
-fn action() -> impl Strategy<Value = UserAction> {
-    let pixel = || (-10.0..80.0, -10.0..60.0).prop_map(|(x, y)| DVec2::new(x, y));
-    let plain = vec![
-        UserAction::Begin,
-        UserAction::OpenSettings,
-        UserAction::SkipPlate,
-        UserAction::TakeLens,
-        UserAction::Placed,
-        UserAction::Placed,
-        UserAction::Replace,
-        UserAction::RetakePlate,
-        UserAction::StartOver,
-        UserAction::Choose(None),
-        UserAction::Choose(world::toy().clip_ids().next()),
-        UserAction::Play(false),
-        UserAction::SavePhoto,
-        UserAction::Video(true),
-        UserAction::Video(false),
-        UserAction::Record(true),
-        UserAction::Record(false),
-        UserAction::ShowProfile(true),
-        UserAction::CheckPhone(true),
-        UserAction::CheckPhone(false),
-        UserAction::Answer(true),
-        UserAction::Answer(true),
-        UserAction::PickToy,
-        UserAction::ChooseToy(Some(1)),
-        UserAction::ChooseToy(None),
-        UserAction::Share,
-        UserAction::RestorePreset,
-    ];
-    prop_oneof![
-        8 => select(plain),
-        4 => Just(UserAction::Tap(DVec2::new(32.0, 24.0))),
-        1 => pixel().prop_map(UserAction::Tap),
-        1 => (pixel(), pixel()).prop_map(|(from_px, to_px)| UserAction::Drag { from_px, to_px }),
-        1 => any::<f64>().prop_map(UserAction::Twist),
-        1 => any::<f64>().prop_map(UserAction::Scrub),
-    ]
-}
 
 /// A platform that does as it is told, and finds fault with what makes no sense.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! The core as a shell uses it, on the bundled session.
 
-mod bundled;
+pub(crate) mod bundled;
 mod camera;
 mod coplanar;
 mod file;

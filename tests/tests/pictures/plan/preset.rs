@@ -1,6 +1,9 @@
 //! Names of presets, and what they spend.
 
-use app_core::preset::{Preset, Settings};
+use app_core::Core;
+use app_core::preset::{BALANCED, BASELINE, BaselineSettings, ModelSettings, Preset, Settings};
+
+use crate::core::bundled::{first_input, scene};
 
 #[test]
 fn a_preset_is_asked_for_by_its_name() {
@@ -24,20 +27,64 @@ fn another_name_is_refused_with_those_that_there_are() {
 }
 
 #[test]
-fn a_preset_spends_what_the_passes_can_take() {
+fn settings_that_the_passes_cannot_take_are_refused_by_field() {
+    let refused = |settings: Settings| settings.check().unwrap_err().field;
     for preset in Preset::ALL {
-        let Settings::Model(settings) = preset.settings() else {
-            continue;
+        assert_eq!(preset.settings().check(), Ok(()), "{preset}");
+        let n_points = match preset.settings() {
+            Settings::Model(settings) => [settings.n_narrow_light_points, settings.n_light_points],
+            _ => continue,
         };
-        let n_points = [settings.n_narrow_light_points, settings.n_light_points];
         assert!(n_points.is_sorted(), "{preset}: {n_points:?}");
-        for n_points in n_points.into_iter().chain([settings.n_ambient_directions]) {
-            assert!([16, 32, 64].contains(&n_points), "{preset}: {n_points}");
-        }
-        assert!((1..=16).contains(&settings.ambient_divisor), "{preset}");
-        let toy = [settings.n_toy_draws, settings.n_toy_samples];
-        assert!([[1, 1], [1, 4], [4, 4]].contains(&toy), "{preset}: {toy:?}");
-        assert!([16, 32].contains(&settings.n_coverage_positions), "{preset}");
-        assert!((1..=16).contains(&settings.n_self_shadow_points), "{preset}");
     }
+    let model = |change: fn(&mut ModelSettings)| {
+        let mut settings = BALANCED;
+        change(&mut settings);
+        refused(Settings::Model(settings))
+    };
+    assert_eq!(model(|it| it.n_light_points = 65), "n_light_points");
+    assert_eq!(model(|it| it.n_ambient_directions = 0), "n_ambient_directions");
+    assert_eq!(model(|it| it.ambient_divisor = 0), "ambient_divisor");
+    assert_eq!(model(|it| it.self_shadow_tile_px = 4096), "self_shadow_tile_px");
+    assert_eq!(model(|it| it.n_toy_samples = 2), "n_toy_samples");
+    assert_eq!(
+        model(|it| (it.n_toy_draws, it.n_toy_samples) = (4, 1)),
+        "n_toy_draws"
+    );
+    assert_eq!(model(|it| it.n_coverage_positions = 8), "n_coverage_positions");
+    assert_eq!(model(|it| it.n_self_shadow_points = 17), "n_self_shadow_points");
+    let baseline = |change: fn(&mut BaselineSettings)| {
+        let mut settings = BASELINE;
+        change(&mut settings);
+        refused(Settings::Baseline(settings))
+    };
+    assert_eq!(
+        baseline(|it| it.constant_ratio = Some(f32::NAN)),
+        "constant_ratio"
+    );
+    assert_eq!(baseline(|it| it.ring_step_px = 0.0), "ring_step_px");
+    assert_eq!(baseline(|it| it.seam_px = -1), "seam_px");
+    assert_eq!(baseline(|it| it.n_rings = 0), "n_rings");
+}
+
+#[test]
+fn a_scene_takes_settings_of_the_callers() {
+    let mut core = Core::counting();
+    let with_points = |n_light_points| {
+        Settings::Model(ModelSettings {
+            n_light_points,
+            ..BALANCED
+        })
+    };
+    let refused = core.set_scene(scene(), with_points(3)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "settings, n_light_points: 3 is not 16, 32 or 64"
+    );
+    let mut triangles = |settings: Settings| {
+        core.set_scene(scene(), settings).unwrap();
+        let report = core.frame(&first_input()).unwrap();
+        report.ran.iter().map(|run| run.work.triangles()).sum::<u64>()
+    };
+    assert!(triangles(with_points(16)) < triangles(Preset::Balanced.into()));
 }
