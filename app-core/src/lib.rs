@@ -16,8 +16,8 @@
 //! use app_core::scene::Pose;
 //! use app_core::session::{Capture, Folder, Session};
 //! use app_core::toy::NodePose;
+//! use app_core::glam::DQuat;
 //! use app_core::{Core, wgpu};
-//! use glam::DQuat;
 //!
 //! fn main() -> Result<(), Box<dyn Error>> {
 //!     // Of the feature `fs`: by itself the core opens no file, and reads through the trait `Files`.
@@ -62,6 +62,7 @@
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, core, governor, gpu, ledger, preset, profile, wgpu};
+pub use app_scene::glam;
 pub use app_scene::{camera_frame, card, lens, scene, toy};
 
 /// One frame in, one report out.

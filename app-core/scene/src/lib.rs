@@ -11,3 +11,5 @@ pub mod lens;
 pub mod scene;
 pub mod toy;
 pub mod words;
+
+pub use glam;

@@ -351,7 +351,7 @@ fn a_recording_that_ended_late_leaves_the_next_one_alone() {
         .iter()
         .map(|command| format!("{command:?}"))
         .collect();
-    assert_eq!(names, ["Record(None)"]);
+    assert_eq!(names, ["Work(Record(None))"]);
     assert!(!app.is_recording());
     assert!(
         matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.outcome.ending == Ending::NoRoom)
@@ -373,10 +373,10 @@ fn a_recording_and_a_video_are_saved_before_the_camera_goes() {
     assert_eq!(
         names,
         [
-            "Video(false)",
-            "Record(None)",
-            "PauseTracking",
-            "KeepAwake(false)"
+            "Work(Video(false))",
+            "Work(Record(None))",
+            "Platform(PauseTracking)",
+            "Platform(KeepAwake(false))"
         ]
     );
 }

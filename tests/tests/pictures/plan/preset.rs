@@ -70,9 +70,10 @@ fn settings_that_the_passes_cannot_take_are_refused_by_field() {
 #[test]
 fn a_scene_takes_settings_of_the_callers() {
     let mut core = Core::counting();
-    let with_points = |n_light_points| {
+    let with_points = |n| {
         Settings::Model(ModelSettings {
-            n_light_points,
+            n_light_points: n,
+            n_narrow_light_points: n,
             ..BALANCED
         })
     };
