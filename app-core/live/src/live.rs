@@ -15,6 +15,7 @@ use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
 use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Governor, Measured};
+use app_pipeline::gpu::ShaderTexts;
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
 use app_scene::camera_frame::Display;
@@ -96,6 +97,17 @@ impl Live {
         // Another device knows none of its textures.
         self.interface = Interface::default();
         self.scene = None;
+    }
+
+    /// As [`Core::replace_shaders`]; the scene is set again with the next picture. With other shaders than those that are built in, the
+    /// device draws no test picture. A core that is [reopened](Live::reopen) begins with those that are built in.
+    ///
+    /// # Errors
+    /// When the device refuses a pass: shaders and picture stay as they were.
+    pub fn replace_shaders(&mut self, texts: ShaderTexts) -> Result<(), CoreError> {
+        self.core.replace_shaders(texts)?;
+        self.scene = None;
+        Ok(())
     }
 
     /// Takes what happened, and returns what is to be done.
@@ -255,7 +267,8 @@ impl Live {
     fn test_device(&mut self) -> Option<WorkCommand> {
         let version = env!("CARGO_PKG_VERSION");
         let device = format!("{version} {} {}", self.preset, self.core.adapter_name());
-        if self.core.device().is_none() || !self.app.wants_self_test(&device) {
+        let is_usual = self.core.device().is_some() && self.core.has_built_in_shaders();
+        if !is_usual || !self.app.wants_self_test(&device) {
             return None;
         }
         let tested = self_test::run(&mut self.core, self.preset);

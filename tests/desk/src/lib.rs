@@ -18,4 +18,5 @@ pub mod program;
 pub mod progress;
 pub mod replay;
 pub mod report;
+pub mod shaders;
 pub mod stored;

@@ -20,6 +20,8 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::{Key, NamedKey};
 use winit::window::{Window, WindowId};
 
+use desk::shaders::ShaderFolder;
+
 use super::desk::{Desk, Keeping};
 use super::fault::Fault;
 use super::feed::Feed;
@@ -28,6 +30,8 @@ use super::feed::Feed;
 const FRAME: Duration = Duration::from_millis(33);
 /// How long a fault lasts.
 const FAULT_S: f64 = 5.0;
+/// Time between two looks at the shaders' files.
+const LOOK: Duration = Duration::from_secs(1);
 /// The mouse as a finger.
 const MOUSE: u64 = 0;
 
@@ -45,6 +49,8 @@ pub struct Options {
     pub hold: Option<u32>,
     /// What a person keeps.
     pub keeping: Keeping,
+    /// Shaders that are drawn with in place of those that are built in, as they are changed.
+    pub shaders: Option<ShaderFolder>,
     /// Close by itself after so many seconds.
     pub seconds: Option<f64>,
 }
@@ -59,6 +65,7 @@ pub fn open(feed: Feed, options: Options) -> Result<()> {
         instance: wgpu::Instance::default(),
         start: Instant::now(),
         last_frame: None,
+        last_look: None,
         feed: Some(feed),
         pressed_at: None,
         options,
@@ -81,6 +88,7 @@ struct Shell {
     instance: wgpu::Instance,
     start: Instant,
     last_frame: Option<Instant>,
+    last_look: Option<Instant>,
     feed: Option<Feed>,
     /// Where the mouse is, and whether it is down.
     pressed_at: Option<(PhysicalPosition<f64>, bool)>,
@@ -130,6 +138,7 @@ impl Shell {
     fn draw(&mut self) -> Result<()> {
         self.strike_faults();
         self.reopen_device()?;
+        self.follow_shaders();
         let now = Instant::now();
         let Some(Opened { window, desk }) = &mut self.opened else {
             return Ok(());
@@ -168,7 +177,31 @@ impl Shell {
         if let Some(opened) = &mut self.opened {
             opened.desk.live.reopen(core);
         }
+        // Another device begins with those that are built in.
+        self.last_look = None;
+        self.options.shaders.iter_mut().for_each(ShaderFolder::forget);
         Ok(())
+    }
+
+    /// Draws with shaders that were changed; those that are refused are told of, and the latest good ones stay.
+    fn follow_shaders(&mut self) {
+        let (Some(folder), Some(Opened { desk, .. })) = (&mut self.options.shaders, &mut self.opened) else {
+            return;
+        };
+        if self.last_look.is_some_and(|last| last.elapsed() < LOOK) {
+            return;
+        }
+        self.last_look = Some(Instant::now());
+        let replaced = folder.changed().map(|read| {
+            let texts = read?;
+            let replaced = desk.live.replace_shaders(texts);
+            replaced.map_err(|error| error.to_string())
+        });
+        match replaced {
+            Some(Ok(())) => println!("drawing with changed shaders"),
+            Some(Err(error)) => eprintln!("the shaders stay as they were: {error}"),
+            None => {}
+        }
     }
 
     fn strike_faults(&mut self) {

@@ -4,6 +4,7 @@ mod error;
 mod fit_warnings;
 pub mod inspect;
 mod preview;
+mod shaders;
 mod warm_up;
 mod window;
 

@@ -39,7 +39,7 @@ impl<'a> Canvas<'a> {
 pub(super) struct Window {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
-    screen: screen::Pass,
+    pub(super) screen: screen::Pass,
 }
 
 impl Window {
@@ -66,6 +66,11 @@ impl Window {
             surface,
             config,
         })
+    }
+
+    /// Format that `screen` is compiled for.
+    pub(super) fn format(&self) -> wgpu::TextureFormat {
+        self.config.format
     }
 
     pub(super) fn resize(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) {

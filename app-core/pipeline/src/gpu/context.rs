@@ -13,6 +13,7 @@ use super::meter::{Memory, Meter};
 use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, PipelineCache};
 use super::quirks::fault_on_surfaces;
 use super::samplers::Samplers;
+use super::shader::ShaderTexts;
 use super::uniforms::Uniforms;
 
 /// Which graphics adapter to use.
@@ -229,6 +230,18 @@ impl Gpu {
                 compiled: None,
             },
         }
+    }
+
+    /// Compiles shaders from other texts from now on, and returns those before. Pipelines that are held stay as they are.
+    pub(crate) fn replace_shaders(&self, texts: ShaderTexts) -> ShaderTexts {
+        let pipelines = self.opened.as_ref().map(|opened| &opened.pipelines);
+        pipelines.map_or_else(ShaderTexts::default, |kept| kept.replace_texts(texts))
+    }
+
+    /// Whether shaders are compiled from what is built in.
+    pub(crate) fn has_built_in_shaders(&self) -> bool {
+        let opened = self.opened.as_ref();
+        opened.is_none_or(|opened| opened.pipelines.is_built_in())
     }
 
     /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.

@@ -30,3 +30,4 @@ pub use context::{AdapterChoice, Gpu, GpuError, phone_limits};
 pub use handle::DeviceHandle;
 pub use lent::{LentError, LentTextures};
 pub use quirks::fault_on_surfaces;
+pub use shader::ShaderTexts;

@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 use std::hash::Hash;
+use std::mem;
 use std::sync::Mutex;
 
 use wgpu::{ColorTargetState, DepthStencilState, Face, VertexAttribute, VertexFormat, VertexStepMode};
 
 use super::bindings::{BindingCache, Layout, N_GROUPS, Slot, locked};
 use super::device::Device;
-use super::shader::Shader;
+use super::shader::{Shader, ShaderTexts};
 
 /// Slots of each group; empty where a shader has no such group.
 pub(crate) type Groups = [&'static [Slot]; N_GROUPS];
@@ -91,6 +92,8 @@ pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
 /// Cache of everything compiled on a device.
 #[derive(Default)]
 pub(crate) struct PipelineCache {
+    /// What modules are compiled from.
+    texts: Mutex<ShaderTexts>,
     modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
     draws: Mutex<HashMap<DrawSpec, Draw>>,
     computes: Mutex<HashMap<ComputeSpec, Compute>>,
@@ -107,6 +110,18 @@ impl PipelineCache {
         cached(&self.computes, spec, || {
             self.compile_compute(device, bindings, spec)
         })
+    }
+
+    /// Compiles from other texts from now on, and returns those before.
+    pub(crate) fn replace_texts(&self, texts: ShaderTexts) -> ShaderTexts {
+        let before = mem::replace(&mut *locked(&self.texts), texts);
+        self.clear();
+        before
+    }
+
+    /// Whether modules are compiled from what is built in.
+    pub(crate) fn is_built_in(&self) -> bool {
+        *locked(&self.texts) == ShaderTexts::default()
     }
 
     /// Drops everything, to be compiled anew.
@@ -182,9 +197,10 @@ impl PipelineCache {
 
     fn module(&self, device: &Device, shader: &Shader) -> wgpu::ShaderModule {
         cached(&self.modules, &shader.name, || {
+            let source = shader.source_with(&locked(&self.texts));
             device.module(wgpu::ShaderModuleDescriptor {
                 label: Some(shader.name),
-                source: wgpu::ShaderSource::Wgsl(shader.source().into()),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
             })
         })
     }

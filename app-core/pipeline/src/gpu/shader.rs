@@ -3,6 +3,7 @@
 //! A file names the parts that it needs in its head, each in a line `//#import common/x`; parts may import others. To WGSL these
 //! lines are comments.
 
+use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
 
 use super::common;
@@ -20,6 +21,32 @@ pub struct Mirrors {
     pub structs: &'static [Mirror],
     /// The host's values of constants that it declares.
     pub constants: &'static [(&'static str, f64)],
+}
+
+/// WGSL files in place of those that are built in, by their paths below `shaders` without the ending; a part may be a new one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ShaderTexts(BTreeMap<String, String>);
+
+impl FromIterator<(String, String)> for ShaderTexts {
+    /// Takes pairs of a path, such as `frame/composite`, and the file's text.
+    fn from_iter<T: IntoIterator<Item = (String, String)>>(texts: T) -> Self {
+        Self(texts.into_iter().collect())
+    }
+}
+
+/// Every file as it is built in.
+static BUILT_IN: ShaderTexts = ShaderTexts(BTreeMap::new());
+
+impl ShaderTexts {
+    /// The text that is given for a path.
+    fn given(&self, path: &str) -> Option<&str> {
+        self.0.get(path).map(String::as_str)
+    }
+
+    /// The WGSL of a part: the one that is given, else the one that is built in.
+    fn part(&self, path: &str) -> Option<&str> {
+        self.given(path).or_else(|| common::text(path))
+    }
 }
 
 /// A pass's shader.
@@ -45,26 +72,38 @@ impl Shader {
     /// Paths of the parts that it imports and that these import, each once and after those that it needs itself.
     #[must_use]
     pub fn imports(&self) -> Vec<&'static str> {
-        let mut paths = Vec::new();
-        add_imports(self.text, &mut Vec::new(), &mut paths);
-        paths
+        imports(self.text, &BUILT_IN)
     }
 
     /// The WGSL of the imported parts, then its own. A part that does not exist is left out.
     #[must_use]
     pub fn source(&self) -> String {
-        let parts = self.imports().into_iter().filter_map(common::text);
-        let texts: Vec<&str> = parts.chain([self.text]).collect();
-        texts.join("\n")
+        self.source_with(&BUILT_IN)
+    }
+
+    /// The same with other texts.
+    pub(crate) fn source_with(&self, texts: &ShaderTexts) -> String {
+        let own = texts.given(self.mirrors.path).unwrap_or(self.text);
+        let imported = imports(own, texts).into_iter();
+        let parts = imported.filter_map(|path| texts.part(path));
+        let joined: Vec<&str> = parts.chain([own]).collect();
+        joined.join("\n")
     }
 }
 
+/// Paths of the parts that `text` imports and that these import, each once and after those that it needs itself.
+fn imports<'a>(text: &'a str, texts: &'a ShaderTexts) -> Vec<&'a str> {
+    let mut paths = Vec::new();
+    add_imports(text, texts, &mut Vec::new(), &mut paths);
+    paths
+}
+
 /// Adds the parts that `text` imports to `paths`; those in `seen` are there, or are about to be.
-fn add_imports(text: &'static str, seen: &mut Vec<&'static str>, paths: &mut Vec<&'static str>) {
+fn add_imports<'a>(text: &'a str, texts: &'a ShaderTexts, seen: &mut Vec<&'a str>, paths: &mut Vec<&'a str>) {
     for path in text.lines().filter_map(|line| line.strip_prefix(IMPORT)) {
         if !seen.contains(&path) {
             seen.push(path);
-            add_imports(common::text(path).unwrap_or_default(), seen, paths);
+            add_imports(texts.part(path).unwrap_or_default(), texts, seen, paths);
             paths.push(path);
         }
     }

@@ -20,6 +20,7 @@ use desk::program::{exit_code, repository};
 use desk::progress::{Progress, Quiet, on_stderr};
 use desk::replay::{Options, REPORT_FILE, replay};
 use desk::report::Report;
+use desk::shaders::ShaderArgs;
 
 /// Where results go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/replay";
@@ -43,6 +44,8 @@ struct Args {
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    #[command(flatten)]
+    shaders: ShaderArgs,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
     as_given: bool,
@@ -73,6 +76,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .clone()
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    args.shaders.hand_to(&mut core)?;
     let options = Options {
         presets: without_repeats(&args.presets),
         turned_down: &[],

@@ -18,6 +18,7 @@ use desk::opened;
 use desk::opened::Opened;
 use desk::output::{make_folder, remove_file, write_png, write_whole};
 use desk::program::{exit_code, open_session, repository};
+use desk::shaders::ShaderArgs;
 use measure::bench::{
     Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front_drawing, json, rebuild,
     rebuilt_table, table,
@@ -86,6 +87,8 @@ struct Args {
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    #[command(flatten)]
+    shaders: ShaderArgs,
 }
 
 fn main() -> ExitCode {
@@ -111,6 +114,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         return basins(folders, args, &out);
     }
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    args.shaders.hand_to(&mut core)?;
     if args.withheld {
         return rebuild_all(folders, &mut core, args, &out);
     }

@@ -15,6 +15,7 @@ use clap::Parser;
 use desk::files::BUNDLED_SESSION;
 use desk::output::{make_folder, write_whole};
 use desk::program::{exit_code, open_session, repository};
+use desk::shaders::ShaderArgs;
 use measure::profiled::{parse, profile, tables};
 
 /// Where the trace goes that was given no place, below the top of the repository.
@@ -36,6 +37,8 @@ struct Args {
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    #[command(flatten)]
+    shaders: ShaderArgs,
 }
 
 fn main() -> ExitCode {
@@ -64,6 +67,7 @@ fn measure(folder: &Path, args: &Args) -> anyhow::Result<String> {
         .clone()
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    args.shaders.hand_to(&mut core)?;
     let session = Capture::open(open_session(folder)?)?;
     let measured = profile(&session, &mut core, args.preset)?;
     let file = out.join("profile.json");

@@ -181,15 +181,18 @@ const SCREEN: Screen = Screen {
     text_scale: 1.0,
 };
 
-/// What is kept once an app has compiled its preset.
-fn kept_after_compiling(text: &str) -> (Live, Vec<String>) {
+fn open_live() -> Live {
     let instance = wgpu::Instance::default();
     let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    let mut live = Live::new(
+    Live::new(
         pollster::block_on(opened).unwrap(),
         world::toy(),
         Preset::Balanced,
-    );
+    )
+}
+
+/// What is kept once an app has compiled its preset.
+fn kept_after_compiling(mut live: Live, text: &str) -> (Live, Vec<String>) {
     let mut commands = live.event(ShellEvent::Started(LaunchHistory::read(text)));
     for n in 0..100 {
         commands.extend(live.screenshot(&SCREEN, f64::from(n) / 30.0).unwrap().1);
@@ -203,7 +206,7 @@ fn kept_after_compiling(text: &str) -> (Live, Vec<String>) {
 
 #[test]
 fn a_device_that_passes_is_remembered_and_not_tested_again() {
-    let (live, kept) = kept_after_compiling("unfinished 1");
+    let (live, kept) = kept_after_compiling(open_live(), "unfinished 1");
     let [kept] = &kept[..] else {
         panic!("kept: {kept:?}");
     };
@@ -213,7 +216,18 @@ fn a_device_that_passes_is_remembered_and_not_tested_again() {
     );
     let tested = live.app().log().text();
     assert!(tested.contains("self-test"), "{tested}");
-    let (live, kept) = kept_after_compiling(kept);
+    let (live, kept) = kept_after_compiling(open_live(), kept);
+    assert_eq!(kept, [""; 0]);
+    assert!(!live.app().log().text().contains("self-test"));
+}
+
+/// It would fail, and the app would draw simplified.
+#[test]
+fn a_device_with_other_shaders_draws_no_test_picture() {
+    let mut live = open_live();
+    let unused = ("common/unused".to_owned(), String::new());
+    live.replace_shaders([unused].into_iter().collect()).unwrap();
+    let (live, kept) = kept_after_compiling(live, "unfinished 1");
     assert_eq!(kept, [""; 0]);
     assert!(!live.app().log().text().contains("self-test"));
 }

@@ -10,5 +10,6 @@ mod quirks;
 mod refused;
 mod reuse;
 mod scale;
+mod shaders;
 mod still;
 mod warnings;

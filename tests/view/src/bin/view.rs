@@ -17,6 +17,7 @@ use app_shell::worker::Pace;
 use clap::{Parser, ValueEnum};
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, repository};
+use desk::shaders::ShaderArgs;
 use view::desk::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
@@ -64,6 +65,8 @@ struct Args {
     /// What "Another toy" chooses: a binary glTF file, or a folder of them to choose from; one can be dropped on the window, too
     #[arg(long, value_name = "PATH")]
     toy: Option<PathBuf>,
+    #[command(flatten)]
+    shaders: ShaderArgs,
     /// Close the window after so many seconds
     #[arg(long, value_name = "N", conflicts_with = "tour")]
     seconds: Option<f64>,
@@ -93,6 +96,7 @@ fn run(args: Args) -> Result<()> {
                 text_scale: args.text_scale,
                 hold: args.hold,
                 keeping,
+                shaders: args.shaders.watched(),
                 seconds: args.seconds,
             },
         );
@@ -100,10 +104,11 @@ fn run(args: Args) -> Result<()> {
     // A tour begins as the first start does.
     let mut history = LaunchHistory::default();
     history.begin();
-    let core = pollster::block_on(Core::headless(
+    let mut core = pollster::block_on(Core::headless(
         &wgpu::Instance::default(),
         &AdapterChoice::Fastest,
     ))?;
+    args.shaders.hand_to(&mut core)?;
     let mut live = Live::new(core, Arc::clone(&feed.scene().toy), args.preset);
     args.hold.into_iter().for_each(|hold| live.set_target_fps(hold));
     live.set_clock(clock());
