@@ -267,7 +267,7 @@ impl Aligner {
     }
 
     /// Looks for the distortion of the lens that a frame and the plates were taken with, as if they were of a pinhole: two radial terms.
-    /// All photographs are to be freed of it before they are aligned ([`app_session::Capture::open_with_lens`]).
+    /// All photographs are to be freed of it before they are aligned (`Capture::open_with_lens` of a session).
     ///
     /// # Errors
     /// As [`Self::align`].

@@ -22,7 +22,7 @@ pub enum Show<'a> {
     Toy {
         /// The scene: another one is another allocation.
         scene: &'a Arc<Scene>,
-        /// For [`Core::frame`](crate::Core::frame).
+        /// For [`Core::frame`](app_pipeline::Core::frame).
         input: Box<FrameInput>,
         /// How the picture lies on the screen.
         display: Display,

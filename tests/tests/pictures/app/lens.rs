@@ -150,7 +150,10 @@ fn a_dark_picture_of_the_lens_tells_the_light_and_the_camera_is_given_back() {
     assert_eq!(person.app.step(), Step::PlaceToy);
     person.frames(1);
     assert_eq!(person.app.notice(), Some(&Notice::LensTaken(1)));
-    assert_eq!(person.commands, ["Platform(Underexpose(true))", "Platform(Underexpose(false))"]);
+    assert_eq!(
+        person.commands,
+        ["Platform(Underexpose(true))", "Platform(Underexpose(false))"]
+    );
     person.frames(1);
     let mut jobs = Vec::new();
     for event in [
@@ -181,7 +184,10 @@ fn a_camera_that_stays_bright_is_not_waited_for() {
         person.app.notice(),
         Some(&Notice::LensFailed(LensFailure::NotDark))
     );
-    assert_eq!(person.commands, ["Platform(Underexpose(true))", "Platform(Underexpose(false))"]);
+    assert_eq!(
+        person.commands,
+        ["Platform(Underexpose(true))", "Platform(Underexpose(false))"]
+    );
 }
 
 #[test]
