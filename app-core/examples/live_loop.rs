@@ -6,13 +6,13 @@ use std::error::Error;
 use std::sync::Arc;
 
 use app_core::frame::{FrameInput, PassGroup};
+use app_core::glam::DQuat;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Pose;
 use app_core::session::{Capture, Folder, Session};
 use app_core::toy::{NodePose, Toy, ToyError};
 use app_core::{Core, wgpu};
-use glam::DQuat;
 
 /// How far the head turns from frame to frame, in radians.
 const STEP_RAD: f64 = 0.1;

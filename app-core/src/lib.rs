@@ -61,9 +61,22 @@
 //! `app-core/examples` has programs on a device of their own, with a loop over poses, and with a scene made of values alone.
 #![forbid(unsafe_code)]
 
-pub use app_pipeline::{Core, CoreError, core, governor, gpu, ledger, preset, profile, wgpu};
+pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
 pub use app_scene::glam;
 pub use app_scene::{camera_frame, card, lens, scene, toy};
+
+/// The one object that an app holds.
+pub mod core {
+    pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
+}
+
+/// The device, and textures that a platform lends on it.
+pub mod gpu {
+    pub use app_pipeline::gpu::{
+        AdapterChoice, DeviceHandle, GpuError, LentError, LentTextures, ShaderTexts, fault_on_surfaces,
+        phone_limits,
+    };
+}
 
 /// One frame in, one report out.
 pub mod frame {

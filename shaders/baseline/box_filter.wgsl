@@ -3,7 +3,7 @@
 // Sums and counts are separable though their ratio is not, so two passes, rows then columns, make the exact square box.
 // Each texel keeps the sums of its own receiver: one receiver's columns leave the others' texels as they are.
 // Reads: terms with their label; then sums of rows. Writes: their sums, alpha the count.
-// CPU reference: reference/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and 3.5.
+// CPU reference: tests/reference/src/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and 3.5.
 
 //#import common/baseline
 //#import common/fullscreen

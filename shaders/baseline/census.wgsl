@@ -2,7 +2,7 @@
 //
 // Reads: eligible (mask 3c). Writes: seen_sets, one word per receiver, bit s where the set s occurs; the words start
 // at 0.
-// CPU reference: reference/census.rs.
+// CPU reference: tests/reference/src/census.rs.
 
 //#import common/baseline
 

@@ -5,7 +5,7 @@
 // margin around them: penumbrae, of whichever light, are excluded.
 //
 // Reads: masks (3a), visibility of each light with the physical toy. Writes: a label; 0 or 1.
-// CPU reference: reference/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b is the soft shadow made
+// CPU reference: tests/reference/src/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b is the soft shadow made
 // binary) and 4.6 (a mask per light); 2019, section 5.7 (a subregion per receiver). The margin is an addition: a
 // pixel at an edge is half lit, or half toy.
 

@@ -6,7 +6,7 @@
 // filtered.
 //
 // Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], one channel per light.
-// CPU reference: reference/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
+// CPU reference: tests/reference/src/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
 
 //#import common/baseline
 //#import common/fullscreen

@@ -7,7 +7,7 @@
 //
 // Reads: frame, plate, masks (3a), eligible (3b), visibility of each light, terms of each set. Writes: linear colour,
 // opaque.
-// CPU reference: reference/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4,
+// CPU reference: tests/reference/src/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4,
 // 4.3, 4.4 and 4.6.
 
 //#import common/baseline

@@ -6,7 +6,7 @@
 //
 // Reads: warp of each light, eligible (mask 3c), seen_sets, frame, plate. Writes: term (ratio to the plate, or
 // colour), and the texel's label, 0 where nothing was found; number of taps.
-// CPU reference: reference/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a
+// CPU reference: tests/reference/src/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a
 // ring, the closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio is corrected here
 // to shadow over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
 

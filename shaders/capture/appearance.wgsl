@@ -8,7 +8,7 @@
 //
 // Reads: validity, gbuffer. Writes: in the physical box, the source, which pixels colours are from; each light's cosine times
 // its visibility there; their base colour, alpha how far they face upwards.
-// CPU reference: reference/appearance.rs.
+// CPU reference: tests/reference/src/appearance.rs.
 
 //#import common/globals
 //#import common/hemispheres

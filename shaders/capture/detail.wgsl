@@ -6,7 +6,7 @@
 // in
 // shadow keeps its pixels as they are.
 //
-// Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates. CPU reference: reference/detail.rs.
+// Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates. CPU reference: tests/reference/src/detail.rs.
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 

@@ -3,7 +3,7 @@
 // Where the fits have found the shadow it is B = frame / (gain M) per pixel of the receiver, with all its texture, as far as
 // enough light is left; pixels that the toy hides, or bleeds into, stay smooth, as the fits see all of them.
 // Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
-// photographed, less where it is an estimate. CPU reference: reference/estimate.rs.
+// photographed, less where it is an estimate. CPU reference: tests/reference/src/estimate.rs.
 
 //#import common/fit
 //#import common/frame

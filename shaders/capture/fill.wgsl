@@ -5,7 +5,7 @@
 //
 // Reads and writes: cells, level after level in one buffer, finest first. Afterwards the finest holds (value, 1), or
 // 0 where the whole grid is empty.
-// CPU reference: reference/fill.rs. Source: Gortler et al. 1996, section 3.4.
+// CPU reference: tests/reference/src/fill.rs. Source: Gortler et al. 1996, section 3.4.
 
 //#import common/grid
 //#import common/between_cells

@@ -11,7 +11,7 @@
 //
 // Reads: lit cells, frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums, one per workgroup and
 // channel.
-// CPU reference: reference/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
+// CPU reference: tests/reference/src/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
 
 //#import common/fit
 //#import common/frame

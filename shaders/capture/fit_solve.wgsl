@@ -6,7 +6,7 @@
 //
 // Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
 // Writes: the solution, and in the last step the accumulated sums.
-// CPU reference: reference/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
+// CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
 // only ever taken out here, the most negative one first.
 
 //#import common/fit

@@ -2,7 +2,7 @@
 //
 // B = frame / (gain M) where the receiver is visible and little of its light is missing.
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
-// CPU reference: reference/lit.rs.
+// CPU reference: tests/reference/src/lit.rs.
 
 //#import common/fit
 //#import common/frame

@@ -3,7 +3,7 @@
 // r = sum w plate (frame / gain - plate M) / sum w plate^2, never a division by one dark pixel.
 //
 // Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
-// the pyramids. CPU reference: reference/residual.rs.
+// the pyramids. CPU reference: tests/reference/src/residual.rs.
 
 //#import common/fit
 //#import common/frame

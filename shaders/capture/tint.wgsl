@@ -4,7 +4,7 @@
 // colour, gain and fitted light, to the cell that contains its point. Sums are of integers: their order does not
 // matter.
 //
-// Reads: frame, validity, gbuffer, fit. Writes: sums of the finest cells. CPU reference: reference/tint.rs.
+// Reads: frame, validity, gbuffer, fit. Writes: sums of the finest cells. CPU reference: tests/reference/src/tint.rs.
 
 //#import common/fit
 //#import common/frame

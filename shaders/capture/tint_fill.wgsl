@@ -5,7 +5,7 @@
 // A material that was never seen keeps its model's colour. One workgroup fills a material's grid.
 //
 // Reads: sums of the finest cells, accumulated sums. Writes: tints, level after level, finest first; afterwards the
-// finest holds (tint, 1). CPU reference: reference/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a
+// finest holds (tint, 1). CPU reference: tests/reference/src/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a
 // volume.
 
 //#import common/pixel

@@ -2,7 +2,7 @@
 // where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as neither.
-// Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: reference/validity.rs.
+// Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: tests/reference/src/validity.rs.
 
 //#import common/depth
 //#import common/fullscreen

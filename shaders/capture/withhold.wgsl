@@ -2,7 +2,7 @@
 //
 // Reads: validity, visibility, ambient. Writes: the same mask, but 0 where the receiver is in shadow, as if the toy
 // hid it; there a is 0, and a half beside the toy.
-// CPU reference: reference/withhold.rs.
+// CPU reference: tests/reference/src/withhold.rs.
 
 //#import common/model
 //#import common/channels

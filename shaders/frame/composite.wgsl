@@ -5,9 +5,8 @@
 //                                     passes; also where the frame shows what the model cannot explain
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r): no plate is read there
 //
-// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy. Writes:
-// linear
-// colour, opaque. CPU reference: reference/composite.rs.
+// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy.
+// Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
 
 //#import common/fit
 //#import common/frame

@@ -13,7 +13,7 @@
 // enters it leaves it again.
 //
 // Reads: posed positions in anchor space. Writes: visibility in [0, 1], in the light's channel.
-// CPU reference: reference/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
+// CPU reference: tests/reference/src/occlusion.rs. Source: Heckbert and Herf 1997 (accumulated projections).
 // Here the accumulation is done by the blending of one pass rather than by one pass per point.
 
 //#import common/flatten

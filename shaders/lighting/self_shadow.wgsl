@@ -2,7 +2,7 @@
 //
 // Each instance draws the toy into a tile that contains all of it, so nothing is clipped between tiles.
 // Reads: posed positions in anchor space. Writes: reversed depth.
-// CPU reference: reference/self_shadow.rs.
+// CPU reference: tests/reference/src/self_shadow.rs.
 
 //#import common/self_shadow
 

@@ -1,7 +1,7 @@
 // The camera's planes of luma and chroma as sRGB codes.
 //
 // Reads: luma, chroma (Cb, Cr) of half its size, rounded up. Writes: codes of the camera image, opaque.
-// CPU reference: reference/camera_planes.rs.
+// CPU reference: tests/reference/src/camera_planes.rs.
 
 //#import common/fullscreen
 //#import common/planes

@@ -3,7 +3,7 @@
 // Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
 // best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
 //
-// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: reference/plate.rs.
+// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: tests/reference/src/plate.rs.
 // Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
 
 //#import common/globals

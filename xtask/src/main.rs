@@ -77,7 +77,7 @@ const PROGRAMS: [Program; 12] = [
     Program::new(
         "bless",
         "tests",
-        "Rewrite the golden pictures and the schema of sessions",
+        "Rewrite the golden pictures, the schema of sessions and its tables in the document",
     )
     .on_device(),
 ];
@@ -101,7 +101,7 @@ const COMMANDS: [(&str, &str); 7] = [
     ),
     (
         "android check|build|package [--arcore AAR --sha256 HEX]",
-        "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore one to install)",
+        "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install)",
     ),
 ];
 
@@ -157,15 +157,28 @@ fn run(mut args: Parser) -> Result<ExitCode> {
         Some(other) => return Err(other.unexpected().into()),
     };
     if let Some(program) = PROGRAMS.iter().find(|program| program.name == command) {
-        let rest: Vec<OsString> = args.raw_args()?.collect();
+        let mut rest: Vec<OsString> = args.raw_args()?.collect();
+        if rest.first().is_some_and(|arg| arg == "--") {
+            rest.remove(0);
+        }
         let toolchain = Toolchain::pinned()?;
         return match program.name {
             "bless" => bless(&toolchain, program, &rest),
             _ => harness::run(&toolchain, program, &rest),
         };
     }
-    let action = parsed(&command, &mut args)?;
-    action(&Toolchain::pinned()?)
+    let asks = |args: &[OsString]| args.iter().any(|arg| arg == "--help" || arg == "-h");
+    if command == "help" || asks(args.raw_args()?.as_slice()) {
+        print!("{}", help());
+        return Ok(ExitCode::SUCCESS);
+    }
+    match parsed(&command, &mut args) {
+        Ok(work) => work(&Toolchain::pinned()?),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            Ok(ExitCode::from(2))
+        }
+    }
 }
 
 /// What a command of this program's own does, once all of its arguments are read.

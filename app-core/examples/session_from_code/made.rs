@@ -1,7 +1,7 @@
 //! The toy's file and the photograph, made of numbers.
 
+use app_core::glam::DVec3;
 use app_core::scene::{Camera, Image};
-use glam::DVec3;
 
 /// Width and height of the photograph.
 pub(crate) const SIZE_PX: [u32; 2] = [160, 120];

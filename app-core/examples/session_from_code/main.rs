@@ -8,12 +8,12 @@ use std::error::Error;
 use std::sync::Arc;
 
 use app_core::frame::FrameInput;
+use app_core::glam::{DMat4, DQuat, DVec2, DVec3};
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Intrinsics, Light, Pose, Receiver, Scene, Surface};
 use app_core::toy::{NodePose, Toy};
 use app_core::{Core, wgpu};
-use glam::{DMat4, DQuat, DVec2, DVec3};
 use made::{SIZE_PX, TO_LIGHT};
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {

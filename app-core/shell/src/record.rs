@@ -42,9 +42,10 @@ pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, 
     Recorded { file, outcome }
 }
 
-/// What people hand on, as files of the folder: the log, the times, and the latest recording, as far as there are any.
+/// What people hand on, as files of the folder: the log, the times, and `recording` or else the latest of earlier starts, as far as
+/// there are any.
 #[must_use]
-pub fn share(live: &Live, folder: &Path) -> (Saved, Vec<PathBuf>) {
+pub fn share(live: &Live, folder: &Path, recording: Option<&Path>) -> (Saved, Vec<PathBuf>) {
     let mut files = vec![folder.join("log.txt")];
     let mut saved = save::bytes(&files[0], live.app().log().text().as_bytes());
     if let (Saved::Done, Some(times)) = (saved, live.times()) {
@@ -53,7 +54,7 @@ pub fn share(live: &Live, folder: &Path) -> (Saved, Vec<PathBuf>) {
         files.push(path);
         saved = written.unwrap_or(Saved::Failed);
     }
-    files.extend(latest(folder));
+    files.extend(recording.map(Path::to_owned).or_else(|| latest(folder)));
     files.retain(|file| file.is_file());
     (saved, files)
 }
@@ -68,11 +69,12 @@ fn latest(folder: &Path) -> Option<PathBuf> {
 /// What is free where a folder is, in bytes.
 #[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
-    let told = rustix::fs::statvfs(folder).ok()?;
+    let there = folder.ancestors().find(|folder| folder.exists())?;
+    let told = rustix::fs::statvfs(there).ok()?;
     told.f_bavail.checked_mul(told.f_frsize)
 }
 
-/// The phone's clock for times of frames.
+/// A clock for times of frames.
 #[must_use]
 pub fn clock() -> Clock {
     let start = Instant::now();

@@ -76,8 +76,9 @@ pub struct Worker {
     /// Alignments that wait.
     waiting: Vec<AlignJob>,
     video: Option<Video>,
-    /// The thread that writes the latest recording.
+    /// The thread that writes the latest recording, and its file.
     recording: Option<JoinHandle<()>>,
+    recorded: Option<PathBuf>,
     n_files: u128,
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
     /// When free space was looked at.
@@ -96,6 +97,7 @@ impl Worker {
             waiting: Vec::new(),
             video: None,
             recording: None,
+            recorded: None,
             n_files: 0,
             outcomes: channel(),
             looked: None,
@@ -241,9 +243,14 @@ impl Worker {
         };
         let path = stem.with_extension("mcap");
         let died = ShellEvent::Recorded(Recorded {
-            file: path.display().to_string(),
+            file: path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
             outcome: RecordingOutcome::died(job.number()),
         });
+        self.recorded = Some(path.clone());
         let (platform, toy) = (self.platform.clone(), self.toy_file.bytes());
         self.recording = self.spawn("record", died, move |_| {
             let codec = (platform.codec)();
@@ -255,7 +262,7 @@ impl Worker {
         let Some(folder) = &self.folders.shared else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
-        let (saved, files) = record::share(live, folder);
+        let (saved, files) = record::share(live, folder, self.recorded.as_deref());
         if !files.is_empty() {
             send(&self.outcomes.0, Outcome::Share(files));
         }

@@ -29,7 +29,7 @@ const TWICE: [(&str, &str); 9] = [
     ("thiserror", "ndk is at 1"),
     ("thiserror-impl", "follows thiserror"),
 ];
-/// Windows, event loops, networks and file systems: the shells' and the harness's business.
+/// Windows, event loops, networks and file systems: the shells' and the programs' business.
 const NOT_IN_CORE: [&str; 14] = [
     "android-activity",
     "indicatif",
@@ -221,7 +221,7 @@ fn no_package_is_compiled_twice_without_a_reason() {
     );
 }
 
-/// The core has a feature for the harness, which must not come with an app that is built from the same workspace.
+/// The core has a feature for the tests, which must not come with an app that is built from the same workspace.
 #[test]
 fn apps_know_no_schema() {
     let has_schema = |package: &str, target| {

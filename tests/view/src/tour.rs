@@ -8,7 +8,7 @@ use app_core::interface::{Screen, Touch, TouchPhase};
 use glam::{DMat4, DVec2, DVec3};
 use thiserror::Error;
 
-use super::desk::Desk;
+use super::desktop::Desk;
 use super::fault::Fault;
 use desk::output::{WriteError, make_folder, write_png};
 

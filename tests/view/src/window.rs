@@ -22,7 +22,7 @@ use winit::window::{Window, WindowId};
 
 use desk::shaders::ShaderFolder;
 
-use super::desk::{Desk, Keeping};
+use super::desktop::{Desk, Keeping};
 use super::fault::Fault;
 use super::feed::Feed;
 

@@ -14,7 +14,7 @@ const SINGULAR: f64 = 1e-15;
 /// A ray to a light, in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
-    pub origin: DVec3,
+    pub(super) origin: DVec3,
     /// Unit.
     pub(super) direction: DVec3,
     /// One deviation of the direction, in radians.

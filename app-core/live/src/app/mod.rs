@@ -166,7 +166,7 @@ impl App {
             ShellEvent::Saved(saved) => self.saved(saved),
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
-            ShellEvent::Started(starts) => self.started(starts),
+            ShellEvent::Started(history) => self.started(history),
             ShellEvent::Restarted => self.tell(Notice::Restarted),
             ShellEvent::User(action) => self.act(action, &mut commands),
         }

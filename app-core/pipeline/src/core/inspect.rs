@@ -1,4 +1,4 @@
-//! [`Inspect`]: what the core made and learned, for the project's own tests and harness.
+//! [`Inspect`]: what the core made and learned, for the project's own tests and programs.
 
 use bytemuck::Zeroable;
 

@@ -1,4 +1,4 @@
-//! [`Core`]: the one type a shell or a harness holds.
+//! [`Core`]: the one type that a shell or a program holds.
 
 mod error;
 mod fit_warnings;
@@ -188,23 +188,25 @@ impl Core {
         Canvas::on(&self.gpu, target)
     }
 
-    /// A screen that nobody sees, for [`Core::draw_on`] and [`Core::canvas`]; none where the core only counts.
+    /// A screen that nobody sees, for [`Core::draw_on`] and [`Core::canvas`], of four bytes a pixel. None if the core only counts, or
+    /// the device has no texture of that size.
     #[must_use]
     pub fn hidden_screen(&self, size_px: [u32; 2]) -> Option<wgpu::Texture> {
         let size_px = size_px.map(|side| side.max(1));
-        let screen = Texture::target(&self.gpu, "screen", size_px.into(), OUTPUT_FORMAT);
-        screen.raw().cloned()
+        self.check_sides(size_px).ok()?;
+        let make = || Texture::target(&self.gpu, "screen", size_px.into(), OUTPUT_FORMAT);
+        self.gpu.guarded(make).ok()?.raw().cloned()
     }
 
-    /// Waits for the device and returns what such a screen shows.
+    /// Waits for the device and returns the picture of a [`Core::hidden_screen`].
     ///
     /// # Errors
-    /// When the device is lost.
+    /// When the device is lost, or refuses to copy the texture.
     pub fn read_screen(&self, screen: &wgpu::Texture) -> Result<Image, CoreError> {
         Ok(Image {
             width_px: screen.width(),
             height_px: screen.height(),
-            rgba8: self.gpu.read_texture(Some(screen))?,
+            rgba8: self.gpu.guarded(|| self.gpu.read_texture(Some(screen)))??,
         })
     }
 

@@ -1,4 +1,4 @@
-//! The surface that a core presents on, and other targets of a screen's.
+//! The surface that a core presents on, and other targets that a screen may show.
 
 use wgpu::CurrentSurfaceTexture;
 

@@ -21,12 +21,12 @@ pub mod shader;
 pub(crate) mod shape;
 pub mod shared;
 pub(crate) mod stages;
-pub mod texture;
+pub(crate) mod texture;
 pub(crate) mod timer;
 pub(crate) mod uniforms;
 pub(crate) mod work;
 
-pub use context::{AdapterChoice, Gpu, GpuError, phone_limits};
+pub use context::{AdapterChoice, GpuError, phone_limits};
 pub use handle::DeviceHandle;
 pub use lent::{LentError, LentTextures};
 pub use quirks::fault_on_surfaces;

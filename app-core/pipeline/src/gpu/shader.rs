@@ -100,7 +100,8 @@ fn imports<'a>(text: &'a str, texts: &'a ShaderTexts) -> Vec<&'a str> {
 
 /// Adds the parts that `text` imports to `paths`; those in `seen` are there, or are about to be.
 fn add_imports<'a>(text: &'a str, texts: &'a ShaderTexts, seen: &mut Vec<&'a str>, paths: &mut Vec<&'a str>) {
-    for path in text.lines().filter_map(|line| line.strip_prefix(IMPORT)) {
+    let imported = text.lines().filter_map(|line| line.strip_prefix(IMPORT));
+    for path in imported.map(str::trim_end) {
         if !seen.contains(&path) {
             seen.push(path);
             add_imports(texts.part(path).unwrap_or_default(), texts, seen, paths);

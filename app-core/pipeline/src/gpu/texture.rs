@@ -12,7 +12,7 @@ pub(crate) use super::resource::TextureView;
 
 /// A texture with its whole view; where nothing is drawn, only counted, no more than its shape.
 #[derive(Debug)]
-pub struct Texture {
+pub(crate) struct Texture {
     raw: Option<wgpu::Texture>,
     pub(crate) view: TextureView,
     _held: Held,
@@ -20,7 +20,7 @@ pub struct Texture {
 
 impl Texture {
     /// A texture that passes draw to and read from.
-    pub fn target(gpu: &Gpu, label: &str, size_px: UVec2, format: TextureFormat) -> Self {
+    pub(crate) fn target(gpu: &Gpu, label: &str, size_px: UVec2, format: TextureFormat) -> Self {
         let usage = TextureUsages::RENDER_ATTACHMENT
             | TextureUsages::TEXTURE_BINDING
             | TextureUsages::COPY_SRC
@@ -90,7 +90,7 @@ impl Texture {
     }
 
     /// The texture on its device; none where nothing is drawn, only counted.
-    pub fn raw(&self) -> Option<&wgpu::Texture> {
+    pub(crate) fn raw(&self) -> Option<&wgpu::Texture> {
         self.raw.as_ref()
     }
 

@@ -112,7 +112,7 @@ impl RecordingJob {
             ScenePaths {
                 toy: TOY,
                 plates: &paths,
-                // Its pictures are not kept; the lights that it told are listed.
+                // Its pictures are not kept: a replay finds the lights by the toy's shadow alone.
                 probe: &[],
             },
         ));

@@ -12,7 +12,7 @@ pub(super) struct SessionMessage {
     pub(super) chunk: u32,
     /// Files that were attached before it.
     pub(super) n_files: u32,
-    pub device: BTreeMap<String, String>,
+    pub(super) device: BTreeMap<String, String>,
     pub(super) session: Box<RawValue>,
 }
 

@@ -1,6 +1,6 @@
 //! Recordings: a session in one MCAP file, written while it is taken and read as a folder is.
 //!
-//! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this crate opens no
+//! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this module opens no
 //! file itself, and times come from the caller.
 //!
 #![doc = include_str!("../../../doc/recording.md")]

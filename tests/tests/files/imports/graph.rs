@@ -149,8 +149,12 @@ impl Visit<'_> for Paths {
         self.add_tree(&item.tree, &mut Vec::new());
     }
 
-    /// A module within a file is of its tests, which may name all of it.
-    fn visit_item_mod(&mut self, _: &syn::ItemMod) {}
+    /// Tests within a file may name all of it.
+    fn visit_item_mod(&mut self, item: &syn::ItemMod) {
+        if item.ident != "tests" {
+            visit::visit_item_mod(self, item);
+        }
+    }
 
     /// `pub(crate)` imports nothing.
     fn visit_visibility(&mut self, _: &syn::Visibility) {}

@@ -18,7 +18,7 @@ use clap::{Parser, ValueEnum};
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, repository};
 use desk::shaders::ShaderArgs;
-use view::desk::{Desk, Keeping};
+use view::desktop::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
 use view::tour::Tour;

@@ -142,12 +142,19 @@ impl Desk {
 
     fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
-            let picked = self.keeping.toy_to_pick.clone().filter(|path| path.is_file());
-            match (command, picked) {
-                (ShellCommand::Platform(command), _) => self.call_platform(command),
-                (ShellCommand::Work(WorkCommand::PickToy), Some(file)) => self.pick(&file),
-                (ShellCommand::Work(command), _) => self.worker.obey(&self.live, command),
+            match command {
+                ShellCommand::Platform(command) => self.call_platform(command),
+                ShellCommand::Work(WorkCommand::PickToy) => self.pick_toy(),
+                ShellCommand::Work(command) => self.worker.obey(&self.live, command),
             }
+        }
+    }
+
+    /// Takes the toy that was named, if it is no folder of several.
+    fn pick_toy(&mut self) {
+        match self.keeping.toy_to_pick.clone().filter(|path| !path.is_dir()) {
+            Some(file) => self.pick(&file),
+            None => self.worker.obey(&self.live, WorkCommand::PickToy),
         }
     }
 
