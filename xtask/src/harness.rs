@@ -10,15 +10,14 @@ use anyhow::{Context, Result};
 use crate::command::line;
 use crate::toolchain::Toolchain;
 use crate::vulkan;
-use crate::{PROGRAMS, Program};
+use crate::{Program, REPLAY};
 
 /// Replays the bundled session and names what to look at.
 pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     let out = toolchain.root.join("target/demo");
-    let replay = PROGRAMS.iter().find(|program| program.name == "replay");
     let code = run(
         toolchain,
-        replay.context("no program replays")?,
+        &REPLAY,
         &[
             "--preset".into(),
             "flat,paper,balanced,best".into(),

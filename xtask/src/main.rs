@@ -21,9 +21,13 @@ use lexopt::{Parser, ValueExt};
 use crate::phone::{ANDROID, Action, Arcore, IOS, Phone};
 use crate::toolchain::Toolchain;
 
+/// What the demo runs.
+const REPLAY: Program =
+    Program::new("replay", "desk", "Replay a session: pictures, times, errors").on_device();
+
 /// Programs that are run with whatever stands after their name.
 const PROGRAMS: [Program; 12] = [
-    Program::new("replay", "desk", "Replay a session: pictures, times, errors").on_device(),
+    REPLAY,
     Program::new(
         "check",
         "desk",

@@ -2,10 +2,11 @@
 
 use std::ffi::CStr;
 
+use app_core::card::{PATTERN_M, reference};
+
 use super::ffi::{ArAugmentedImageDatabase, ArSession, Functions};
 use super::owned::Owned;
 use super::status::{Failure, NOTHING};
-use app_core::card::{PATTERN_M, reference};
 
 const NAME: &CStr = c"card";
 

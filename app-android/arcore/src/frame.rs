@@ -241,9 +241,7 @@ impl Session {
             ..LightEstimate::default()
         })
     }
-}
 
-impl Session {
     /// Where the card is, while it is seen.
     fn card(&self) -> Option<DMat4> {
         let mut found = self.trackables_of(IMAGES);

@@ -30,7 +30,7 @@ mod directions;
 mod error;
 mod kept_lights;
 mod lights;
-pub mod no_light;
+mod no_light;
 mod outlines;
 mod photograph;
 mod picture;

@@ -34,12 +34,18 @@ pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, 
         ),
         Err(error) => job.without_file(&error),
     };
-    let file = path
-        .file_name()
+    Recorded {
+        file: shown_name(path),
+        outcome,
+    }
+}
+
+/// A file's name, as people are told it.
+pub(crate) fn shown_name(path: &Path) -> String {
+    path.file_name()
         .unwrap_or_default()
         .to_string_lossy()
-        .into_owned();
-    Recorded { file, outcome }
+        .into_owned()
 }
 
 /// What people hand on, as files of the folder: the log, the times, and `recording` or else the latest of earlier starts, as far as

@@ -243,11 +243,7 @@ impl Worker {
         };
         let path = stem.with_extension("mcap");
         let died = ShellEvent::Recorded(Recorded {
-            file: path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
+            file: record::shown_name(&path),
             outcome: RecordingOutcome::died(job.number()),
         });
         self.recorded = Some(path.clone());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::recorder::Recorder;
-use app_alignment::no_light::NoLight;
+use app_alignment::NoLight;
 use app_alignment::pose_filter::{PoseFilter, PoseNoise};
 use app_alignment::{AlignError, Aligner, Alignment};
 use app_scene::camera_frame::Anchor;

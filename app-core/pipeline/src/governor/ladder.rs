@@ -87,7 +87,7 @@ impl QualityStep {
         let points = self.value as usize;
         match self.setting {
             QualitySetting::AmbientDivisor => {
-                settings.ambient_divisor = settings.ambient_divisor.max(self.value)
+                settings.ambient_divisor = settings.ambient_divisor.max(self.value);
             }
             QualitySetting::AmbientDirections => {
                 settings.n_ambient_directions = settings.n_ambient_directions.min(points);

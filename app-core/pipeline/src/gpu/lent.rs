@@ -1,6 +1,6 @@
 //! Camera planes that the platform lends as textures.
 
-use app_scene::camera_frame::{LentPlanes, PlanarImage, PlaneError, YcbcrEncoding, check_size, half_size_px};
+use app_scene::camera_frame::{LentPlanes, PlanarImage, PlaneError, YcbcrEncoding, half_size_px};
 use thiserror::Error;
 use wgpu::TextureFormat;
 
@@ -49,8 +49,14 @@ impl LentTextures {
     /// # Errors
     /// When no picture has that size, or a texture is not one of its plane.
     pub fn into_image(self, size_px: [u32; 2], encoding: YcbcrEncoding) -> Result<PlanarImage, LentError> {
-        check_size(size_px)?;
-        let needed = [
+        let checked = self.check(size_px);
+        // A size that no picture has is what is told first.
+        let image = PlanarImage::lent(size_px, encoding, self)?;
+        checked.map(|()| image)
+    }
+
+    fn check(&self, size_px: [u32; 2]) -> Result<(), LentError> {
+        let planes = [
             ("luma", &self.luma, size_px, TextureFormat::R8Unorm),
             (
                 "Cb and Cr",
@@ -59,7 +65,7 @@ impl LentTextures {
                 TextureFormat::Rg8Unorm,
             ),
         ];
-        for (plane, texture, needed_px, needed) in needed {
+        for (plane, texture, needed_px, needed) in planes {
             let (size_px, format) = ([texture.width(), texture.height()], texture.format());
             if (size_px, format) != (needed_px, needed) {
                 return Err(LentError::Texture {
@@ -71,7 +77,7 @@ impl LentTextures {
                 });
             }
         }
-        Ok(PlanarImage::lent(size_px, encoding, self)?)
+        Ok(())
     }
 
     /// Luma and chroma if they are textures of `device`; of another one, as after a loss, they mean nothing to it.

@@ -22,7 +22,6 @@ impl Stamp {
     #[must_use]
     pub fn age_ms(&self, now_ns: i64) -> Option<f64> {
         let age_ns = now_ns.checked_sub(self.time_ns)?;
-
         (0..=OLDEST_NS).contains(&age_ns).then(|| age_ns as f64 / 1e6)
     }
 }

@@ -16,4 +16,4 @@ pub use fade::Fade;
 pub use frame::{Anchor, CameraFrame, Exposure, FoundPlane, Tracking};
 pub use image::CameraImage;
 pub use planar_image::{LentPlanes, PlanarImage};
-pub use planes::{Plane, PlaneError, Planes, check_size, half_size_px};
+pub use planes::{Plane, PlaneError, Planes, half_size_px};

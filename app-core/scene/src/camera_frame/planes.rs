@@ -70,10 +70,7 @@ pub enum PlaneError {
 const MAX_SIDE_PX: u32 = 8192;
 
 /// Refuses a size that no picture has.
-///
-/// # Errors
-/// When a side is 0 or longer than 8192 pixels.
-pub fn check_size(size_px: [u32; 2]) -> Result<(), PlaneError> {
+pub(super) fn check_size(size_px: [u32; 2]) -> Result<(), PlaneError> {
     if size_px.iter().all(|side| (1..=MAX_SIDE_PX).contains(side)) {
         Ok(())
     } else {

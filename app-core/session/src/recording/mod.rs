@@ -18,7 +18,6 @@ mod reader;
 mod scan;
 mod source;
 mod summary;
-
 mod topics;
 mod viewer;
 mod wire;
