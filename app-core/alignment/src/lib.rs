@@ -69,7 +69,7 @@ pub use no_light::NoLight;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment, LightDeviation,
-    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome,
+    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
 };
 pub use warning::AlignmentWarning;
 
@@ -80,6 +80,9 @@ const MOST_ALIGNED_PLATES: usize = 32;
 /// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
+/// A toy stands on its receiver where no foot is farther from it, and it leans no more: half a millimetre and half a degree are told.
+const MOST_HEIGHT_M: f64 = 1e-3;
+const MOST_LEAN_RAD: f64 = 0.017;
 /// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
 /// tracker is not yet corrected, and by the pose.
 const CAMERA_GROWN: f64 = 0.05;
@@ -467,12 +470,28 @@ impl Aligner {
         let warnings = off.map(|pose| AlignmentWarning::Misaligned {
             outline_px: pose.shown_px(),
         });
+        let stand = report.pose.and_then(|pose| pose.stand);
+        let off_receiver =
+            stand.filter(|stand| stand.height_m.abs() > MOST_HEIGHT_M || stand.lean_rad > MOST_LEAN_RAD);
+        let off_receiver = off_receiver
+            .map(|Stand { height_m, lean_rad }| AlignmentWarning::OffReceiver { height_m, lean_rad });
+        let differs = report
+            .pose
+            .filter(|pose| off.is_none() && pose.model_px > report::most_model_px(pose.spread_px));
+        let differs = differs.map(|pose| AlignmentWarning::ModelDiffers {
+            model_px: pose.model_px,
+        });
         let none = report.no_light.filter(|_| applied.is_none());
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
         let ratio = self.ratio.warning().into_iter();
-        let warnings = ratio.chain(warnings).chain(none).chain(changed);
+        let warnings = ratio
+            .chain(warnings)
+            .chain(off_receiver)
+            .chain(differs)
+            .chain(none)
+            .chain(changed);
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),

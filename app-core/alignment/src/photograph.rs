@@ -16,11 +16,6 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
 use app_scene::toy::ToyError;
 
-/// A found pose is applied where the outline's loss falls to less than this part of the given pose's.
-///
-/// With exact poses it falls to .9 in the finest band and to .99 in the wide one, by what the model of the outline's pixels lacks;
-/// without a plate a shadow beside the toy draws it along, and the wide one fell to .8.
-const POSE_GAIN: f64 = 0.5;
 /// A pose whose outline stays farther from the picture's, in pixels, was not found.
 pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
 /// A toy rests on a plane from which its lowest point is no farther, over its radius.
@@ -95,13 +90,32 @@ impl Photograph {
     fn pose_resting(&self, scene: &Scene, input: &FrameInput) -> Result<Option<FoundPose>, ToyError> {
         let start = input.world_from_object;
         let shape = self.shape(scene, &start)?;
-        let mut receivers = self.receivers.iter();
-        let normal =
-            receivers.find_map(|receiver| receiver.normal_under(&shape.points, RESTING * shape.radius_m));
-        Ok(normal.map(|normal| {
-            let found = pose::find_resting(&shape, &self.pyramid, normal, &scene.uncertainty.toy);
+        let paint = self.paint(scene, &start)?;
+        Ok(self.plane_under(scene, &shape).map(|(plane, is_certain)| {
+            let subject = pose::Subject {
+                shape: &shape,
+                paint: &paint,
+                plane: Some((plane, is_certain)),
+            };
+            let found = pose::find_resting(subject, &self.pyramid, plane.normal, &scene.uncertainty.toy);
             self.judged(input, (&start, &shape), found)
         }))
+    }
+
+    /// The plane that a toy rests on, and whether the scene says that it does; none where it floats.
+    fn plane_under(&self, scene: &Scene, shape: &Shape) -> Option<(pose::Plane, bool)> {
+        let most_m = match scene.resting {
+            Some(true) => f64::INFINITY,
+            Some(false) => return None,
+            None => RESTING * shape.radius_m,
+        };
+        let mut receivers = self.receivers.iter();
+        let plane = receivers.find_map(|receiver| receiver.plane_under(&shape.points, most_m))?;
+        Some((plane, scene.resting.is_some()))
+    }
+
+    fn paint(&self, scene: &Scene, world_from_object: &DMat4) -> Result<pose::Paint, ToyError> {
+        pose::Paint::new(scene, &self.camera_from_object(world_from_object))
     }
 
     /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
@@ -151,7 +165,13 @@ impl Photograph {
         (start, uncertainty): (&DMat4, &PoseUncertainty),
     ) -> Result<FoundPose, ToyError> {
         let shape = self.shape(scene, start)?;
-        let found = pose::find(&shape, &self.pyramid, uncertainty);
+        let paint = self.paint(scene, start)?;
+        let subject = pose::Subject {
+            shape: &shape,
+            paint: &paint,
+            plane: self.plane_under(scene, &shape),
+        };
+        let found = pose::find(subject, &self.pyramid, uncertainty);
         Ok(self.judged(input, (start, &shape), found))
     }
 
@@ -170,8 +190,8 @@ impl Photograph {
             };
         };
         let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
-        let is_better = found.is_better(POSE_GAIN)
-            && found.found.outline_px() <= MOST_OUTLINE_PX
+        let is_better = found.is_better()
+            && found.outlines_px[1] <= MOST_OUTLINE_PX
             && check::similarity(corrected.to_cols_array()).is_ok();
         let world_from_object = if is_better { corrected } else { *start };
         let middle = camera_from_object.inverse().transform_point3(shape.centre);
@@ -184,9 +204,15 @@ impl Photograph {
                 is_held: !is_better && *start != input.world_from_object,
                 moved_m,
                 turned_rad,
-                given_outline_px: picture_px * found.given.outline_px(),
-                outline_px: picture_px * found.found.outline_px(),
+                given_outline_px: picture_px * found.outlines_px[0],
+                outline_px: picture_px * found.outlines_px[1],
                 deviation: found.deviation,
+                size_ratio: found.size,
+                model_px: picture_px * found.model_px,
+                spread_px: picture_px * found.spread_px,
+                stand: found
+                    .stands
+                    .map(|[given, found]| if is_better { found } else { given }),
             }),
         }
     }

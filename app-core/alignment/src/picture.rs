@@ -88,6 +88,25 @@ impl Picture {
         Some(sum)
     }
 
+    /// Spread by a Gaussian of so many pixels; what is near to the border, or to what is unknown, is unknown.
+    fn spread(&self, deviation_px: f64) -> Self {
+        let weights = gaussian(deviation_px);
+        let along = |from: &Self, axis: IVec2| {
+            let pixel = |at: IVec2| {
+                let mut sum = [0.0; 3];
+                for (step, weight) in &weights {
+                    let Some(color) = from.get(at + *step * axis) else {
+                        return UNKNOWN;
+                    };
+                    sum = [0, 1, 2].map(|channel| sum[channel] + weight * color[channel]);
+                }
+                sum
+            };
+            Self::of(from.size_px, places(from.size_px).map(pixel).collect())
+        };
+        along(&along(self, IVec2::X), IVec2::Y)
+    }
+
     /// Half as large, each pixel the mean of four; an odd last row or column is left out.
     fn halved(&self) -> Self {
         let size_px = self.size_px / 2;
@@ -103,6 +122,17 @@ impl Picture {
             pixels: places(size_px).map(mean).collect(),
         }
     }
+}
+
+/// Steps within three deviations, and their weights; the sum of these is 1.
+pub(super) fn gaussian(deviation_px: f64) -> Vec<(i32, f32)> {
+    #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
+    let reach_px = (3.0 * deviation_px).ceil() as i32;
+    let weight = |step: i32| (-0.5 * (f64::from(step) / deviation_px).powi(2)).exp();
+    let total: f64 = (-reach_px..=reach_px).map(weight).sum();
+    #[allow(clippy::cast_possible_truncation, reason = "weights below 1")]
+    let weights = (-reach_px..=reach_px).map(|step| (step, (weight(step) / total) as f32));
+    weights.collect()
 }
 
 /// The photograph and its plate, as large as they were taken or smaller.
@@ -169,6 +199,14 @@ impl Pyramid {
 }
 
 impl Level {
+    /// With the plate spread by a Gaussian of so many pixels.
+    pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Self {
+        Self {
+            plate: self.plate.as_ref().map(|plate| plate.spread(deviation_px)),
+            ..self.clone()
+        }
+    }
+
     fn halved(&self) -> Self {
         Self {
             intrinsics: self.intrinsics.scaled(0.5),
@@ -179,7 +217,7 @@ impl Level {
 }
 
 /// Noise of a photograph, in 8-bit sRGB codes.
-const NOISE_CODES: f32 = 2.0;
+pub(super) const NOISE_CODES: f32 = 2.0;
 
 /// Standard deviation that a photograph's noise has in linear light.
 ///

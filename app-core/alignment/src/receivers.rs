@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Picture, UNKNOWN, places};
+use super::pose::Plane;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
 
@@ -34,14 +35,19 @@ impl SeenReceiver {
         }
     }
 
-    /// Its normal in camera space, where the lowest of points is within a distance of its plane; rounded to 32 bits, as poses are.
-    pub(super) fn normal_under(&self, points: &[DVec3], most_m: f64) -> Option<DVec3> {
+    /// Its plane in camera space, where the lowest of points is within a distance of it; rounded to 32 bits, as poses are.
+    pub(super) fn plane_under(&self, points: &[DVec3], most_m: f64) -> Option<Plane> {
         let heights_m = points
             .iter()
             .map(|point| self.plane_from_camera.transform_point3(*point).y);
         let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
-        let normal = self.plane_from_camera.inverse().y_axis.truncate().as_vec3();
-        (lowest_m.abs() <= most_m).then(|| normal.as_dvec3().normalize())
+        let camera_from_plane = self.plane_from_camera.inverse();
+        let [normal, point] =
+            [camera_from_plane.y_axis, camera_from_plane.w_axis].map(|axis| axis.truncate().as_vec3());
+        (lowest_m.abs() <= most_m).then(|| Plane {
+            normal: normal.as_dvec3().normalize(),
+            point: point.as_dvec3(),
+        })
     }
 
     /// Depth in metres at which a ray of depth 1 from the camera meets its front; none where it does not.

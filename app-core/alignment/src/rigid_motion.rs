@@ -47,6 +47,11 @@ impl RigidMotion {
             * DMat4::from_translation(-self.pivot)
     }
 
+    /// Turns a direction.
+    pub(super) fn turn_of(&self, direction: DVec3) -> DVec3 {
+        self.rotation * direction
+    }
+
     /// Distance in metres that the pivot moves.
     pub(super) fn moved_m(&self) -> f64 {
         self.translation.length()

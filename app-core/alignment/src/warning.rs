@@ -15,6 +15,18 @@ pub enum AlignmentWarning {
         /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
         outline_px: f64,
     },
+    /// The toy is not on the receiver that it was given on.
+    OffReceiver {
+        /// Of the foot that is farthest from it, in metres: above it, or, below 0, beneath it.
+        height_m: f64,
+        /// Between the receiver and the plane of the toy's feet, in radians.
+        lean_rad: f64,
+    },
+    /// The outline of the toy's model is not that of the toy.
+    ModelDiffers {
+        /// Root mean square of what it is off by along some centimetres, in pixels.
+        model_px: f64,
+    },
     /// No light was found by the toy's shadow.
     LightNotFound {
         /// Why.
@@ -43,6 +55,19 @@ impl fmt::Display for AlignmentWarning {
             Self::Misaligned { outline_px } => write!(
                 f,
                 "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+            ),
+            Self::OffReceiver { height_m, lean_rad } => {
+                let side = if *height_m < 0.0 { "beneath" } else { "above" };
+                write!(
+                    f,
+                    "the toy does not stand on its receiver: a foot is {:.1} mm {side} it, and the toy leans by {:.1} degrees: check the receiver's world_from_plane, and toy.resting",
+                    1e3 * height_m.abs(),
+                    lean_rad.to_degrees()
+                )
+            }
+            Self::ModelDiffers { model_px } => write!(
+                f,
+                "the toy's outline differs from that of its model by {model_px:.1} pixels: the model is not quite this toy, and its rim will show it"
             ),
             Self::FocalLengthNotTold => f.write_str(
                 "the focal length was asked for, but toy and shadow do not tell it: that given is taken",

@@ -4,6 +4,7 @@ mod basin;
 mod exact;
 mod front;
 mod kinds;
+mod pull;
 mod table;
 mod withheld;
 
@@ -32,6 +33,7 @@ use desk::report::Report;
 pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
 pub use front::{Point, front, front_drawing, points};
 pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
+pub use pull::Pull;
 pub(crate) use table::aligned;
 pub use table::{csv, json, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};

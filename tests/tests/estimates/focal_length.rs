@@ -90,7 +90,7 @@ fn a_focal_length_that_is_off_is_found() {
     }
 }
 
-/// What the test above is worth: where nobody asks, the toy slides along the view.
+/// What the test above is worth: where nobody asks, the toy is found on its table in another size.
 #[test]
 fn a_focal_length_that_nobody_asks_for_stays() {
     let (scene, input) = off(1.01);
@@ -103,7 +103,7 @@ fn a_focal_length_that_nobody_asks_for_stays() {
         aligner.scene().plates[0].camera.intrinsics,
         input.camera.intrinsics
     );
-    assert!(off_mm(&found) > 2.0, "{} mm off", off_mm(&found));
+    assert!(off_mm(&found) > 0.8, "{} mm off", off_mm(&found));
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod plate_taker;
 mod pose_filter;
 mod probe;
 mod probe_session;
+mod real_pictures;
 mod uncertainty;
 mod withheld;
 mod world_scale;

@@ -8,8 +8,8 @@ use app_core::wgpu;
 use desk::alignment::{Lights, Ratio};
 use desk::files::{BUNDLED_SESSION, Folder};
 use measure::bench::{
-    FrameKind, Options, Point, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front,
-    front_drawing, json, points,
+    Draw, FrameKind, Off, Options, Point, Pull, Row, basin, basin_csv, basin_drawing, basin_table, bench,
+    csv, front, front_drawing, json, points,
 };
 use serde_json::Value;
 
@@ -202,10 +202,36 @@ fn starts_of_the_basin_are_as_far_off_as_they_say_and_drawn_from_their_seed() {
         csv.lines().nth(1).unwrap().starts_with("15.0000,9.0000,15.0000,"),
         "{csv}"
     );
-    assert_eq!(basin_table(&draws).lines().count(), 3);
+    assert_eq!(basin_table(&draws).lines().count(), 4);
+    // Pose, turn and light of each start, and three errors of each pose.
     let drawing = basin_drawing("llama", &draws).unwrap();
     assert!(
-        drawing.starts_with("<svg") && drawing.matches("<circle").count() == 6,
+        drawing.starts_with("<svg") && drawing.matches("<circle").count() == 12,
         "{drawing}"
     );
+}
+
+#[test]
+fn claims_that_are_too_small_show_in_the_table_of_the_basin() {
+    let off = Off {
+        pose_mm: 1.0,
+        pose_deg: 1.0,
+        light_deg: None,
+    };
+    let draw = |error: f64| Draw {
+        start: off,
+        end: off,
+        pull: Some(Pull {
+            errors: [error; 3],
+            claimed: [0.1; 3],
+        }),
+    };
+    let last_line = |draws: &[Draw]| basin_table(draws).lines().last().unwrap().to_owned();
+    assert!(last_line(&[draw(0.05), draw(0.1)]).starts_with("100 % of 6 "));
+    assert!(last_line(&[draw(0.05), draw(0.3)]).starts_with("50 % of 6 "));
+    let unapplied = Draw {
+        pull: None,
+        ..draw(0.1)
+    };
+    assert!(!last_line(&[unapplied]).contains('%'));
 }

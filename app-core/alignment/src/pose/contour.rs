@@ -1,8 +1,9 @@
 //! The toy's outline in the picture.
 
-use glam::{DVec2, IVec2};
+use glam::{DVec2, DVec3, IVec2};
 
 use crate::raster::Coverage;
+use app_scene::scene::Intrinsics;
 
 /// Covered at least as much, a pixel is within the outline.
 const INSIDE: f32 = 0.5;
@@ -28,6 +29,18 @@ impl Element {
     /// The pixel at a distance from it, positive out of the toy.
     pub(super) fn pixel(&self, distance_px: f64) -> IVec2 {
         (self.at_px + distance_px * self.normal).floor().as_ivec2()
+    }
+
+    /// The rim in camera space, and how far it moves along the normal in pixels for each metre along each axis.
+    ///
+    /// That a rim slides over a curved surface as it turns counts only in the second order.
+    pub(super) fn rim(&self, k: &Intrinsics) -> (DVec3, DVec3) {
+        let slope_x = (self.at_px.x - k.cx_px) / k.fx_px;
+        let slope_y = -(self.at_px.y - k.cy_px) / k.fy_px;
+        let point = DVec3::new(slope_x, slope_y, -1.0) * self.depth_m;
+        let (across, down) = (self.normal.x * k.fx_px, -self.normal.y * k.fy_px);
+        let per_m = DVec3::new(across, down, across * slope_x + down * slope_y) / self.depth_m;
+        (point, per_m)
     }
 }
 

@@ -3,22 +3,16 @@
 //! A pixel there is a mixture of toy and background: alpha matting, with a background that the plate tells. Colours are
 //! carried across the band from just inside and just outside it.
 
-use glam::{DVec2, IVec2};
+use glam::IVec2;
 
 use super::contour::Element;
 use super::motion::Measured;
-use crate::picture::{Color, Level, index_in, noise_deviation, places};
-use crate::raster::Coverage;
+use super::owners::Owners;
+use super::sides::{Beside, Sides};
+use crate::picture::noise_deviation;
 
 /// What colours that are carried across the band are wrong by, over the contrast.
 const CARRIED: f32 = 0.05;
-/// Linear light that ratios to the plate are taken above, where a plate is black in a channel.
-const FLOOR: f32 = 5e-4;
-/// Samples of colour on either side of the band, and where the first is beyond it, in pixels.
-const N_SAMPLES: i32 = 3;
-const BEYOND_PX: f64 = 0.75;
-/// Covered as much, a pixel shows the toy alone; the same for its background.
-const ALONE: f32 = 0.001;
 /// Mixtures beyond 0 and 1 by noise; further ones are something else.
 const MOST_BEYOND: f32 = 0.5;
 
@@ -47,31 +41,23 @@ impl Band {
 }
 
 /// Measures each piece's displacement: the covered area that the picture has beyond the model's, over its length.
-pub(super) fn measure(level: &Level, coverage: &Coverage, elements: &[Element], band: Band) -> Vec<Measured> {
+pub(super) fn measure(beside: &Beside<'_>, elements: &[Element], band: Band) -> Vec<Measured> {
     if elements.is_empty() {
         return Vec::new();
     }
     let mut pieces: Vec<Piece> = elements
         .iter()
-        .map(|element| Piece::new(level, coverage, element, band.half_px))
+        .map(|element| Piece::new(beside, element, band.half_px))
         .collect();
-    let owners = Owners::new(elements, coverage, band.half_px);
+    let owners = Owners::new(elements, beside.coverage, band.half_px);
     for (at, owner) in owners.pixels() {
-        pieces[owner].add(level, at, coverage.at(at));
+        pieces[owner].add(beside, at, beside.coverage.at(at));
     }
     let measured = elements
         .iter()
         .zip(&pieces)
         .filter_map(|(element, piece)| piece.measured(element, band));
     measured.collect()
-}
-
-/// Colours on both sides of a piece of the outline.
-#[derive(Clone, Copy)]
-struct Sides {
-    toy: Color,
-    /// Of the background over the plate; without a plate the background itself.
-    ratio: Color,
 }
 
 /// What the pixels beside a piece of the outline say.
@@ -86,9 +72,9 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(level: &Level, coverage: &Coverage, element: &Element, half_px: f64) -> Self {
+    fn new(beside: &Beside<'_>, element: &Element, half_px: f64) -> Self {
         Self {
-            sides: sides(level, coverage, element, half_px),
+            sides: Sides::new(beside, element, half_px),
             more_area: 0.0,
             contrast: 0.0,
             n_pixels: 0.0,
@@ -96,19 +82,18 @@ impl Piece {
         }
     }
 
-    fn add(&mut self, level: &Level, at: IVec2, covered: f32) {
-        let (Some(sides), Some(seen), Some(plate)) = (self.sides, level.frame.get(at), plate_at(level, at))
-        else {
+    fn add(&mut self, beside: &Beside<'_>, at: IVec2, covered: f32) {
+        let both = self.sides.and_then(|sides| sides.at(beside, at));
+        let (Some([toy, background]), Some(seen)) = (both, beside.level.frame.get(at)) else {
             self.has_unknown = true;
             return;
         };
         let (mut along, mut contrast) = (0.0, 0.0);
         for channel in 0..3 {
-            let background = (sides.ratio[channel] * (plate[channel] + FLOOR) - FLOOR).max(0.0);
-            let apart = sides.toy[channel] - background;
-            let middle = 0.5 * (sides.toy[channel] + background);
+            let apart = toy[channel] - background[channel];
+            let middle = 0.5 * (toy[channel] + background[channel]);
             let variance = noise_deviation(middle).powi(2);
-            along += (seen[channel] - background) * apart / variance;
+            along += (seen[channel] - background[channel]) * apart / variance;
             contrast += apart * apart / variance;
         }
         self.n_pixels += 1.0;
@@ -132,92 +117,5 @@ impl Piece {
             precision: f64::from(1.0 / (noise + CARRIED * CARRIED)),
             robust: 1.0 / (1.0 + excess).powi(2),
         })
-    }
-}
-
-fn plate_at(level: &Level, at: IVec2) -> Option<Color> {
-    match &level.plate {
-        Some(plate) => plate.get(at),
-        None => Some([1.0; 3]),
-    }
-}
-
-/// Means of the toy just within the band and of the background just beyond it, along the normal.
-fn sides(level: &Level, coverage: &Coverage, element: &Element, half_px: f64) -> Option<Sides> {
-    let (mut toy, mut background, mut plate) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-    let (mut n_toy, mut n_background) = (0.0, 0.0);
-    for sample in 0..N_SAMPLES {
-        let distance_px = half_px + BEYOND_PX + f64::from(sample);
-        let inside = element.pixel(-distance_px);
-        if coverage.at(inside) > 1.0 - ALONE {
-            toy = plus(toy, level.frame.get(inside)?);
-            n_toy += 1.0;
-        }
-        let outside = element.pixel(distance_px);
-        if coverage.at(outside) < ALONE {
-            background = plus(background, level.frame.get(outside)?);
-            plate = plus(plate, plate_at(level, outside)?);
-            n_background += 1.0;
-        }
-    }
-    (n_toy > 0.0 && n_background > 0.0).then(|| Sides {
-        toy: toy.map(|sum| sum / n_toy),
-        ratio: [0, 1, 2].map(|channel| {
-            let floor = n_background * FLOOR;
-            (background[channel] + floor) / (plate[channel] + floor)
-        }),
-    })
-}
-
-fn plus(a: Color, b: Color) -> Color {
-    [0, 1, 2].map(|channel| a[channel] + b[channel])
-}
-
-/// The piece of the outline that each pixel of the band is nearest to.
-struct Owners {
-    origin_px: IVec2,
-    size_px: IVec2,
-    /// Index of the piece, with the distance squared.
-    nearest: Vec<Option<(usize, f64)>>,
-}
-
-impl Owners {
-    fn new(elements: &[Element], coverage: &Coverage, half_px: f64) -> Self {
-        #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
-        let margin_px = half_px.ceil() as i32 + 1;
-        let size_px = coverage.size_px + 2 * margin_px;
-        let mut owners = Self {
-            origin_px: coverage.origin_px - margin_px,
-            size_px,
-            nearest: vec![None; (size_px.x * size_px.y) as usize],
-        };
-        for (index, element) in elements.iter().enumerate() {
-            for y in -margin_px..=margin_px {
-                for x in -margin_px..=margin_px {
-                    let at = element.pixel(0.0) + IVec2::new(x, y);
-                    owners.offer(at, index, element, half_px);
-                }
-            }
-        }
-        owners
-    }
-
-    fn offer(&mut self, at: IVec2, index: usize, element: &Element, half_px: f64) {
-        let from = at.as_dvec2() + DVec2::splat(0.5) - element.at_px;
-        let distance = from.length_squared();
-        let is_in_band =
-            from.dot(element.normal).abs() <= half_px + 0.5 && distance <= (half_px + 1.0).powi(2);
-        let Some(index_of_pixel) = index_in(self.size_px, at - self.origin_px).filter(|_| is_in_band) else {
-            return;
-        };
-        let nearest = &mut self.nearest[index_of_pixel];
-        if nearest.is_none_or(|(_, other)| distance < other) {
-            *nearest = Some((index, distance));
-        }
-    }
-
-    fn pixels(&self) -> impl Iterator<Item = (IVec2, usize)> + '_ {
-        let owned = places(self.size_px).zip(&self.nearest);
-        owned.filter_map(|(place, nearest)| Some((self.origin_px + place, (*nearest)?.0)))
     }
 }

@@ -5,26 +5,39 @@
 //! round is one Gauss-Newton step of all six numbers (`motion`).
 
 mod contour;
+mod decide;
+mod edge;
 mod lines;
 mod matte;
 mod motion;
 mod odds;
+mod owners;
+mod paint;
+mod placement;
 mod resting;
+mod settle;
+mod sides;
+mod standing;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
-use super::report::PoseDeviation;
-use super::rigid_motion::{Matrix6, RigidMotion, Vector6};
+use super::report::{PoseDeviation, Stand};
+use super::rigid_motion::{Matrix6, RigidMotion};
 use super::shape::Shape;
 use app_scene::scene::{Intrinsics, PoseUncertainty};
 use contour::{Element, contour};
+use decide::{LEAST_EVIDENCE, Lit};
 use matte::Band;
 use motion::{Held, Measured, solve};
 use odds::Odds;
+use placement::Placement;
+use sides::Beside;
 
+pub(super) use paint::Paint;
 pub(super) use resting::find_resting;
+pub(super) use standing::Plane;
 
 /// Colours are learned this far around the toy, over how far lines reach.
 const LEARNED_AROUND: i32 = 3;
@@ -94,42 +107,54 @@ impl Fit {
 pub(super) struct Found {
     /// Moves the toy from where it was given, in camera space.
     pub(super) motion: DMat4,
-    /// As given.
-    pub(super) given: Fit,
-    /// As found.
-    pub(super) found: Fit,
+    /// Root mean square distance of the outline, in pixels, as given and as found.
+    pub(super) outlines_px: [f64; 2],
+    /// Whether less of the outline is seen than as given.
+    is_less_seen: bool,
+    /// Logarithm of how much likelier the picture is with what was found than with what was given.
+    pub(super) evidence: f64,
     /// One deviation of what was found.
     pub(super) deviation: PoseDeviation,
+    /// Over the size as given.
+    pub(super) size: f64,
+    /// What the model's outline is off by along some centimetres of it, in pixels.
+    pub(super) model_px: f64,
+    /// Standard deviation of the spread that the camera gives an edge, in pixels.
+    pub(super) spread_px: f64,
+    /// How it is on the plane that it is to stand on, as given and as found; none where it floats.
+    pub(super) stands: Option<[Stand; 2]>,
 }
 
 impl Found {
-    /// Whether the outline's loss fell to less than a part in either band, and did not rise in the other; and not because less of the
-    /// outline is seen. From far off it is the wide band that tells, since the finest counts all that is far as one.
-    pub(super) fn is_better(&self, part: f64) -> bool {
-        let (found, given) = (&self.found, &self.given);
-        let fell_to = |part: f64| {
-            [
-                found.loss_px2 <= part * given.loss_px2,
-                found.wide_loss_px2 <= part * given.wide_loss_px2,
-            ]
-        };
-        fell_to(part).contains(&true)
-            && !fell_to(1.0).contains(&false)
-            && found.share > given.share - LESS_SEEN
+    /// Whether the picture is that much likelier with it; and not because less of the outline is seen.
+    pub(super) fn is_better(&self) -> bool {
+        self.evidence >= LEAST_EVIDENCE && !self.is_less_seen
     }
 }
 
-/// Finds the pose, starting from that of `shape`, no farther from it than that is uncertain; none where too little of the outline is
+/// A toy whose pose is looked for.
+#[derive(Clone, Copy)]
+pub(super) struct Subject<'a> {
+    /// Where it is given.
+    pub(super) shape: &'a Shape,
+    /// Its colours there.
+    pub(super) paint: &'a Paint,
+    /// The plane that it stands on, and whether that is known for certain; none where it floats.
+    pub(super) plane: Option<(Plane, bool)>,
+}
+
+/// Finds the pose, starting from that of a subject, no farther from it than that is uncertain; none where too little of the outline is
 /// seen.
-pub(super) fn find(shape: &Shape, pyramid: &Pyramid, uncertainty: &PoseUncertainty) -> Option<Found> {
+pub(super) fn find(subject: Subject<'_>, pyramid: &Pyramid, uncertainty: &PoseUncertainty) -> Option<Found> {
+    let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, uncertainty);
     let start = RigidMotion::none(shape.centre, shape.radius_m);
-    let given = search.fit(&start)?;
+    let given = search.fit(&Placement::of(start))?;
     let mut motion = start;
     if given.is_far() {
         motion = search.coarse(motion, None);
     }
-    search.freed(given, motion)
+    search.freed(subject, given, motion)
 }
 
 /// How well a pose is known that another is looked for from.
@@ -148,14 +173,14 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
     let bands = match start {
         Start::Near => &FINE[N_WIDE_BANDS..],
         Start::Given => {
-            if search.fit(&motion)?.is_far() {
+            if search.fit(&Placement::of(motion))?.is_far() {
                 motion = search.coarse(motion, None);
             }
             &FINE[..]
         }
     };
-    let motion = search.fine(motion, bands)?.motion;
-    let fit = search.fit(&motion)?;
+    let motion = search.fine(motion, None, bands)?;
+    let fit = search.fit(&Placement::of(motion))?;
     Some((motion.matrix(), fit.outline_px()))
 }
 
@@ -187,6 +212,8 @@ struct Search<'a> {
     raster: Rasterizer,
     damping: Matrix6,
     uncertainty: PoseUncertainty,
+    /// The largest level with its plate as soft as the photograph; none where the plate is as it was taken.
+    softened: Option<Level>,
 }
 
 impl<'a> Search<'a> {
@@ -210,30 +237,40 @@ impl<'a> Search<'a> {
             shape,
             pyramid,
             uncertainty: *uncertainty,
+            softened: None,
             raster: Rasterizer::default(),
             damping: Matrix6::identity() * (PIECE_PX / (STEP * shape.radius_m)).powi(2),
         }
     }
 
-    fn outline(&mut self, motion: &RigidMotion, level: &Level) -> (Coverage, Vec<Element>) {
-        let points = self.shape.points.iter().map(|point| motion.apply(*point));
+    fn outline(&mut self, placement: &Placement, level: &Level) -> (Coverage, Vec<Element>) {
+        let points = self.shape.points.iter().map(|point| placement.apply(*point));
         let points: Vec<DVec3> = points.collect();
         let posed = (&points[..], self.shape);
         outline(&mut self.raster, posed, &level.intrinsics, level.frame.size_px)
     }
 
     /// The pieces that can be measured, and how many of all these are.
-    fn matte(&mut self, motion: &RigidMotion, band: Band) -> Option<(Vec<Measured>, f64)> {
+    fn matte(
+        &mut self,
+        placement: &Placement,
+        lit: Option<Lit<'_>>,
+        band: Band,
+    ) -> Option<(Vec<Measured>, f64)> {
         let level = self.pyramid.level(0);
-        let (coverage, elements) = self.outline(motion, level);
-        let measured = matte::measure(level, &coverage, &elements, band);
-        let share = measured.len() as f64 / elements.len() as f64;
-        (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))
+        let (coverage, elements) = self.outline(placement, level);
+        let shaded = lit.map(|lit| lit.shaded(placement, level, &coverage));
+        let beside = Beside {
+            level,
+            coverage: &coverage,
+            shaded: shaded.as_ref(),
+        };
+        enough(matte::measure(&beside, &elements, band), &elements)
     }
 
-    fn fit(&mut self, motion: &RigidMotion) -> Option<Fit> {
-        let (fine, share) = self.matte(motion, FINEST)?;
-        let (wide, _) = self.matte(motion, WIDE)?;
+    fn fit(&mut self, placement: &Placement) -> Option<Fit> {
+        let (fine, share) = self.matte(placement, None, FINEST)?;
+        let (wide, _) = self.matte(placement, None, WIDE)?;
         Some(Fit {
             loss_px2: FINEST.loss_px2(&fine),
             wide_loss_px2: WIDE.loss_px2(&wide),
@@ -254,7 +291,7 @@ impl<'a> Search<'a> {
     ) -> RigidMotion {
         for (level, reach_px) in rounds.iter().copied() {
             let level = self.pyramid.level(level);
-            let (coverage, elements) = self.outline(&motion, level);
+            let (coverage, elements) = self.outline(&Placement::of(motion), level);
             let odds = Odds::learn(level, &coverage, LEARNED_AROUND * reach_px);
             let measured = lines::measure(&elements, &coverage, &odds, reach_px);
             let k = &level.intrinsics;
@@ -269,71 +306,29 @@ impl<'a> Search<'a> {
         motion
     }
 
-    fn fine(&mut self, mut motion: RigidMotion, bands: &[(Band, usize)]) -> Option<Converged> {
-        let mut last = None;
+    fn fine(
+        &mut self,
+        mut motion: RigidMotion,
+        lit: Option<Lit<'_>>,
+        bands: &[(Band, usize)],
+    ) -> Option<RigidMotion> {
         for (band, n_rounds) in bands {
             for _ in 0..*n_rounds {
-                let (measured, _) = self.matte(&motion, *band)?;
+                let (measured, _) = self.matte(&Placement::of(motion), lit, *band)?;
                 let k = &self.pyramid.level(0).intrinsics;
-                let (step, information): (Vector6, _) = solve(&measured, k, &motion, &self.damping)?;
+                let (step, _) = solve(&measured, k, &motion, &self.damping)?;
                 motion = motion.then(&step).within(&self.uncertainty);
-                last = Some(Converged {
-                    motion,
-                    information,
-                    mean_weight: mean_weight(&measured),
-                });
                 if step.norm() < LAST_STEP * self.shape.radius_m {
                     break;
                 }
             }
         }
-        last
-    }
-
-    /// With all six freedoms, in all bands.
-    fn freed(&mut self, given: Fit, motion: RigidMotion) -> Option<Found> {
-        let Converged {
-            motion,
-            information,
-            mean_weight,
-        } = self.fine(motion, &FINE)?;
-        let found = self.fit(&motion)?;
-        Some(Found {
-            motion: motion.matrix(),
-            given,
-            deviation: deviation(&information, mean_weight * found.loss_px2, self.shape.radius_m),
-            found,
-        })
+        Some(motion)
     }
 }
 
-/// Where the search came to rest.
-struct Converged {
-    motion: RigidMotion,
-    information: Matrix6,
-    mean_weight: f64,
-}
-
-/// Of the pieces that were measured, by length; at least one is.
-fn mean_weight(measured: &[Measured]) -> f64 {
-    let weighted = |one: &Measured| (one.element.length_px, one.precision * one.robust);
-    let (sum, total) = measured
-        .iter()
-        .map(weighted)
-        .fold((0.0, 0.0), |(sum, total), (length, weight)| {
-            (sum + length * weight, total + length)
-        });
-    sum / total
-}
-
-/// One deviation of a pose, by the information on it and the variance of a piece of unit weight.
-fn deviation(information: &Matrix6, unit_variance: f64, radius_m: f64) -> PoseDeviation {
-    // It was solved with, so that it has an inverse.
-    let covariance = information.try_inverse().unwrap_or_else(Matrix6::identity);
-    let root = |index: usize| (covariance[(index, index)].max(0.0) * unit_variance).sqrt();
-    PoseDeviation {
-        lateral_m: root(3).hypot(root(4)),
-        depth_m: root(5),
-        rotation_rad: root(0).hypot(root(1)).hypot(root(2)) / radius_m,
-    }
+/// Pieces that were measured, and what of the outline they are; none where that is too little.
+fn enough(measured: Vec<Measured>, elements: &[Element]) -> Option<(Vec<Measured>, f64)> {
+    let share = measured.len() as f64 / elements.len().max(1) as f64;
+    (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))
 }

@@ -8,15 +8,8 @@ use crate::rigid_motion::{Matrix6, RigidMotion, Vector6, step_of};
 use app_scene::scene::Intrinsics;
 
 /// How far a piece of the outline moves along its normal, in pixels, for each number of a step.
-///
-/// That a rim slides over a curved surface as it turns counts only in the second order.
 fn outward(motion: &RigidMotion, element: &Element, k: &Intrinsics) -> Vector6 {
-    let depth_m = element.depth_m;
-    let slope_x = (element.at_px.x - k.cx_px) / k.fx_px;
-    let slope_y = -(element.at_px.y - k.cy_px) / k.fy_px;
-    let point = DVec3::new(slope_x, slope_y, -1.0) * depth_m;
-    let (across, down) = (element.normal.x * k.fx_px, -element.normal.y * k.fy_px);
-    let per_m = DVec3::new(across, down, across * slope_x + down * slope_y) / depth_m;
+    let (point, per_m) = element.rim(k);
     motion.row(point - motion.centre(), per_m)
 }
 

@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3, IVec2};
 
 use super::motion::Held;
-use super::{Found, Search};
+use super::placement::Placement;
+use super::{Found, Search, Subject};
 use crate::picture::Pyramid;
 use crate::rigid_motion::RigidMotion;
-use crate::shape::Shape;
 use app_scene::scene::PoseUncertainty;
 
 /// Between turns about the normal that are started from, and the farthest of them where nobody says how far it may be turned.
@@ -30,31 +30,31 @@ const N_ROUNDS: usize = 2;
 /// Of the starts, those that are freed.
 const N_FREED: usize = 2;
 
-/// Finds the pose, starting from that of `shape`, which rests on a plane of that normal; none where too little of the outline is seen.
+/// Finds the pose, starting from that of a subject, which rests on a plane of that normal; none where too little of the outline is seen.
 pub(crate) fn find_resting(
-    shape: &Shape,
+    subject: Subject<'_>,
     pyramid: &Pyramid,
     normal: DVec3,
     uncertainty: &PoseUncertainty,
 ) -> Option<Found> {
+    let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, uncertainty);
     let start = RigidMotion::none(shape.centre, shape.radius_m);
-    let given = search.fit(&start)?;
+    let given = search.fit(&Placement::of(start))?;
     let held = Held::to_plane(normal);
     let mut starts: Vec<(f64, RigidMotion)> = Vec::new();
     for mut motion in search.followed(&start, &held) {
         for _ in 0..N_ROUNDS {
             motion = search.coarse(motion, Some(&held));
         }
-        if let Some(fit) = search.fit(&motion) {
+        if let Some(fit) = search.fit(&Placement::of(motion)) {
             starts.push((fit.wide_loss_px2, motion));
         }
     }
     starts.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let freed = starts.iter().take(N_FREED);
-    let freed = freed.filter_map(|(_, motion)| search.freed(given, *motion));
-    let outline_px = |found: &Found| found.found.outline_px();
-    freed.min_by(|a, b| outline_px(a).total_cmp(&outline_px(b)))
+    let freed = freed.filter_map(|(_, motion)| search.freed(subject, given, *motion));
+    freed.max_by(|a, b| a.evidence.total_cmp(&b.evidence))
 }
 
 impl Search<'_> {
@@ -75,7 +75,7 @@ impl Search<'_> {
         let mut ranked: Vec<(f64, RigidMotion)> = Vec::new();
         for start in starts {
             let motion = self.by_lines(start, Some(held), &Self::COARSE[..N_FIRST_ROUNDS]);
-            if let Some(fit) = self.fit(&motion) {
+            if let Some(fit) = self.fit(&Placement::of(motion)) {
                 ranked.push((fit.wide_loss_px2, motion));
             }
         }

@@ -50,6 +50,9 @@ pub struct Scene {
     pub world_from_object: DMat4,
     /// The pose of the real toy.
     pub physical_pose: Pose,
+    /// Whether the real toy rests on the receiver below it. Without it, alignment takes a toy that is given close to a receiver to rest there,
+    /// unless the picture speaks against it.
+    pub resting: Option<bool>,
     /// Planes that catch the shadow; at least one, in any order.
     pub receivers: Vec<Receiver>,
     /// Known lights, unless a frame brings its own. Without any, alignment looks for them; frames pass through where it finds none.
@@ -75,6 +78,7 @@ impl Scene {
             toy,
             world_from_object,
             physical_pose: Pose::default(),
+            resting: None,
             receivers,
             lights: Vec::new(),
             plates: Vec::new(),
@@ -115,6 +119,13 @@ impl Scene {
     #[must_use]
     pub fn with_physical_pose(mut self, pose: Pose) -> Self {
         self.physical_pose = pose;
+        self
+    }
+
+    /// Sets whether the real toy rests on the receiver below it.
+    #[must_use]
+    pub fn with_resting(mut self, resting: Option<bool>) -> Self {
+        self.resting = resting;
         self
     }
 

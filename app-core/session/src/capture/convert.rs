@@ -76,6 +76,7 @@ pub(super) fn capture_from_record(
     )
     .with_name(record.name)
     .with_physical_pose(physical_pose)
+    .with_resting(record.toy.resting)
     .with_lights(lights)
     .with_plates(plates)
     .with_probe(probe)

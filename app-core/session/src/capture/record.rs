@@ -190,6 +190,10 @@ pub struct ToyRecord {
     pub world_from_object: [f64; 16],
     /// Pose that the real toy was made in, the same in all frames.
     pub physical_pose: PoseRecord,
+    /// Whether the toy rests on the receiver below it: true holds it there while it is aligned, false lets it float. Without it, a toy
+    /// that is given close to a receiver rests there unless the picture speaks against it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resting: Option<bool>,
 }
 
 /// A pose of the toy; by default nodes stand as authored.

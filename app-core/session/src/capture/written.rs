@@ -42,6 +42,7 @@ impl CaptureRecord {
                 file: paths.toy.to_owned(),
                 world_from_object: scene.world_from_object.to_cols_array(),
                 physical_pose: PoseRecord::new(&scene.physical_pose, &scene.toy),
+                resting: scene.resting,
             },
             receivers: scene.receivers.iter().map(ReceiverRecord::from).collect(),
             lights: scene.lights.iter().map(LightRecord::from).collect(),

@@ -230,6 +230,7 @@ fn index(
             file: "toy.glb".to_owned(),
             world_from_object: place,
             physical_pose: PoseRecord::default(),
+            resting: None,
         },
         receivers: entries("--receiver", &lacking.receiver)?,
         lights: entries("--light", &lacking.light)?,

@@ -13,6 +13,7 @@ use plotters::prelude::{
     SVGBackend, WHITE,
 };
 
+use super::pull::{Pull, summary};
 use super::table::aligned;
 use crate::random::Random;
 use desk::alignment::middle;
@@ -28,7 +29,7 @@ const MOST: Off = Off {
 const N_PARTS: usize = 6;
 /// Smaller errors are drawn as large, on an axis of powers.
 const LEAST_DRAWN: f64 = 0.01;
-const PANEL_PX: (u32, u32) = (1260, 420);
+const PANEL_PX: (u32, u32) = (1680, 420);
 const FONT: (&str, i32) = ("sans-serif", 14);
 
 /// How far pose and lights are from those recorded.
@@ -49,6 +50,8 @@ pub struct Draw {
     pub start: Off,
     /// As aligned.
     pub end: Off,
+    /// Errors of the pose beside what is claimed of them; none where no pose was applied.
+    pub pull: Option<Pull>,
 }
 
 /// Disturbs and aligns the first frame so often, each time by as much more.
@@ -58,6 +61,10 @@ pub struct Draw {
 pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>, ReplayError> {
     let scene = session.scene();
     let recorded = FrameInput::from(&session.frame(0)?);
+    let middle_in_object = recorded
+        .world_from_object
+        .inverse()
+        .transform_point3(middle(scene, &recorded.world_from_object));
     let mut random = Random::new(seed);
     let draws = (1..=n_draws).map(|index| {
         let part = f64::from(index) / f64::from(n_draws);
@@ -68,10 +75,12 @@ pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>
                 index: 0,
                 reason: Box::new(reason),
             })?;
+        let pose = found.report.pose.filter(|pose| pose.is_applied);
         let found = found.applied_to(&given);
         Ok(Draw {
             start: off(scene, &recorded, &given),
             end: off(scene, &recorded, &found),
+            pull: pose.map(|pose| Pull::of(&recorded, &found, middle_in_object, &pose.deviation)),
         })
     });
     draws.collect()
@@ -128,7 +137,13 @@ impl Off {
     }
 }
 
-/// A line for each start, under a header. Without a light its fields are empty.
+/// Of a pose that was not applied.
+const NO_PULL: Pull = Pull {
+    errors: [f64::NAN; 3],
+    claimed: [f64::NAN; 3],
+};
+
+/// A line for each start, under a header. Without a light its fields are empty, and without a pose that was applied the last six.
 #[must_use]
 pub fn basin_csv(draws: &[Draw]) -> String {
     let cell = |number: f64| {
@@ -139,16 +154,23 @@ pub fn basin_csv(draws: &[Draw]) -> String {
         }
     };
     let mut csv =
-        "start_pose_mm,start_pose_deg,start_light_deg,end_pose_mm,end_pose_deg,end_light_deg\n".to_owned();
+        "start_pose_mm,start_pose_deg,start_light_deg,end_pose_mm,end_pose_deg,end_light_deg,along_mm,beside_mm,turn_deg,claimed_along_mm,claimed_beside_mm,claimed_turn_deg\n".to_owned();
     for draw in draws {
-        let cells = [draw.start.numbers(), draw.end.numbers()].concat();
+        let pull = draw.pull.unwrap_or(NO_PULL);
+        let cells = [
+            draw.start.numbers(),
+            draw.end.numbers(),
+            pull.errors,
+            pull.claimed,
+        ]
+        .concat();
         let cells: Vec<String> = cells.into_iter().map(cell).collect();
         csv.push_str(&(cells.join(",") + "\n"));
     }
     csv
 }
 
-/// The median and the worst end of starts up to so far off.
+/// The median and the worst end of starts up to so far off, and how these are to what is claimed of poses.
 #[must_use]
 pub fn basin_table(draws: &[Draw]) -> String {
     let heads = [
@@ -174,10 +196,12 @@ pub fn basin_table(draws: &[Draw]) -> String {
         }
         cells.push(line);
     }
-    aligned(&cells)
+    let pulls: Vec<Pull> = draws.iter().filter_map(|draw| draw.pull).collect();
+    let claims = summary(&pulls).map_or(String::new(), |claims| claims + "\n");
+    aligned(&cells) + &claims
 }
 
-/// Ends over starts, beside the line on which nothing is corrected (SVG).
+/// Ends over starts, beside the line on which nothing is corrected, and errors of poses over what is claimed of them (SVG).
 ///
 /// # Errors
 /// What the drawing says.
@@ -190,7 +214,7 @@ pub fn basin_drawing(name: &str, draws: &[Draw]) -> Result<String, String> {
 fn render(name: &str, draws: &[Draw], svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
     let area = SVGBackend::with_string(svg, PANEL_PX).into_drawing_area();
     area.fill(&WHITE)?;
-    let panels = area.titled(name, FONT)?.split_evenly((1, 3));
+    let panels = area.titled(name, FONT)?.split_evenly((1, 4));
     let names = ["pose, mm", "pose, degrees", "light, degrees"];
     for (column, (panel, (of, most))) in panels.iter().zip(names.iter().zip(&MOST.numbers())).enumerate() {
         let points: Vec<[f64; 2]> = draws
@@ -198,8 +222,19 @@ fn render(name: &str, draws: &[Draw], svg: &mut String) -> Result<(), Box<dyn st
             .map(|draw| [draw.start, draw.end].map(|off| drawn(off.numbers()[column])))
             .filter(|point| point.iter().all(|number| number.is_finite()))
             .collect();
-        panel_of(panel, (of, *most), &points)?;
+        panel_of(panel, (of, "as given", "as aligned"), *most, &points)?;
     }
+    let pulls = draws.iter().filter_map(|draw| draw.pull);
+    let pulls: Vec<[f64; 2]> = pulls
+        .flat_map(|pull| pull.claimed.into_iter().zip(pull.errors))
+        .map(|(claimed, error)| [claimed, error].map(drawn))
+        .collect();
+    let most = pulls
+        .iter()
+        .map(|[claimed, _]| *claimed)
+        .fold(LEAST_DRAWN, f64::max);
+    let labels = ("pose, mm and degrees", "claimed deviation", "true error");
+    panel_of(&panels[3], labels, most, &pulls)?;
     area.present()?;
     Ok(())
 }
@@ -211,7 +246,8 @@ fn drawn(number: f64) -> f64 {
 
 fn panel_of(
     panel: &DrawingArea<SVGBackend<'_>, Shift>,
-    (of, most): (&str, f64),
+    (of, across, along): (&str, &str, &str),
+    most: f64,
     points: &[[f64; 2]],
 ) -> Result<(), Box<dyn std::error::Error>> {
     let least = points.iter().map(|[start, _]| *start).fold(most, f64::min);
@@ -229,8 +265,8 @@ fn panel_of(
         .configure_mesh()
         .max_light_lines(1)
         .x_labels(5)
-        .x_desc(format!("{of}: as given"))
-        .y_desc("as aligned")
+        .x_desc(format!("{of}: {across}"))
+        .y_desc(along)
         .draw()?;
     chart.draw_series(LineSeries::new(
         [(left, left), (right, right)],

@@ -121,6 +121,10 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
             depth_m: 1e-4,
             rotation_rad: 1e-3,
         },
+        size_ratio: 1.0,
+        model_px: 0.0,
+        spread_px: 0.0,
+        stand: None,
     });
     let mut alignment = Alignment::new(input);
     alignment.report.pose = pose;

@@ -1,0 +1,381 @@
+//! Where the outline is, to a small part of a pixel, by predicting the codes of the pixels beside it.
+//!
+//! A camera mixes toy and background by the area that each covers, spreads the mixture by its lens, encodes it and sharpens the codes.
+//! Each step is predicted: what a camera does to both sides alike makes a toy neither fat nor thin then.
+
+use glam::{DVec2, IVec2};
+
+use super::contour::Element;
+use super::motion::Measured;
+use super::owners::Owners;
+use super::sides::{Beside, Sides};
+use crate::picture::{Color, NOISE_CODES, gaussian, index_in, places};
+use crate::raster::Coverage;
+use app_scene::geometry::color::srgb_from_linear;
+
+/// What the prediction of a piece is wrong by, in pixels, however many pixels it has.
+const CARRIED_PX: f64 = 0.05;
+/// The band is as wide without a spread, and as much wider with one, in pixels.
+const HALF_PX: f64 = 1.0;
+const HALF_OF_SPREAD: f64 = 1.5;
+/// What is displaced by more counts less: scale of the Geman-McClure weights, in pixels.
+const ROBUST_PX: f64 = 0.5;
+/// A piece is displaced by no more: beyond it one step no longer predicts the codes.
+const MOST_PX: f64 = 1.5;
+/// What a camera sharpens against: its codes spread by as much, in pixels.
+const SHARPENED_PX: f64 = 1.2;
+/// Variance of a point's place within a pixel, along any direction, in square pixels.
+const PIXEL_PX2: f64 = 1.0 / 12.0;
+/// Spreads below show the shape of the pixel.
+const LEAST_SPREAD_PX: f64 = 0.3;
+/// Spreads beyond are another thing than a lens.
+const MOST_SPREAD_PX: f64 = 4.0;
+/// Half the band in which spreads are compared, the same for all, in pixels.
+const COMPARED_PX: f64 = 4.0;
+/// Above that spread, overshoot is not told from less of it.
+const SPREAD_WITHOUT_OVERSHOOT_PX: f64 = 1.0;
+const MOST_OVERSHOOT: f64 = 1.5;
+/// Most of the pieces: what fits worst is something else.
+const FITTING: f64 = 0.7;
+/// An unknown of the camera's is taken where the misfit falls to less than this part.
+const GAIN: f64 = 0.98;
+
+/// What a camera does to an edge, the same all around the toy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Optics {
+    /// Standard deviation of the spread that a lens gives, in pixels.
+    pub(super) spread_px: f64,
+    /// What sharpening adds, over what the codes differ from themselves spread by 1.2 px.
+    pub(super) overshoot: f64,
+}
+
+impl Optics {
+    /// Half the band that an edge of its spread lies within, in pixels.
+    pub(super) fn half_px(&self) -> f64 {
+        HALF_PX + HALF_OF_SPREAD * self.spread_px
+    }
+
+    /// The optics that explain the pixels of a wide band best, whatever the pose, since each piece is displaced as it likes; and what they
+    /// leave unexplained.
+    pub(super) fn found(beside: &Beside<'_>, elements: &[Element]) -> (Self, f64) {
+        let edges = Edges::new(beside, elements, COMPARED_PX);
+        let spread = |spread_px| Self {
+            spread_px,
+            overshoot: 0.0,
+        };
+        let sharp = edges.misfit(Self::default());
+        let (spread_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |spread_px| {
+            edges.misfit(spread(spread_px))
+        });
+        let (mut best, mut of_best) = if of_soft < GAIN * sharp {
+            (spread(spread_px), of_soft)
+        } else {
+            (Self::default(), sharp)
+        };
+        if best.spread_px < SPREAD_WITHOUT_OVERSHOOT_PX {
+            let with = |overshoot| Self { overshoot, ..best };
+            let (overshoot, of_overshoot) =
+                least((0.0, MOST_OVERSHOOT), |overshoot| edges.misfit(with(overshoot)));
+            if of_overshoot < GAIN * of_best {
+                (best.overshoot, of_best) = (overshoot, of_overshoot);
+            }
+        }
+        (best, of_best)
+    }
+}
+
+/// Where a function of one valley is least between two bounds, and how much it is there. Source: golden-section search, Kiefer 1953.
+fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    const N_CUTS: usize = 7;
+    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut of_a, mut of_b) = (of(a), of(b));
+    for _ in 0..N_CUTS {
+        if of_a < of_b {
+            (high, b, of_b) = (b, a, of_a);
+            a = high - GOLDEN * (high - low);
+            of_a = of(a);
+        } else {
+            (low, a, of_a) = (a, b, of_b);
+            b = low + GOLDEN * (high - low);
+            of_b = of(b);
+        }
+    }
+    if of_a < of_b { (a, of_a) } else { (b, of_b) }
+}
+
+/// Measures each piece's displacement, by the step that explains its pixels best.
+pub(super) fn measure(
+    beside: &Beside<'_>,
+    elements: &[Element],
+    optics: Optics,
+    half_px: f64,
+) -> Vec<Measured> {
+    let edges = Edges::new(beside, elements, half_px);
+    let pieces = edges.pieces(optics);
+    let measured = elements
+        .iter()
+        .zip(&pieces)
+        .filter_map(|(element, piece)| piece.measured(element));
+    measured.collect()
+}
+
+/// The pixels beside an outline, each with what it would show of toy and background alone.
+struct Edges<'a> {
+    coverage: &'a Coverage,
+    pixels: Vec<EdgePixel>,
+    /// Of each piece, whether all of its pixels and both its sides are known.
+    are_known: Vec<bool>,
+}
+
+struct EdgePixel {
+    at: IVec2,
+    owner: usize,
+    /// From the piece along its normal.
+    from_px: f64,
+    normal: DVec2,
+    toy: Color,
+    background: Color,
+    /// Toy's less the background's.
+    contrast_codes: [f64; 3],
+    seen_codes: [f64; 3],
+}
+
+impl<'a> Edges<'a> {
+    fn new(beside: &Beside<'a>, elements: &[Element], half_px: f64) -> Self {
+        let sides: Vec<Option<Sides>> = elements
+            .iter()
+            .map(|element| Sides::new(beside, element, half_px))
+            .collect();
+        let mut are_known: Vec<bool> = sides.iter().map(Option::is_some).collect();
+        let mut pixels = Vec::new();
+        if !elements.is_empty() {
+            for (at, owner) in Owners::new(elements, beside.coverage, half_px).pixels() {
+                let Some(sides) = &sides[owner] else { continue };
+                let (Some([toy, background]), Some(seen)) =
+                    (sides.at(beside, at), beside.level.frame.get(at))
+                else {
+                    are_known[owner] = false;
+                    continue;
+                };
+                let element = &elements[owner];
+                let (toy_codes, background_codes) = (codes(toy), codes(background));
+                pixels.push(EdgePixel {
+                    at,
+                    owner,
+                    from_px: (at.as_dvec2() + DVec2::splat(0.5) - element.at_px).dot(element.normal),
+                    normal: element.normal,
+                    toy,
+                    background,
+                    contrast_codes: [0, 1, 2].map(|channel| toy_codes[channel] - background_codes[channel]),
+                    seen_codes: codes(seen),
+                });
+            }
+        }
+        Self {
+            coverage: beside.coverage,
+            pixels,
+            are_known,
+        }
+    }
+
+    /// Mean square of what the pixels of a piece leave unexplained over its contrast, of those that fit.
+    fn misfit(&self, optics: Optics) -> f64 {
+        let pieces = self.pieces(optics);
+        let mut left: Vec<f64> = pieces.iter().filter_map(Piece::left).collect();
+        left.sort_by(f64::total_cmp);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a part of a length"
+        )]
+        let n = (FITTING * left.len() as f64) as usize;
+        let sum: f64 = left[..n].iter().sum();
+        if n == 0 { 0.0 } else { sum / n as f64 }
+    }
+
+    fn pieces(&self, optics: Optics) -> Vec<Piece> {
+        let spread = Spread::new(self.coverage, optics.spread_px);
+        let wider = (optics.overshoot > 0.0)
+            .then(|| Spread::new(self.coverage, optics.spread_px.hypot(SHARPENED_PX)));
+        let mut pieces: Vec<Piece> = self
+            .are_known
+            .iter()
+            .map(|is_known| Piece {
+                is_known: *is_known,
+                ..Piece::default()
+            })
+            .collect();
+        for pixel in &self.pixels {
+            let of = |spread: &Spread| Mixed {
+                covered: spread.at(pixel.at),
+                density: density(pixel.from_px, pixel.normal, spread.deviation_px),
+            };
+            let lens = of(&spread);
+            let beyond = wider.as_ref().map_or(Mixed::default(), |wider| {
+                let wider = of(wider);
+                Mixed {
+                    covered: optics.overshoot * (lens.covered - wider.covered),
+                    density: optics.overshoot * (lens.density - wider.density),
+                }
+            });
+            pieces[pixel.owner].add(pixel, lens, beyond);
+        }
+        pieces
+    }
+}
+
+/// What a pixel has of the toy, and how much more for each pixel that the outline moves outwards.
+#[derive(Clone, Copy, Default)]
+struct Mixed {
+    covered: f64,
+    density: f64,
+}
+
+/// How much more a pixel is covered for each pixel that a straight edge moves towards it, from a distance.
+fn density(from_px: f64, normal: DVec2, spread_px: f64) -> f64 {
+    if spread_px >= LEAST_SPREAD_PX {
+        let variance = spread_px * spread_px + PIXEL_PX2;
+        return (-0.5 * from_px * from_px / variance).exp() / (std::f64::consts::TAU * variance).sqrt();
+    }
+    // The length of the edge within the pixel: a trapezoid over the distance.
+    let [a, b] = normal.abs().to_array();
+    let (wide, narrow) = (0.5 * (a + b), 0.5 * (a - b).abs());
+    let height = 1.0 / a.max(b);
+    let slope = wide - narrow;
+    let within = wide - from_px.abs();
+    if within <= 0.0 {
+        0.0
+    } else if within >= slope {
+        height
+    } else {
+        height * within / slope
+    }
+}
+
+/// What the pixels beside a piece of the outline say: weighted sums of squares, in codes.
+#[derive(Clone, Copy, Default)]
+struct Piece {
+    is_known: bool,
+    slope2: f64,
+    slope_by_residual: f64,
+    residual2: f64,
+    contrast2: f64,
+    n: f64,
+}
+
+impl Piece {
+    fn add(&mut self, pixel: &EdgePixel, lens: Mixed, beyond: Mixed) {
+        for channel in 0..3 {
+            let apart = f64::from(pixel.toy[channel] - pixel.background[channel]);
+            let mixed = f64::from(pixel.background[channel]) + lens.covered * apart;
+            let contrast = pixel.contrast_codes[channel];
+            let predicted = code(mixed) + beyond.covered * contrast;
+            let slope = slope_of_code(mixed) * apart * lens.density + contrast * beyond.density;
+            let residual = pixel.seen_codes[channel] - predicted;
+            let weight = SLOPE_OF_WHITE / slope_of_code(mixed);
+            self.slope2 += weight * slope * slope;
+            self.slope_by_residual += weight * slope * residual;
+            self.residual2 += weight * residual * residual;
+            self.contrast2 += weight * contrast * contrast;
+        }
+        self.n += 1.0;
+    }
+
+    /// What is left unexplained over the contrast, once the piece is displaced.
+    fn left(&self) -> Option<f64> {
+        if !self.is_known || self.slope2 <= 0.0 {
+            return None;
+        }
+        let explained = self.slope_by_residual * self.slope_by_residual / self.slope2;
+        let noise = self.n * 3.0 * f64::from(NOISE_CODES).powi(2);
+        Some((self.residual2 - explained).max(0.0) / (self.contrast2 + noise))
+    }
+
+    fn measured(&self, element: &Element) -> Option<Measured> {
+        if !self.is_known || self.slope2 <= 0.0 {
+            return None;
+        }
+        let offset_px = (self.slope_by_residual / self.slope2).clamp(-MOST_PX, MOST_PX);
+        let noise_px2 = f64::from(NOISE_CODES).powi(2) / self.slope2;
+        Some(Measured {
+            element: *element,
+            offset_px,
+            precision: 1.0 / (noise_px2 + CARRIED_PX * CARRIED_PX),
+            robust: (1.0 + (offset_px / ROBUST_PX).powi(2)).powi(-2),
+        })
+    }
+}
+
+/// Codes from 0 to 255, not rounded.
+fn codes(linear: Color) -> [f64; 3] {
+    linear.map(|value| code(f64::from(value)))
+}
+
+fn code(linear: f64) -> f64 {
+    #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+    let encoded = srgb_from_linear(linear.clamp(0.0, 1.0) as f32);
+    255.0 * f64::from(encoded)
+}
+
+/// Codes for each unit of light at white. What is predicted for either side is wrong by some light, what a camera adds is of codes: pixels
+/// weigh halfway between the two.
+const SLOPE_OF_WHITE: f64 = 255.0 * 1.055 / 2.4;
+
+/// Codes for each unit of light. Source: the derivative of IEC 61966-2-1.
+fn slope_of_code(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        255.0 * 12.92
+    } else {
+        SLOPE_OF_WHITE * linear.min(1.0).powf(1.0 / 2.4 - 1.0)
+    }
+}
+
+/// Coverage as a lens spreads it.
+struct Spread {
+    origin_px: IVec2,
+    size_px: IVec2,
+    values: Vec<f32>,
+    deviation_px: f64,
+}
+
+impl Spread {
+    fn new(coverage: &Coverage, deviation_px: f64) -> Self {
+        if deviation_px < LEAST_SPREAD_PX {
+            return Self::of(coverage, 0, 0.0);
+        }
+        let weights = gaussian(deviation_px);
+        let reach_px = weights.last().map_or(0, |(step, _)| *step);
+        let mut spread = Self::of(coverage, reach_px, deviation_px);
+        for axis in [IVec2::X, IVec2::Y] {
+            let along = |place: IVec2| {
+                let taps = weights.iter();
+                taps.map(|(step, weight)| weight * spread.place(place + *step * axis))
+                    .sum()
+            };
+            spread.values = places(spread.size_px).map(along).collect();
+        }
+        spread
+    }
+
+    /// As it is, with a margin around it.
+    fn of(coverage: &Coverage, margin_px: i32, deviation_px: f64) -> Self {
+        let (origin_px, size_px) = (coverage.origin_px - margin_px, coverage.size_px + 2 * margin_px);
+        Self {
+            origin_px,
+            size_px,
+            values: places(size_px)
+                .map(|place| coverage.at(origin_px + place))
+                .collect(),
+            deviation_px,
+        }
+    }
+
+    fn place(&self, place: IVec2) -> f32 {
+        index_in(self.size_px, place).map_or(0.0, |index| self.values[index])
+    }
+
+    fn at(&self, at: IVec2) -> f64 {
+        f64::from(self.place(at - self.origin_px))
+    }
+}

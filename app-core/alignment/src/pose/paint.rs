@@ -1,0 +1,444 @@
+//! What the toy should look like beside its outline: its model's own colours, in the light that the photograph shows on it.
+//!
+//! Beside the outline a toy's colour changes within a few pixels, where it turns away from the light or where another paint begins.
+//! The ratio of the photograph to a shaded model changes far less, so that is what is carried across the outline, as the ratio to the
+//! plate is on the other side.
+
+use glam::{DMat4, DVec2, DVec3, IVec2};
+use nalgebra::{SMatrix, SVector};
+
+use super::placement::Placement;
+use crate::picture::{Color, Level, index_in, noise_deviation, places};
+use crate::raster::{Coverage, project};
+use crate::rigid_motion::RigidMotion;
+use app_scene::geometry::color::linear_of_codes;
+use app_scene::scene::{Intrinsics, Scene};
+use app_scene::toy::{PosedMesh, Texture, Toy, ToyError, Wrap};
+
+/// Spherical harmonics of the first three orders tell what a matt surface receives from all around.
+///
+/// Source: Ramamoorthi and Hanrahan 2001.
+const N_BASIS: usize = 9;
+/// Holds what the visible side of a toy does not tell, over the weight of its pixels: each order beyond the first.
+const PRIOR: f64 = 1e-3;
+/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light.
+const N_ROUNDS: usize = 4;
+const ROBUST: f64 = 0.15;
+/// Light that a surface receives is no less than this part of the mean: what is darker is a shadow, which the model does not have.
+const DARKEST: f32 = 0.15;
+/// Fewer pixels tell no light; more than so many tell no more.
+const LEAST_PIXELS: usize = 100;
+const MOST_PIXELS: usize = 2000;
+/// The light is told by pixels this far within the outline, in pixels.
+const WITHIN_PX: i32 = 2;
+/// Paints darker than this tell no light.
+const DARKEST_PAINT: f32 = 0.01;
+
+type Basis = SVector<f64, N_BASIS>;
+
+/// The toy's surface in camera space, as given, with its paints.
+#[derive(Clone, Debug)]
+pub(crate) struct Paint {
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    faces: Vec<Face>,
+    colors: Vec<Color>,
+    uvs: Vec<DVec2>,
+    textures: Vec<Mipmap>,
+}
+
+#[derive(Clone, Debug)]
+struct Face {
+    corners: [u32; 3],
+    color: Color,
+    texture: Option<(usize, [Wrap; 2])>,
+    is_double_sided: bool,
+}
+
+impl Paint {
+    /// Of a toy in a scene's physical pose.
+    pub(crate) fn new(scene: &Scene, camera_from_object: &DMat4) -> Result<Self, ToyError> {
+        let toy = &scene.toy;
+        let mut posed = PosedMesh::default();
+        toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
+        let colors = toy.colors_linear().unwrap_or_default().iter();
+        let uvs = toy.uvs().iter();
+        Ok(Self {
+            faces: faces(toy),
+            colors: colors.map(|[r, g, b, _]| [*r, *g, *b]).collect(),
+            uvs: uvs
+                .map(|[u, v]| DVec2::new(f64::from(*u), f64::from(*v)))
+                .collect(),
+            textures: toy.textures().iter().map(Mipmap::new).collect(),
+            positions: posed.points().collect(),
+            normals: posed.normals.iter().map(|normal| normal.as_dvec3()).collect(),
+        })
+    }
+
+    /// The light on the toy, by what `level` shows of it where it is thought to be; none where that is too little.
+    pub(super) fn light(&self, placement: &Placement, level: &Level, coverage: &Coverage) -> Option<Light> {
+        Light::fitted(
+            &self.seen(placement, &level.intrinsics, coverage),
+            level,
+            coverage,
+        )
+    }
+
+    /// What the toy should look like in a light, over the pixels of its coverage.
+    pub(super) fn shaded<'a>(
+        &'a self,
+        placement: &Placement,
+        light: &'a Light,
+        k: &Intrinsics,
+        coverage: &Coverage,
+    ) -> Shaded<'a> {
+        Shaded {
+            seen: self.seen(placement, k, coverage),
+            light,
+        }
+    }
+
+    /// The face at the centre of each pixel of the coverage.
+    fn seen(&self, placement: &Placement, k: &Intrinsics, coverage: &Coverage) -> Seen<'_> {
+        let moved = self.positions.iter().map(|point| placement.apply(*point));
+        let corners = project(moved, k);
+        let size_px = coverage.size_px;
+        let n_pixels = (size_px.x * size_px.y) as usize;
+        let mut nearest: Vec<Hit> = vec![Hit::NONE; n_pixels];
+        let origin = coverage.origin_px.as_dvec2().extend(0.0);
+        for (index, face) in (0..).zip(&self.faces) {
+            let corners = face.corners.map(|corner| corners[corner as usize] - origin);
+            if face.is_seen(&corners) {
+                draw(corners, size_px, |place, inverse_depth, weights| {
+                    if inverse_depth > nearest[place].inverse_depth {
+                        nearest[place] = Hit {
+                            inverse_depth,
+                            face: index,
+                            weights,
+                        };
+                    }
+                });
+            }
+        }
+        Seen {
+            paint: self,
+            motion: placement.motion,
+            origin_px: coverage.origin_px,
+            size_px,
+            corners,
+            nearest,
+        }
+    }
+
+    /// The level of a texture of which a texel is about a pixel.
+    fn level_of(&self, face: &Face, corners: &[DVec3]) -> usize {
+        let Some((texture, _)) = face.texture else {
+            return 0;
+        };
+        let area = |[a, b, c]: [DVec2; 3]| (b - a).perp_dot(c - a).abs();
+        let pixels = area(face.corners.map(|corner| corners[corner as usize].truncate()));
+        let size = self.textures[texture].size();
+        let texels = area(face.corners.map(|corner| self.uvs[corner as usize] * size));
+        let per_pixel = texels / pixels;
+        #[allow(clippy::cast_possible_truncation, reason = "a logarithm")]
+        let level = if per_pixel > 1.0 && per_pixel.is_finite() {
+            (0.5 * per_pixel.log2()) as usize
+        } else {
+            0
+        };
+        level
+    }
+
+    fn at(&self, face: &Face, weights: [f64; 3], motion: &RigidMotion, level: usize) -> Surface {
+        let mixed = |of: &dyn Fn(usize) -> DVec3| {
+            let corners = face.corners.into_iter().zip(weights);
+            corners
+                .map(|(corner, weight)| weight * of(corner as usize))
+                .sum::<DVec3>()
+        };
+        let normal = motion
+            .turn_of(mixed(&|corner| self.normals[corner]))
+            .normalize_or_zero();
+        let mut color = face.color;
+        if !self.colors.is_empty() {
+            let of_vertices = mixed(&|corner| DVec3::from_array(self.colors[corner].map(f64::from)));
+            color = scaled(color, of_vertices.as_vec3().to_array());
+        }
+        if let Some((texture, wraps)) = face.texture {
+            let uv = mixed(&|corner| self.uvs[corner].extend(0.0)).truncate();
+            color = scaled(color, self.textures[texture].at(uv, wraps, level));
+        }
+        Surface { color, normal }
+    }
+}
+
+fn faces(toy: &Toy) -> Vec<Face> {
+    let parts = toy.parts().iter().flat_map(|part| {
+        let material = &toy.materials()[part.material];
+        let [r, g, b, _] = material.base_color_linear;
+        let has_uvs = !toy.uvs().is_empty();
+        let texture = material.base_color_texture.as_ref().filter(|_| has_uvs);
+        let texture = texture.map(|texture| (texture.texture, [texture.wrap_u, texture.wrap_v]));
+        let corners = toy.indices()[part.indices.start as usize..part.indices.end as usize].chunks_exact(3);
+        corners.map(move |corners| Face {
+            corners: [corners[0], corners[1], corners[2]],
+            color: [r, g, b],
+            texture,
+            is_double_sided: material.double_sided,
+        })
+    });
+    parts.collect()
+}
+
+impl Face {
+    /// Whether it lies before the eye and shows a side that can be seen.
+    fn is_seen(&self, [a, b, c]: &[DVec3; 3]) -> bool {
+        let is_before = a.z.min(b.z).min(c.z) > 0.0;
+        // Rows go down: triangles that face the eye turn to the left.
+        is_before && (self.is_double_sided || (*b - *a).truncate().perp_dot((*c - *a).truncate()) < 0.0)
+    }
+}
+
+/// Calls `pixel` with the index, one over the depth and the corners' weights of each pixel whose centre a projected triangle covers.
+fn draw([a, b, c]: [DVec3; 3], size_px: IVec2, mut pixel: impl FnMut(usize, f64, [f64; 3])) {
+    let [pa, pb, pc] = [a, b, c].map(DVec3::truncate);
+    let area = (pb - pa).perp_dot(pc - pa);
+    if area == 0.0 || !area.is_finite() {
+        return;
+    }
+    let size = size_px.as_dvec2();
+    let low = (pa.min(pb).min(pc) - 0.5)
+        .ceil()
+        .clamp(DVec2::ZERO, size)
+        .as_ivec2();
+    let high = (pa.max(pb).max(pc) + 0.5)
+        .floor()
+        .clamp(DVec2::ZERO, size)
+        .as_ivec2();
+    for y in low.y..high.y {
+        for x in low.x..high.x {
+            let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let weights = [
+                (pb - at).perp_dot(pc - at) / area,
+                (pc - at).perp_dot(pa - at) / area,
+                (pa - at).perp_dot(pb - at) / area,
+            ];
+            if weights.iter().any(|weight| *weight < 0.0) {
+                continue;
+            }
+            // Weights over depth are affine over the picture.
+            let over_depth = [weights[0] / a.z, weights[1] / b.z, weights[2] / c.z];
+            let inverse_depth: f64 = over_depth.iter().sum();
+            let place = (y * size_px.x + x) as usize;
+            pixel(
+                place,
+                inverse_depth,
+                over_depth.map(|weight| weight / inverse_depth),
+            );
+        }
+    }
+}
+
+fn scaled(a: Color, b: Color) -> Color {
+    [0, 1, 2].map(|channel| a[channel] * b[channel])
+}
+
+/// What a pixel's centre shows of the toy.
+#[derive(Clone, Copy)]
+struct Hit {
+    /// In 1/m; 0 where there is nothing.
+    inverse_depth: f64,
+    face: u32,
+    /// Of the face's corners.
+    weights: [f64; 3],
+}
+
+impl Hit {
+    const NONE: Self = Self {
+        inverse_depth: 0.0,
+        face: 0,
+        weights: [0.0; 3],
+    };
+}
+
+/// The toy where it is thought to be, over a rectangle of the picture.
+struct Seen<'a> {
+    paint: &'a Paint,
+    motion: RigidMotion,
+    origin_px: IVec2,
+    size_px: IVec2,
+    /// Projected.
+    corners: Vec<DVec3>,
+    nearest: Vec<Hit>,
+}
+
+impl Seen<'_> {
+    /// None where the toy does not cover the pixel's centre.
+    fn at(&self, at: IVec2) -> Option<Surface> {
+        let hit = self.nearest[index_in(self.size_px, at - self.origin_px)?];
+        (hit.inverse_depth > 0.0).then(|| {
+            let face = &self.paint.faces[hit.face as usize];
+            let level = self.paint.level_of(face, &self.corners);
+            self.paint.at(face, hit.weights, &self.motion, level)
+        })
+    }
+}
+
+/// The toy's surface at a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Surface {
+    color: Color,
+    normal: DVec3,
+}
+
+impl Surface {
+    fn basis(&self) -> Basis {
+        let DVec3 { x, y, z } = self.normal;
+        Basis::from([
+            1.0,
+            x,
+            y,
+            z,
+            x * y,
+            y * z,
+            x * z,
+            3.0 * z * z - 1.0,
+            x * x - y * y,
+        ])
+    }
+}
+
+/// The light on the toy: what each harmonic receives, for each channel.
+#[derive(Clone, Debug)]
+pub(super) struct Light {
+    factors: [Basis; 3],
+    least: Color,
+}
+
+impl Light {
+    /// Fits the light to what a photograph shows of the surface, by iteratively reweighted least squares; none where that is too little.
+    fn fitted(seen: &Seen<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
+        let reach = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| WITHIN_PX * step);
+        let is_within = |at: IVec2| reach.iter().all(|step| coverage.at(at + *step) >= 1.0);
+        let within: Vec<IVec2> = coverage.pixels().filter(|at| is_within(*at)).collect();
+        let stride = within.len().div_ceil(MOST_PIXELS).max(1);
+        let pixels = within.into_iter().step_by(stride);
+        let pixels: Vec<(Surface, Color)> = pixels
+            .filter_map(|at| Some((seen.at(at)?, level.frame.get(at)?)))
+            .collect();
+        if pixels.len() < LEAST_PIXELS {
+            return None;
+        }
+        let factors = [0, 1, 2].map(|channel| fitted(&pixels, channel));
+        let mut mean = [0.0_f64; 3];
+        for (surface, _) in &pixels {
+            for channel in 0..3 {
+                mean[channel] += surface.basis().dot(&factors[channel]).max(0.0);
+            }
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+        let least = mean.map(|sum| DARKEST * (sum / pixels.len() as f64) as f32);
+        Some(Self { factors, least })
+    }
+
+    fn shade(&self, surface: &Surface) -> Color {
+        let basis = surface.basis();
+        [0, 1, 2].map(|channel| {
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let light = basis.dot(&self.factors[channel]) as f32;
+            surface.color[channel].max(DARKEST_PAINT) * light.max(self.least[channel])
+        })
+    }
+}
+
+fn fitted(pixels: &[(Surface, Color)], channel: usize) -> Basis {
+    let mut factors: Option<Basis> = None;
+    for _ in 0..N_ROUNDS {
+        let mut normal = SMatrix::<f64, N_BASIS, N_BASIS>::zeros();
+        let mut side = Basis::zeros();
+        for (surface, shown) in pixels {
+            let paint = f64::from(surface.color[channel].max(DARKEST_PAINT));
+            let shown = f64::from(shown[channel]);
+            let row = paint * surface.basis();
+            // Errors of the model are a part of the light, those of the picture are noise.
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let noise = f64::from(noise_deviation(shown as f32));
+            let scale = noise.hypot(ROBUST * shown);
+            let excess = factors.map_or(0.0, |factors| (shown - row.dot(&factors)) / scale);
+            let weight = 1.0 / (scale * scale * (1.0 + excess * excess));
+            normal += weight * row * row.transpose();
+            side += weight * shown * row;
+        }
+        let prior = PRIOR * normal[(0, 0)];
+        for order in 1..N_BASIS {
+            normal[(order, order)] += prior;
+        }
+        let Some(factor) = normal.cholesky() else { break };
+        factors = Some(factor.solve(&side));
+    }
+    factors.unwrap_or_else(Basis::zeros)
+}
+
+/// What the toy should look like, over a rectangle of the picture.
+pub(super) struct Shaded<'a> {
+    seen: Seen<'a>,
+    light: &'a Light,
+}
+
+impl Shaded<'_> {
+    /// None where the toy does not cover the pixel's centre.
+    pub(super) fn at(&self, at: IVec2) -> Option<Color> {
+        self.seen.at(at).map(|surface| self.light.shade(&surface))
+    }
+}
+
+/// A texture in linear light, each level half as large as the one before.
+#[derive(Clone, Debug)]
+struct Mipmap {
+    levels: Vec<(IVec2, Vec<Color>)>,
+}
+
+impl Mipmap {
+    fn new(texture: &Texture) -> Self {
+        let table = linear_of_codes();
+        let texels = texture.rgba8_srgb.chunks_exact(4);
+        let texels = texels.map(|texel| [0, 1, 2].map(|channel| table[usize::from(texel[channel])]));
+        let size = IVec2::new(texture.width_px.cast_signed(), texture.height_px.cast_signed());
+        let mut levels = vec![(size, texels.collect::<Vec<Color>>())];
+        while let Some((size, texels)) = levels.last().filter(|(size, _)| size.min_element() > 1) {
+            let half = *size / 2;
+            let mean = |at: IVec2| {
+                let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE]
+                    .map(|step| index_in(*size, 2 * at + step).map_or([0.0; 3], |index| texels[index]));
+                [0, 1, 2].map(|channel| 0.25 * four.iter().map(|texel| texel[channel]).sum::<f32>())
+            };
+            levels.push((half, places(half).map(mean).collect()));
+        }
+        Self { levels }
+    }
+
+    /// In texels.
+    fn size(&self) -> DVec2 {
+        self.levels[0].0.as_dvec2()
+    }
+
+    /// The nearest texel; (0, 0) is the corner of the first one.
+    fn at(&self, uv: DVec2, wraps: [Wrap; 2], level: usize) -> Color {
+        let (size, texels) = &self.levels[level.min(self.levels.len() - 1)];
+        let place = |at: f64, wrap: Wrap, n: i32| {
+            let at = match wrap {
+                Wrap::Repeat => at.rem_euclid(1.0),
+                Wrap::MirroredRepeat => 1.0 - (at.rem_euclid(2.0) - 1.0).abs(),
+                Wrap::ClampToEdge => at,
+            };
+            #[allow(clippy::cast_possible_truncation, reason = "a place in a texture")]
+            let place = (at * f64::from(n)).floor().clamp(0.0, f64::from(n - 1)) as i32;
+            place
+        };
+        let at = IVec2::new(place(uv.x, wraps[0], size.x), place(uv.y, wraps[1], size.y));
+        index_in(*size, at)
+            .and_then(|index| texels.get(index))
+            .copied()
+            .unwrap_or([1.0; 3])
+    }
+}

@@ -1,0 +1,267 @@
+//! The step that brings the outline where the picture has it, with all that is known besides, and how well the pose is known then.
+
+use std::collections::BTreeMap;
+
+use glam::IVec2;
+
+use super::motion::Measured;
+use super::placement::{Information, OFFSET, Placement, SIZE, Unknowns};
+use super::standing::{DEVIATION_M, Standing};
+use crate::report::PoseDeviation;
+use app_scene::scene::Intrinsics;
+
+/// The whole outline may be out of the toy, or within it, by as much, in pixels: one deviation. A halo, or a model that is as much too thin.
+const OFFSET_PX: f64 = 0.1;
+/// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and McClure 1987).
+const ROBUST: f64 = 3.0;
+const LEAST_ROBUST_PX: f64 = 0.1;
+const MOST_ROBUST_PX: f64 = 0.5;
+/// Pieces along the outline that err alike, by halos, textures and what a compressed picture has of them.
+const ALIKE: f64 = 12.0;
+/// A step that the outline does not tell is held back as by this deviation, over the toy's radius (Levenberg 1944).
+const STEP: f64 = 0.2;
+/// Deviation of the logarithm of the size where it is held, and where it is looked for.
+const HELD: f64 = 1e-6;
+const FREE: f64 = 0.02;
+/// Side of the squares of the picture within which residuals err alike, in pixels.
+const BLOCK_PX: i32 = 40;
+/// What deviations are taken for, over those that the blocks tell: there are few of them.
+const OF_BLOCKS: f64 = 2.5;
+/// And, over the root mean square of the outline, what the model itself may be off by.
+const OF_MISFIT: f64 = 0.5;
+
+/// Deviation of the smoothing along the outline, in pixels.
+const SMOOTHED_PX: f64 = 10.0;
+/// Pieces whose normals differ by more, as a cosine, are on another rim.
+const SAME_RIM: f64 = 0.5;
+/// Pieces count in proportion to their precision below that one, in 1/px2, and above it alike.
+const PRECISE: f64 = 50.0;
+
+/// What is known of a toy's pose besides its outline.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub(super) k: &'a Intrinsics,
+    pub(super) radius_m: f64,
+    pub(super) standing: Option<&'a Standing>,
+    /// Whether the size is looked for.
+    pub(super) is_size_open: bool,
+}
+
+/// Pieces of the outline against a placement, with the weights that they have.
+pub(super) struct Balance<'a> {
+    known: Known<'a>,
+    placement: Placement,
+    rows: Vec<Weighted>,
+    information: Information,
+}
+
+struct Weighted {
+    block: IVec2,
+    row: Unknowns,
+    residual_px: f64,
+    weight: f64,
+}
+
+impl<'a> Balance<'a> {
+    pub(super) fn new(measured: &[Measured], placement: &Placement, known: Known<'a>) -> Self {
+        let residual_px = |one: &Measured| one.offset_px - placement.offset_px;
+        let robust_px = robust_px(measured.iter().map(residual_px));
+        let robust = |one: &Measured| 1.0 / (1.0 + (residual_px(one) / robust_px).powi(2)).powi(2);
+        let (mut square, mut total) = (0.0, 0.0);
+        for one in measured {
+            let weight = robust(one) * one.element.length_px;
+            square += weight * one.precision * residual_px(one).powi(2);
+            total += weight;
+        }
+        // No picture is better than its noise.
+        let unit_variance = if total > 0.0 {
+            (square / total).max(1.0)
+        } else {
+            1.0
+        };
+        let rows = measured.iter().map(|one| Weighted {
+            block: one.element.at_px.as_ivec2().div_euclid(IVec2::splat(BLOCK_PX)),
+            row: placement.outward(&one.element, known.k),
+            residual_px: residual_px(one),
+            weight: one.precision * robust(one) * one.element.length_px / (unit_variance * ALIKE),
+        });
+        let mut balance = Self {
+            rows: rows.collect(),
+            information: Information::zeros(),
+            placement: *placement,
+            known,
+        };
+        balance.information = balance.of_outline() + balance.of_priors().0;
+        balance
+    }
+
+    fn of_outline(&self) -> Information {
+        let rows = self.rows.iter();
+        rows.fold(Information::zeros(), |sum, one| {
+            sum + one.weight * one.row * one.row.transpose()
+        })
+    }
+
+    /// What is known besides: its information, and its pull.
+    fn of_priors(&self) -> (Information, Unknowns) {
+        let (mut information, mut pull) = (Information::zeros(), Unknowns::zeros());
+        for rigid in 0..SIZE {
+            information[(rigid, rigid)] += (STEP * self.known.radius_m).powi(-2);
+        }
+        let size = if self.known.is_size_open { FREE } else { HELD };
+        information[(SIZE, SIZE)] += size.powi(-2);
+        pull[SIZE] -= self.placement.size.ln() * size.powi(-2);
+        information[(OFFSET, OFFSET)] += OFFSET_PX.powi(-2);
+        pull[OFFSET] -= self.placement.offset_px * OFFSET_PX.powi(-2);
+        if let Some(Standing {
+            plane,
+            points,
+            heights_m,
+        }) = self.known.standing
+        {
+            for (point, height_m) in points.iter().zip(heights_m) {
+                let now = self.placement.apply(*point);
+                let row = self.placement.row(now, plane.normal);
+                let weight = DEVIATION_M.powi(-2);
+                information += weight * row * row.transpose();
+                pull += weight * (height_m - plane.height_m(now)) * row;
+            }
+        }
+        (information, pull)
+    }
+
+    /// The step in weighted least squares; none where nothing tells it.
+    pub(super) fn step(&self) -> Option<Unknowns> {
+        let outline = self.rows.iter();
+        let outline = outline.fold(Unknowns::zeros(), |sum, one| {
+            sum + one.weight * one.residual_px * one.row
+        });
+        let factor = self.information.cholesky()?;
+        (!self.rows.is_empty()).then(|| factor.solve(&(outline + self.of_priors().1)))
+    }
+
+    /// One deviation of the placement, whose outline has a root mean square of as many pixels: by how much the residuals of one
+    /// part of the picture pull against those of another, and by the misfit.
+    ///
+    /// Source: the sandwich of White 1982, clustered.
+    pub(super) fn deviation(&self, misfit_px: f64, depth_m: f64) -> PoseDeviation {
+        let mut blocks: BTreeMap<[i32; 2], Unknowns> = BTreeMap::new();
+        for one in &self.rows {
+            let pull = blocks.entry(one.block.to_array()).or_insert_with(Unknowns::zeros);
+            *pull += one.weight * one.residual_px * one.row;
+        }
+        let pulls = blocks
+            .values()
+            .fold(self.of_priors().0, |sum, pull| sum + pull * pull.transpose());
+        // It was solved with, so that it has an inverse.
+        let inverse = self
+            .information
+            .try_inverse()
+            .unwrap_or_else(Information::identity);
+        let covariance = inverse * pulls * inverse;
+        let root = |index: usize| OF_BLOCKS * covariance[(index, index)].max(0.0).sqrt();
+        let floor_m = OF_MISFIT * misfit_px * depth_m / self.known.k.fx_px;
+        PoseDeviation {
+            lateral_m: root(3).hypot(root(4)).hypot(floor_m),
+            depth_m: root(5).hypot(floor_m),
+            rotation_rad: root(0).hypot(root(1)).hypot(root(2)).hypot(floor_m) / self.known.radius_m,
+        }
+    }
+}
+
+/// Scale of the weights: what is that much farther than most does not fit.
+fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
+    let mut away_px: Vec<f64> = residuals_px.map(f64::abs).collect();
+    away_px.sort_by(f64::total_cmp);
+    let median_px = away_px.get(away_px.len() / 2).copied().unwrap_or(MOST_ROBUST_PX);
+    (ROBUST * median_px).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX)
+}
+
+/// How well an outline fits a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Misfit {
+    /// Mean robust loss of its pieces, less what it is off by all round, in square pixels.
+    pub(super) loss_px2: f64,
+    /// The length that was measured, in pixels.
+    pub(super) length_px: f64,
+}
+
+impl Misfit {
+    /// Scale of the loss: a piece counts at most the square of it.
+    const ROBUST_PX: f64 = 0.5;
+    /// Evidence counts once for as many pixels along the outline.
+    const EVIDENCE_PX: f64 = 20.0;
+
+    /// Of pieces, once the whole outline is moved out of the toy as far as explains them best and may be.
+    pub(super) fn of(measured: &[Measured]) -> Self {
+        let offset_px = offset_px(measured);
+        let scale = Self::ROBUST_PX * Self::ROBUST_PX;
+        let (mut sum, mut length_px) = (0.0, 0.0);
+        for one in measured {
+            let square = (one.offset_px - offset_px).powi(2);
+            sum += one.element.length_px * scale * square / (scale + square);
+            length_px += one.element.length_px;
+        }
+        Self {
+            loss_px2: if length_px > 0.0 { sum / length_px } else { scale },
+            length_px,
+        }
+    }
+
+    /// Logarithm of how much likelier the picture is with this outline than with another one.
+    pub(super) fn likelier_than(&self, other: &Self) -> f64 {
+        let n = self.length_px.min(other.length_px) / Self::EVIDENCE_PX;
+        // A loss of nothing is that of a picture without noise.
+        let least_px2 = f64::EPSILON;
+        0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln()
+    }
+}
+
+/// How far the outline is out of the toy all round, as far as that may be.
+fn offset_px(measured: &[Measured]) -> f64 {
+    const N_ROUNDS: usize = 4;
+    let mut offset_px = 0.0;
+    for _ in 0..N_ROUNDS {
+        let (mut information, mut pull) = (ALIKE * OFFSET_PX.powi(-2), 0.0);
+        for one in measured {
+            let robust = 1.0 / (1.0 + ((one.offset_px - offset_px) / Misfit::ROBUST_PX).powi(2)).powi(2);
+            let weight = robust * one.precision * one.element.length_px;
+            information += weight;
+            pull += weight * one.offset_px;
+        }
+        offset_px = pull / information;
+    }
+    offset_px
+}
+
+/// The root mean square of what is left of displacements that are smoothed along the outline, in pixels: what a model is wrong by
+/// keeps its sign over centimetres, which halos and compressed pictures do not.
+pub(super) fn smoothed_px(measured: &[Measured]) -> f64 {
+    let offset_px = offset_px(measured);
+    let smooth_px = smoothed(measured)
+        .into_iter()
+        .map(|smooth_px| (smooth_px - offset_px).powi(2));
+    (smooth_px.sum::<f64>() / measured.len().max(1) as f64).sqrt()
+}
+
+/// Displacements of all pieces, in pixels, each the mean of those along the same rim; pieces stand row by row.
+fn smoothed(measured: &[Measured]) -> Vec<f64> {
+    const REACH_PX: f64 = 3.0 * SMOOTHED_PX;
+    let weight = |one: &Measured| one.robust * one.precision / (one.precision + PRECISE);
+    let smooth = measured.iter().enumerate().map(|(index, one)| {
+        let is_near = |other: &&Measured| (other.element.at_px.y - one.element.at_px.y).abs() < REACH_PX;
+        let above = measured[..index].iter().rev().take_while(is_near);
+        let below = measured[index..].iter().take_while(is_near);
+        let (mut sum, mut total) = (0.0, 0.0);
+        for other in above.chain(below) {
+            let square = (one.element.at_px - other.element.at_px).length_squared();
+            if square < REACH_PX * REACH_PX && one.element.normal.dot(other.element.normal) > SAME_RIM {
+                let near = (-0.5 * square / SMOOTHED_PX.powi(2)).exp() * weight(other);
+                sum += near * other.offset_px;
+                total += near;
+            }
+        }
+        if total > 0.0 { sum / total } else { one.offset_px }
+    });
+    smooth.collect()
+}

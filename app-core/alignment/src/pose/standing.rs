@@ -1,0 +1,201 @@
+//! A toy that stands: the points that bear it stay on their plane.
+//!
+//! An outline tells a toy's distance ten times worse than its place beside the view. A table knows it: the lowest points of what stands
+//! on it are on it.
+
+use glam::DVec3;
+
+use crate::report::Stand;
+use crate::shape::Shape;
+
+/// How far the points that bear a toy may be from their plane, in metres: one deviation. Felt pads, soft paws, and a table that is
+/// not quite flat.
+pub(super) const DEVIATION_M: f64 = 1.5e-4;
+/// A toy that leans farther from how it would stand is not meant to stand, in radians.
+const MOST_LEAN_RAD: f64 = 0.12;
+/// Rounds in which the bearing points are exchanged; each goes lower.
+const N_ROUNDS: usize = 64;
+/// How far out the points are that such a search starts from, over the toy's radius, and again how high.
+const FAR: f64 = 10.0;
+/// Points that lie less below a plane, over the toy's radius, lie on it.
+const ON_PLANE: f64 = 1e-6;
+
+/// A plane in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    /// Of unit length, towards the toy.
+    pub(crate) normal: DVec3,
+    /// A point of it.
+    pub(crate) point: DVec3,
+}
+
+impl Plane {
+    /// Distance of a point on the side of the normal, in metres.
+    pub(crate) fn height_m(&self, point: DVec3) -> f64 {
+        self.normal.dot(point - self.point)
+    }
+}
+
+/// The points that bear a toy, where they were given, and how high above the plane they are to be.
+#[derive(Clone, Debug)]
+pub(super) struct Standing {
+    pub(super) plane: Plane,
+    pub(super) points: [DVec3; 3],
+    pub(super) heights_m: [f64; 3],
+}
+
+impl Standing {
+    /// With all three points on the plane; none where a toy would have to lean far, or would stand on nothing that is wide.
+    pub(super) fn on(shape: &Shape, plane: Plane) -> Option<Self> {
+        let points = bearing(shape, &plane)?;
+        Some(Self {
+            plane,
+            points,
+            heights_m: [0.0; 3],
+        })
+    }
+
+    /// With the same points as high as they are given.
+    pub(super) fn as_given(&self) -> Self {
+        Self {
+            heights_m: self.points.map(|point| self.plane.height_m(point)),
+            ..*self
+        }
+    }
+
+    /// How the toy is on the plane once its points are moved.
+    pub(super) fn stand(&self, moved: impl Fn(DVec3) -> DVec3) -> Stand {
+        let feet = self.points.map(moved);
+        let heights_m = feet.map(|foot| self.plane.height_m(foot));
+        let normal = (feet[1] - feet[0])
+            .cross(feet[2] - feet[0])
+            .normalize_or(self.plane.normal);
+        Stand {
+            height_m: heights_m.into_iter().fold(0.0, |most: f64, height_m| {
+                if height_m.abs() > most.abs() {
+                    height_m
+                } else {
+                    most
+                }
+            }),
+            lean_rad: normal.dot(self.plane.normal).abs().min(1.0).acos(),
+        }
+    }
+
+    /// How far the points are from where they are to be, in metres.
+    pub(super) fn away_m(&self) -> f64 {
+        let away = self.points.iter().zip(self.heights_m);
+        away.fold(0.0, |most, (point, height_m)| {
+            most.max((self.plane.height_m(*point) - height_m).abs())
+        })
+    }
+}
+
+/// The three points that a toy rests on once it is put down: of all planes that have no point below them, the one that is highest under
+/// the toy's middle.
+fn bearing(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
+    let (across, along) = plane.normal.any_orthonormal_pair();
+    // In the plane's own frame, the height last.
+    let local: Vec<DVec3> = shape
+        .points
+        .iter()
+        .map(|point| {
+            let from = *point - shape.centre;
+            DVec3::new(from.dot(across), from.dot(along), from.dot(plane.normal))
+        })
+        .collect();
+    let lowest = |tilt: DVec3| -> Option<usize> {
+        let height = |point: &DVec3| point.z - tilt.x * point.x - tilt.y * point.y;
+        let order = |(_, a): &(usize, &DVec3), (_, b): &(usize, &DVec3)| height(a).total_cmp(&height(b));
+        local.iter().enumerate().min_by(order).map(|(index, _)| index)
+    };
+    // A triangle around the middle, far out and above everything: its corners are exchanged for points of the toy.
+    let far_m = FAR * shape.radius_m;
+    let mut corners = [0.0_f64, 1.0, 2.0].map(|third| {
+        let angle = third * std::f64::consts::TAU / 3.0;
+        DVec3::new(far_m * angle.cos(), far_m * angle.sin(), FAR * far_m)
+    });
+    let mut indices: [Option<usize>; 3] = [None; 3];
+    for _ in 0..N_ROUNDS {
+        let Some(tilt) = tilt_of(&corners) else { break };
+        let next = lowest(tilt)?;
+        let below = |point: DVec3| point.z - tilt.x * point.x - tilt.y * point.y;
+        if below(local[next]) >= below(corners[0]) - ON_PLANE * shape.radius_m
+            || indices.contains(&Some(next))
+        {
+            break;
+        }
+        let place = (0..3).find(|place| {
+            let mut exchanged = corners;
+            exchanged[*place] = local[next];
+            is_around_middle(&exchanged)
+        })?;
+        (corners[place], indices[place]) = (local[next], Some(next));
+    }
+    let [Some(a), Some(b), Some(c)] = indices else {
+        return None;
+    };
+    let tilt = tilt_of(&corners)?;
+    let lean_rad = tilt.truncate().length().atan();
+    (lean_rad <= MOST_LEAN_RAD).then(|| [a, b, c].map(|index| shape.points[index]))
+}
+
+/// Rise of the plane through three points along the first two axes; none where it is upright.
+fn tilt_of([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
+    let normal = (*b - *a).cross(*c - *a);
+    let is_upright = normal.z.abs() <= 1e-9 * normal.length();
+    (!is_upright).then(|| DVec3::new(-normal.x / normal.z, -normal.y / normal.z, 0.0))
+}
+
+fn is_around_middle(corners: &[DVec3; 3]) -> bool {
+    let [a, b, c] = corners.map(DVec3::truncate);
+    let turns = [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)];
+    turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use app_scene::geometry::edges::Faces;
+
+    /// A table of four legs that leans by an angle, as a shape of its corners.
+    fn table(lean_rad: f64) -> Shape {
+        let corners = [-1.0, 1.0].into_iter().flat_map(|x| {
+            [-1.0, 1.0]
+                .into_iter()
+                .flat_map(move |z| [0.0, 1.0].map(|y| DVec3::new(0.1 * x, 0.1 * y, 0.1 * z)))
+        });
+        let lean = glam::DQuat::from_axis_angle(DVec3::new(1.0, 0.0, 0.4).normalize(), lean_rad);
+        let points: Vec<DVec3> = corners
+            .map(|corner| lean * (corner - DVec3::Y * 0.05) + DVec3::new(0.3, 0.07, -0.5))
+            .collect();
+        Shape {
+            centre: DVec3::new(0.3, 0.07, -0.5),
+            radius_m: 0.15,
+            faces: Faces::default(),
+            points,
+        }
+    }
+
+    const PLANE: Plane = Plane {
+        normal: DVec3::Y,
+        point: DVec3::ZERO,
+    };
+
+    #[test]
+    fn a_leaning_table_rests_on_three_of_its_feet() {
+        let shape = table(0.08);
+        let standing = Standing::on(&shape, PLANE).unwrap();
+        for point in standing.points {
+            let foot = shape.points.iter().position(|other| *other == point).unwrap();
+            assert_eq!(foot % 2, 0, "{point} is a corner of the top");
+        }
+        assert!(standing.away_m() > 0.02);
+        assert!(standing.as_given().away_m() < 1e-12);
+    }
+
+    #[test]
+    fn what_leans_far_is_not_meant_to_stand() {
+        assert!(Standing::on(&table(0.4), PLANE).is_none());
+    }
+}
