@@ -1,8 +1,7 @@
 //! The work region of the latest view: its plan and its globals.
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
+use crate::gpu::{Buffer, Gpu};
 use crate::model::plan::Plan;
 use crate::passes::globals::{Globals, GlobalsOnDevice};
 
