@@ -31,7 +31,7 @@ fn texels_of_back(stand: &Stand, region: &Region) -> Vec<UVec2> {
     let end = region.size_px.as_dvec2() - 1.0;
     let is_back = |at: DVec2| {
         let texel = at.clamp(DVec2::ZERO, end).as_uvec2();
-        let surface = region.surface_point::<f64>(at);
+        let surface = region.surface_point(at);
         surface.is_some_and(|point| point.receiver == 1) && toys.iter().all(|toy| !toy.at(texel))
     };
     let steps = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ZERO];

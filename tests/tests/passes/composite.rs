@@ -46,7 +46,7 @@ pub(crate) fn check_receiver(run: &Run) {
         .iter()
         .filter(|texel| !hidden.at(**texel))
         .flat_map(|texel| {
-            let expected = receiver_color::<f64>(&run.region, &run.pictures, &shown, *texel);
+            let expected = receiver_color(&run.region, &run.pictures, &shown, *texel);
             let actual = run.picture.at(*texel);
             assert_eq!(actual[3], 255, "alpha at {texel}");
             (0..3).map(move |channel| {
@@ -70,17 +70,17 @@ fn setups_meet_every_branch() {
     type Condition = fn(&Run, UVec2) -> bool;
     let conditions: [(&str, Condition); 4] = [
         ("on a second receiver", |run, texel| {
-            let point = run.region.receiver_point::<f64>(centre_px(texel));
+            let point = run.region.receiver_point(centre_px(texel));
             point.is_some_and(|point| point.receiver == 1)
         }),
         ("beside the receiver", |run, texel| {
-            run.region.receiver_point::<f64>(centre_px(texel)).is_none()
+            run.region.receiver_point(centre_px(texel)).is_none()
         }),
         ("away from every border", |run, texel| {
-            inside_border::<f64>(&run.region, texel) == 1.0
+            inside_border(&run.region, texel) == 1.0
         }),
         ("seen at an inner border", |run, texel| {
-            inside_border::<f64>(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
+            inside_border(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
         }),
     ];
     for (what, is_met) in conditions {

@@ -62,7 +62,7 @@ fn errors(source: &str) -> Errors {
     let photographed = scene.plate.map(|texel| texel.w);
     let told = told(&scene.region, &scene.pictures(0), &photographed, &scene.solution);
     let expected = Raster::from_fn(size, |texel| {
-        let point = scene.region.receiver_point::<f64>(centre_px(texel));
+        let point = scene.region.receiver_point(centre_px(texel));
         point.map_or(DVec4::ZERO, |point| {
             separate(&told, (texel, point.receiver)).extend(1.0)
         })

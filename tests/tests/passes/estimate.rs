@@ -143,9 +143,9 @@ fn a_fault_in_the_completion_is_found() {
 
 /// Whether an estimated pixel is not as smooth as what is around.
 fn is_own(scene: &Scrambled, known: &Known<'_>, color: DVec4, texel: glam::UVec2) -> bool {
-    let Some(point) = scene.region.receiver_point::<f64>(texel.as_dvec2() + 0.5) else {
+    let Some(point) = scene.region.receiver_point(texel.as_dvec2() + 0.5) else {
         return false;
     };
     let (grid, colors) = &known.lit[point.receiver];
-    color.truncate() != grid.value_at::<f64>(colors, point.in_plane)
+    color.truncate() != grid.value_at(colors, point.in_plane)
 }

@@ -37,7 +37,7 @@ fn exposure(core: &Core, stand: &Stand, photo: &Photo, rect: &PixelRect) -> DVec
     let region = stand.region(rect);
     let (mut sum, mut n) = (DVec3::ZERO, 0.0);
     for texel in (0..plate.size().y).flat_map(|y| (0..plate.size().x).map(move |x| UVec2::new(x, y))) {
-        let point = region.receiver_point::<f64>(centre_px(texel));
+        let point = region.receiver_point(centre_px(texel));
         if let Some(point) = point.filter(|_| plate.at(texel).w == 1.0) {
             sum += plate.at(texel).truncate() / photo.plate_at(&region, point);
             n += 1.0;

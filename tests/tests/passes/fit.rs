@@ -52,7 +52,7 @@ fn check_receivers(run: &Run) {
     let mut expected = start(run.region.lights.len());
     for receiver in 0..run.stand.receivers.len() {
         let of_receiver = (receiver, &samples[..]);
-        expected = fit_receiver::<f64>(
+        expected = fit_receiver(
             &run.region,
             of_receiver,
             &expected,
@@ -146,10 +146,10 @@ fn toy() {
             receivers: run.solution.receivers.clone(),
             ..start(run.region.lights.len())
         };
-        let expected = fit_toy::<f64>(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+        let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
         // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
         let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
-            toy_radiance::<f64>(solution, sample.normal, sample.received)
+            toy_radiance(solution, sample.normal, sample.received)
         };
         let pairs = samples.iter().flat_map(|sample| {
             let (actual, expected) = (light(&run.solution, sample), light(&expected, sample));
@@ -167,12 +167,12 @@ fn share_of_the_lights_over_the_receiver() {
         let size = run.direct_fraction.size();
         let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
         let expected = Raster::from_fn(size, |texel| {
-            let Some(point) = run.region.receiver_point::<f64>(centre_px(texel) * scale) else {
+            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
                 return DVec3::ZERO;
             };
             let lights = 0..run.region.lights.len();
             lights
-                .map(|i| run.solution.light_fraction::<f64>(&run.region, i, point))
+                .map(|i| run.solution.light_fraction(&run.region, i, point))
                 .sum()
         });
         for (actual, expected) in run.direct_fraction.texels().iter().zip(expected.texels()) {

@@ -80,9 +80,7 @@ fn a_hand_in_the_new_shadow_stays() {
     let (before, after) = (lights(&stand.physical), lights(&stand.shown));
     let toys = [&stand.physical, &stand.shown].map(|posed| shows_toy(&stand, posed, &stand.whole_image()));
     let is_compared = |texel: UVec2| {
-        let on_hand = region
-            .receiver_point::<f64>(centre_px(texel))
-            .is_some_and(is_hand);
+        let on_hand = region.receiver_point(centre_px(texel)).is_some_and(is_hand);
         let is_changed = (0..2).any(|i| (before[i].at(texel) - after[i].at(texel)).abs() > 0.5);
         on_hand && is_changed && toys.iter().all(|toy| !toy.at(texel))
     };

@@ -50,7 +50,7 @@ fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec
 fn points(region: &Region) -> impl Iterator<Item = (UVec2, ReceiverPoint)> + '_ {
     let size = region.size_px;
     let texels = (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)));
-    texels.filter_map(|texel| Some((texel, region.receiver_point::<f64>(centre_px(texel))?)))
+    texels.filter_map(|texel| Some((texel, region.receiver_point(centre_px(texel))?)))
 }
 
 /// How far inside another camera's picture it shows a point; negative where it does not, or another receiver hides it.
@@ -58,7 +58,7 @@ fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
     let region = stand.region(&stand.whole_image());
     let px = region.receivers[point.receiver].region_px(point.in_plane);
     let seen = px.filter(|px| {
-        let hit = region.receiver_point::<f64>(*px);
+        let hit = region.receiver_point(*px);
         hit.is_some_and(|hit| hit.receiver == point.receiver)
     });
     seen.map_or(-1.0, |px| px.min(region.size_px.as_dvec2() - px).min_element())
@@ -67,9 +67,7 @@ fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
 /// Whether the filter's sixteen texels around a pixel all show one receiver, or that many around.
 fn is_one_receiver(region: &Region, px: DVec2, receiver: usize) -> bool {
     let steps = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ZERO];
-    let mut around = steps
-        .iter()
-        .map(|step| region.receiver_point::<f64>(px + 4.0 * *step));
+    let mut around = steps.iter().map(|step| region.receiver_point(px + 4.0 * *step));
     around.all(|hit| hit.is_some_and(|hit| hit.receiver == receiver))
 }
 
@@ -106,7 +104,7 @@ fn plate_of_another_camera_is_the_place_as_seen_from_here() {
     for (texel, point) in points(&region) {
         let plate_px = whole.receivers[point.receiver].region_px(point.in_plane).unwrap();
         if whole
-            .receiver_point::<f64>(plate_px)
+            .receiver_point(plate_px)
             .is_some_and(|hit| hit.receiver != point.receiver)
         {
             n_hidden += 1;

@@ -37,7 +37,7 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
         let hit = occluder.nearest(origin, direction)?;
         let normal =
             run.stand.physical.normals[run.stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-        let light = toy_radiance::<f64>(&run.solution, normal, run.gbuffer_received.at(*texel));
+        let light = toy_radiance(&run.solution, normal, run.gbuffer_received.at(*texel));
         Some(SeenPaint {
             in_anchor: origin + hit.distance * direction,
             material: hit.triangle / N_TRIANGLES,

@@ -32,8 +32,8 @@ fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (
     let (region, solution) = (region(SIZE, two_bulbs()), truth(2));
     let ambient = 0.95;
     let frame = Raster::from_fn(SIZE, |at| {
-        let point = region.receiver_point::<f64>(at.as_dvec2() + 0.5).unwrap();
-        let model = solution.receiver_model::<f64>(&region, point, ambient, visibility(at));
+        let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
+        let model = solution.receiver_model(&region, point, ambient, visibility(at));
         let color = solution.gain * plate(at) * (model + residual(at));
         if is_hidden(at) { DVec3::X } else { color }
     });
