@@ -1,13 +1,14 @@
 //! Recordings of other programs: what each format is known to do otherwise, one by one.
 
-use std::path::{Path, PathBuf};
-use std::{env, fs, process};
+use std::path::Path;
 
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use desk::files::{BUNDLED_SESSION, Folder};
 use desk::import::{Format, ImportError, Imported, Lacking, parse, read, write, write_transforms};
 use desk::stored::Stored;
 use glam::{DMat4, DQuat, DVec3};
+use harness::bundled_session;
+use harness::temporary::Temporary;
 use measure::random::Random;
 
 const ODOMETRY: &str = "timestamp, frame, x, y, z, qx, qy, qz, qw, fx, fy, cx, cy\n\
@@ -222,24 +223,6 @@ fn mutated(text: &str, random: &mut Random) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A folder that goes with the test.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new(name: &str) -> Self {
-        let folder = env::temp_dir().join(format!("import-{name}-{}", process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Out to nerfstudio's format and in again: cameras and pictures are the same.
 #[test]
 fn the_bundled_session_comes_back_from_nerfstudio() {
@@ -248,7 +231,7 @@ fn the_bundled_session_comes_back_from_nerfstudio() {
     write_transforms(&Stored::open(BUNDLED_SESSION).unwrap(), &there).unwrap();
     let files = Folder::open(&there).unwrap();
     let imported = read(Format::Nerfstudio, &files, &files.paths().unwrap()).unwrap();
-    let given = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let given = bundled_session();
     let error = write("llama", &files, &imported, &Lacking::default(), &back)
         .err()
         .unwrap()

@@ -128,9 +128,7 @@ fn n_parts(compared: &[Vec<usize>]) -> usize {
 #[test]
 fn more_plates_than_are_handled_are_refused_by_name() {
     let plates = vec![plate_of(&around(0, 1), &flat(128)); MAX_SCENE_PLATES + 1];
-    let refused = any_core()
-        .unwrap()
-        .set_scene(scene_with(plates).1, Preset::Balanced);
+    let refused = any_core().set_scene(scene_with(plates).1, Preset::Balanced);
     let Err(CoreError::Input(InputError { field, reason })) = refused else {
         panic!("{refused:?}");
     };

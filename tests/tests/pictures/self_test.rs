@@ -1,11 +1,8 @@
 //! The core's self-test: every preset passes it here, and what a device may do wrong does not.
 
-use app_core::Core;
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::self_test::{self, Difference, SIZE_PX, SelfTestError};
-use app_core::wgpu;
 
 /// A picture whose pixels are made of those of another.
 fn changed(picture: &Image, pixel: impl Fn(usize, usize) -> [u8; 4]) -> Image {
@@ -105,9 +102,7 @@ fn faults(picture: &Image) -> Vec<(&'static str, Image)> {
 
 #[test]
 fn every_preset_passes_and_no_fault_does() {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    let mut core = pollster::block_on(opened).unwrap();
+    let mut core = harness::open_core();
     for &preset in Preset::ALL {
         let picture = self_test::render(&mut core, preset).unwrap();
         let difference = self_test::check(&picture, preset);

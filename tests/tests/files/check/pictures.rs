@@ -3,11 +3,12 @@
 use std::fs;
 
 use desk::files::SESSION_FILE;
+use harness::temporary::Temporary;
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{DynamicImage, ImageEncoder};
 use serde_json::json;
 
-use crate::check::{Temporary, wrong};
+use crate::check::wrong;
 
 /// Columns of matrices to XYZ under D50: sRGB's as the profile of IEC 61966-2-1 has them, and Display P3's as Apple's.
 const SRGB: [[f64; 3]; 3] = [

@@ -1,15 +1,12 @@
 //! Starts that come to no end lead to the simplest preset, and back from there.
 
-use app_core::Core;
 use app_core::app::{
     App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent,
     Simplified, UserAction, WorkCommand,
 };
-use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
 use app_core::preset::Preset;
-use app_core::wgpu;
 
 use crate::app::world;
 
@@ -182,13 +179,7 @@ const SCREEN: Screen = Screen {
 };
 
 fn open_live() -> Live {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    Live::new(
-        pollster::block_on(opened).unwrap(),
-        world::toy(),
-        Preset::Balanced,
-    )
+    Live::new(harness::open_core(), world::toy(), Preset::Balanced)
 }
 
 /// What is kept once an app has compiled its preset.

@@ -3,16 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use app_core::Core;
 use app_core::app::{GraphicsState, Permission, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
 use app_core::frame::Clock;
-use app_core::gpu::AdapterChoice;
 use app_core::interface::{Insets, Screen};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::profile::{FRAME, PROCESSOR};
-use app_core::wgpu;
 use glam::DVec2;
 
 use crate::app::world;
@@ -48,10 +45,7 @@ fn deliver(live: &mut Live, id: u64, age_ms: Option<f64>) {
 
 /// An app whose toy moves, and the clock that it is timed by, in milliseconds.
 fn playing() -> (Live, Arc<AtomicU64>) {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    let core = pollster::block_on(opened).unwrap();
-    let mut live = Live::new(core, world::toy(), Preset::Flat);
+    let mut live = Live::new(harness::open_core(), world::toy(), Preset::Flat);
     let now_ms = Arc::new(AtomicU64::new(0));
     let clock = Arc::clone(&now_ms);
     live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use app_core::preset::Preset;
-use app_core::session::{Capture, GroundTruth};
+use app_core::session::GroundTruth;
 use app_core::toy::{Toy, ToyWarning};
-use desk::files::{BUNDLED_SESSION, Folder};
+use harness::bundled_session;
 
 use crate::core::bundled::{SHRINK, core, first_input, picture_of, scene};
 use crate::core::file::File;
@@ -26,7 +26,7 @@ pub(crate) fn picture(toy: Toy, preset: Preset) -> Vec<u8> {
 
 /// Whether each pixel lies in the shown toy.
 pub(crate) fn is_toy() -> Vec<bool> {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     let mask = session.truth(0).unwrap().unwrap().mask;
     let step = SHRINK as usize;
     let rows = mask.rgba8.chunks_exact(4 * mask.width_px as usize).step_by(step);

@@ -3,13 +3,13 @@
 use app_core::Core;
 use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::{BALANCED, Preset};
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::plan::Plan;
 use app_pipeline::plan::{Change, SceneFacts};
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::UVec2;
+use harness::bundled_session;
 use measure::bench::{FrameKind, with_new};
 
 /// Sizes of regions, from a pixel to more than any camera.
@@ -74,7 +74,7 @@ fn ran(core: &mut Core, input: &FrameInput) -> Ran {
 
 /// A core that counts frames of the bundled session, and the first of them.
 fn counting(preset: Preset, has_plates: bool) -> (Core, FrameInput) {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     let mut scene = session.scene().clone();
     if !has_plates {
         scene.plates.clear();
