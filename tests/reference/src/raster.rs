@@ -11,13 +11,17 @@ pub struct Raster<T> {
     texels: Vec<T>,
 }
 
+/// All texels of a rectangle, row by row.
+pub fn texels_of(size: UVec2) -> impl Iterator<Item = UVec2> {
+    (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)))
+}
+
 impl<T: Copy> Raster<T> {
     /// Asks `value` for each texel.
     pub fn from_fn(size: UVec2, mut value: impl FnMut(UVec2) -> T) -> Self {
-        let rows = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
         Self {
             size,
-            texels: rows.map(&mut value).collect(),
+            texels: texels_of(size).map(&mut value).collect(),
         }
     }
 

@@ -5,6 +5,7 @@ use app_core::scene::{Image, Light};
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use reference::model::{ReceiverPoint, centre_px};
+use reference::raster::texels_of;
 use reference::visibility::visibility_map;
 
 use crate::composite::shows_toy;
@@ -44,7 +45,7 @@ fn is_hand(point: ReceiverPoint) -> bool {
 
 /// Mean difference of codes where `is_compared`.
 fn difference(a: &Image, b: &Image, is_compared: impl Fn(UVec2) -> bool) -> f64 {
-    let texels = (0..a.height_px).flat_map(|y| (0..a.width_px).map(move |x| UVec2::new(x, y)));
+    let texels = texels_of(UVec2::new(a.width_px, a.height_px));
     let (mut sum, mut n) = (0.0, 0.0);
     for texel in texels.filter(|texel| is_compared(*texel)) {
         let codes = [a, b].map(|image| texel_of(image, texel));

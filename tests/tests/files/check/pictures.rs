@@ -131,20 +131,16 @@ fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     let mut bytes = png(&photo(), None);
     for (name, data) in chunks {
         let named = [&name[..], data].concat();
-        let chunk = [&number(data.len())[..], &named, &crc(&named).to_be_bytes()].concat();
+        let chunk = [
+            &number(data.len())[..],
+            &named,
+            &crc32fast::hash(&named).to_be_bytes(),
+        ]
+        .concat();
         // Behind the header.
         bytes.splice(33..33, chunk);
     }
     bytes
-}
-
-/// Source: PNG specification (W3C, third edition), annex D.
-fn crc(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc: u32, _| {
-            (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 }
-        })
-    })
 }
 
 /// What is said of pictures in a session that has them as its frames, but for what their missing toy brings about.

@@ -7,7 +7,7 @@ use reference::fill::fill;
 use reference::grid::{Cell, Taken, accumulate};
 use reference::lit::pool;
 use reference::model::{Pictures, Region, Solution};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 use crate::references::flat::{grid, region, scatter, truth, two_bulbs};
 
@@ -48,7 +48,7 @@ fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (
 }
 
 fn texels() -> impl Iterator<Item = UVec2> {
-    (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| UVec2::new(x, y)))
+    texels_of(SIZE)
 }
 
 /// A uniform place is found as it is, in the light and in shadow, and under the toy.
