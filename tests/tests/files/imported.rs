@@ -142,40 +142,17 @@ fn nerfstudio_has_rows_and_z_up_and_its_own_intrinsics() {
 
 #[test]
 fn errors_name_file_field_and_reason() {
+    #[rustfmt::skip] // One case a line.
     let cases = [
-        (
-            stray(&ODOMETRY.replace("100.050, 000002, 0.1", "100.050, 000002, far")),
-            "odometry.csv (line 4, x): \"far\" is not a finite number",
-        ),
-        (
-            stray(&ODOMETRY.replace("0.3, 1.0, 0.0,", "0.3, 0.0, 0.0,")),
-            "odometry.csv (line 3, qw): the quaternion has no direction",
-        ),
-        (
-            stray(&ODOMETRY.replace("000003, 0.1", "000003, inf")),
-            "odometry.csv (line 5, x): \"inf\" is not a finite number",
-        ),
-        (
-            record3d(&METADATA.replace(",1,2,3]", ",1,2]")),
-            "metadata (poses[1]): 6 numbers, 7 are needed",
-        ),
+        (stray(&ODOMETRY.replace("100.050, 000002, 0.1", "100.050, 000002, far")), "odometry.csv (line 4, x): \"far\" is not a finite number"),
+        (stray(&ODOMETRY.replace("0.3, 1.0, 0.0,", "0.3, 0.0, 0.0,")), "odometry.csv (line 3, qw): the quaternion has no direction"),
+        (stray(&ODOMETRY.replace("000003, 0.1", "000003, inf")), "odometry.csv (line 5, x): \"inf\" is not a finite number"),
+        (record3d(&METADATA.replace(",1,2,3]", ",1,2]")), "metadata (poses[1]): 6 numbers, 7 are needed"),
         (record3d("{}"), "metadata (the file): missing field `poses`"),
-        (
-            nerfstudio(&TRANSFORMS.replace("OPENCV", "OPENCV_FISHEYE")),
-            "transforms.json (camera_model): \"OPENCV_FISHEYE\": only pinholes",
-        ),
-        (
-            nerfstudio(&TRANSFORMS.replace("\"p2\":0", "\"p2\":0.1")),
-            "transforms.json (p2): \"p2 = 0.1\": only pinholes",
-        ),
-        (
-            nerfstudio(&TRANSFORMS.replace("[0,0,1,6]", "[0,0,1]")),
-            "transforms.json (frames[1].transform_matrix): 3 numbers, 4 are needed",
-        ),
-        (
-            parse(Format::Record3d, [METADATA, ""], &[]),
-            "metadata (the frames): no frame with a pose has a picture",
-        ),
+        (nerfstudio(&TRANSFORMS.replace("OPENCV", "OPENCV_FISHEYE")), "transforms.json (camera_model): \"OPENCV_FISHEYE\": only pinholes"),
+        (nerfstudio(&TRANSFORMS.replace("\"p2\":0", "\"p2\":0.1")), "transforms.json (p2): \"p2 = 0.1\": only pinholes"),
+        (nerfstudio(&TRANSFORMS.replace("[0,0,1,6]", "[0,0,1]")), "transforms.json (frames[1].transform_matrix): 3 numbers, 4 are needed"),
+        (parse(Format::Record3d, [METADATA, ""], &[]), "metadata (the frames): no frame with a pose has a picture"),
     ];
     for (result, expected) in cases {
         let error = result.err().map(|error| error.to_string()).unwrap_or_default();

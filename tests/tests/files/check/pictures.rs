@@ -170,43 +170,16 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
         .into_iter()
         .flat_map(u32::to_be_bytes)
         .collect();
+    #[rustfmt::skip] // One case a line.
     let cases: [(&str, Vec<u8>, &[&str]); 8] = [
-        (
-            "turned.jpg",
-            jpeg(None, Some(TURNED)),
-            &["orientation is 6", "turn its pixels"],
-        ),
-        (
-            "deep.png",
-            png(&DynamicImage::new_rgb16(2, 2), None),
-            &["16 bits a channel", "8 bits"],
-        ),
-        (
-            "wide.jpg",
-            jpeg(Some(wide.clone()), None),
-            &["\"Display P3\"", "convert it to sRGB"],
-        ),
+        ("turned.jpg", jpeg(None, Some(TURNED)), &["orientation is 6", "turn its pixels"]),
+        ("deep.png", png(&DynamicImage::new_rgb16(2, 2), None), &["16 bits a channel", "8 bits"]),
+        ("wide.jpg", jpeg(Some(wide.clone()), None), &["\"Display P3\"", "convert it to sRGB"]),
         ("wide.png", png(&photo(), Some(wide)), &["\"Display P3\""]),
-        (
-            "power.png",
-            png(&photo(), Some(icc("old", &SRGB, parametric(&[1.8])))),
-            &["\"old\""],
-        ),
-        (
-            "cicp.png",
-            with_chunks(&[(b"cICP", &[12, 13, 0, 1])]),
-            &["Display P3"],
-        ),
-        (
-            "gama.png",
-            with_chunks(&[(b"gAMA", &100_000_u32.to_be_bytes())]),
-            &["gAMA [100000]"],
-        ),
-        (
-            "chrm.png",
-            with_chunks(&[(b"cHRM", &chrm)]),
-            &["cHRM [31270, 32900, 68000"],
-        ),
+        ("power.png", png(&photo(), Some(icc("old", &SRGB, parametric(&[1.8])))), &["\"old\""]),
+        ("cicp.png", with_chunks(&[(b"cICP", &[12, 13, 0, 1])]), &["Display P3"]),
+        ("gama.png", with_chunks(&[(b"gAMA", &100_000_u32.to_be_bytes())]), &["gAMA [100000]"]),
+        ("chrm.png", with_chunks(&[(b"cHRM", &chrm)]), &["cHRM [31270, 32900, 68000"]),
     ];
     let pictures: Vec<(&str, Vec<u8>)> = cases
         .iter()
@@ -226,32 +199,18 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
 #[test]
 fn what_is_srgb_in_other_words_is_not() {
     let gama = |value: u32| value.to_be_bytes();
+    #[rustfmt::skip] // One picture a line.
     let pictures = [
         ("plain.png", png(&photo(), None)),
         ("plain.jpg", jpeg(None, None)),
-        (
-            "upright.jpg",
-            jpeg(None, Some(&[&TURNED[..19], &[1], &TURNED[20..]].concat())),
-        ),
-        (
-            "parametric.jpg",
-            jpeg(Some(icc("mine", &SRGB, parametric(&CURVE))), None),
-        ),
+        ("upright.jpg", jpeg(None, Some(&[&TURNED[..19], &[1], &TURNED[20..]].concat()))),
+        ("parametric.jpg", jpeg(Some(icc("mine", &SRGB, parametric(&CURVE))), None)),
         ("sampled.png", png(&photo(), Some(icc("mine", &SRGB, sampled())))),
-        (
-            "power.png",
-            png(&photo(), Some(icc("mine", &SRGB, parametric(&[2.2])))),
-        ),
+        ("power.png", png(&photo(), Some(icc("mine", &SRGB, parametric(&[2.2]))))),
         ("gama.png", with_chunks(&[(b"gAMA", &gama(45_455))])),
         // What comes first in the order of the specification counts.
-        (
-            "srgb.png",
-            with_chunks(&[(b"gAMA", &gama(100_000)), (b"sRGB", &[0])]),
-        ),
-        (
-            "cicp.png",
-            with_chunks(&[(b"cICP", &[1, 13, 0, 1]), (b"gAMA", &gama(100_000))]),
-        ),
+        ("srgb.png", with_chunks(&[(b"gAMA", &gama(100_000)), (b"sRGB", &[0])])),
+        ("cicp.png", with_chunks(&[(b"cICP", &[1, 13, 0, 1]), (b"gAMA", &gama(100_000))])),
     ];
     assert_eq!(said(&pictures), Vec::<String>::new());
 }

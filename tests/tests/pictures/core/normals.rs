@@ -57,28 +57,13 @@ pub(crate) fn rmse_where(actual: &[u8], expected: &[u8], is_counted: impl Fn(usi
 fn broken_normals_look_as_good_ones_do() {
     let zero = |_| [0.0; 3];
     let all = usize::MAX;
+    #[rustfmt::skip] // One case a line.
     let cases = [
         ("zero", File::open().change_normals(all, zero), "no length"),
-        (
-            "zero in one part",
-            File::open().change_normals(1, zero),
-            "no length",
-        ),
-        (
-            "inverted",
-            File::open().change_normals(all, inverted),
-            "pointed into",
-        ),
-        (
-            "inverted in one part",
-            File::open().change_normals(1, inverted),
-            "pointed into",
-        ),
-        (
-            "inside out",
-            File::open().change_normals(all, inverted).turn_faces(),
-            "faced inwards",
-        ),
+        ("zero in one part", File::open().change_normals(1, zero), "no length"),
+        ("inverted", File::open().change_normals(all, inverted), "pointed into"),
+        ("inverted in one part", File::open().change_normals(1, inverted), "pointed into"),
+        ("inside out", File::open().change_normals(all, inverted).turn_faces(), "faced inwards"),
         ("faces turned around", File::open().turn_faces(), "faced inwards"),
     ];
     for preset in [Preset::Balanced, Preset::Best] {
