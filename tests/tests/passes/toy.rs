@@ -15,27 +15,12 @@ struct BoxPart {
     color: [f32; 3],
 }
 
+#[rustfmt::skip] // One part a line.
 const PARTS: [BoxPart; 4] = [
-    BoxPart {
-        centre_m: [-0.03, 0.025, 0.0],
-        half_m: [0.012, 0.025, 0.02],
-        color: [0.5, 0.35, 0.2],
-    },
-    BoxPart {
-        centre_m: [0.03, 0.025, 0.0],
-        half_m: [0.012, 0.025, 0.02],
-        color: [0.5, 0.35, 0.2],
-    },
-    BoxPart {
-        centre_m: [0.0, 0.065, 0.0],
-        half_m: [0.05, 0.02, 0.025],
-        color: [0.25, 0.45, 0.6],
-    },
-    BoxPart {
-        centre_m: [0.045, 0.1, 0.0],
-        half_m: [0.02, 0.02, 0.02],
-        color: [0.6, 0.5, 0.15],
-    },
+    BoxPart { centre_m: [-0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
+    BoxPart { centre_m: [0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
+    BoxPart { centre_m: [0.0, 0.065, 0.0], half_m: [0.05, 0.02, 0.025], color: [0.25, 0.45, 0.6] },
+    BoxPart { centre_m: [0.045, 0.1, 0.0], half_m: [0.02, 0.02, 0.02], color: [0.6, 0.5, 0.15] },
 ];
 
 /// Base colour of a triangle of the toy, linear; each box has twelve.

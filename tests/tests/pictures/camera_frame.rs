@@ -114,27 +114,12 @@ fn every_layout_is_the_same_picture() {
         row_stride: 12,
         pixel_stride: 2,
     });
+    #[rustfmt::skip] // One layout a line.
     let layouts = [
-        (
-            "I420",
-            Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601),
-        ),
-        (
-            "NV12",
-            Planes::nv12(SIZE_PX, (&luma, 16), (&blue_red, 12), FULL_601),
-        ),
-        (
-            "NV21",
-            Planes::nv21(SIZE_PX, (&luma, 16), (&red_blue, 12), FULL_601),
-        ),
-        (
-            "as Android's Image has NV12, each plane a byte short",
-            Planes {
-                blue: strided[0],
-                red: strided[1],
-                ..Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601)
-            },
-        ),
+        ("I420", Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601)),
+        ("NV12", Planes::nv12(SIZE_PX, (&luma, 16), (&blue_red, 12), FULL_601)),
+        ("NV21", Planes::nv21(SIZE_PX, (&luma, 16), (&red_blue, 12), FULL_601)),
+        ("as Android's Image has NV12, each plane a byte short", Planes { blue: strided[0], red: strided[1], ..Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601) }),
     ];
     let expected = PlanarImage::new(&layouts[0].1).unwrap();
     for (name, planes) in &layouts {
