@@ -167,15 +167,22 @@ fn the_published_method_runs_its_passes_in_this_order() {
 /// A new picture changes the colours alone; if that is the same, too, nothing runs.
 #[test]
 fn a_paused_toy_is_not_drawn_again() {
-    for (preset, colours) in [
-        (Preset::Balanced, "fit fit_solve tint tint_fill toy composite"),
-        (Preset::Paper, "plate search box_filter retarget"),
+    let of_paper = "warp pcss search box_filter retarget";
+    for (preset, colours, all) in [
+        (
+            Preset::Balanced,
+            "fit fit_solve tint tint_fill toy composite",
+            DRAWN,
+        ),
+        (Preset::Paper, "plate search box_filter retarget", of_paper),
     ] {
         let (mut core, input) = counting(preset, true);
         ran(&mut core, &input);
         assert_eq!(ran(&mut core, &input), expected(Change::Pose, "", ""));
         let next = with_new(&input, FrameKind::Picture);
         assert_eq!(ran(&mut core, &next), expected(Change::Picture, "", colours));
+        let aside = with_new(&next, FrameKind::View);
+        assert_eq!(ran(&mut core, &aside).1[1], all);
     }
 }
 
