@@ -40,13 +40,12 @@ pub(crate) use meter::Memory;
 pub(crate) use pass_run::{PassGroup, PassRun, PassTime};
 pub(crate) use pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, Stream, nearest_surface};
 pub(crate) use recorder::{
-    Attachment, Group, Recorded, Recorder, Render, cleared, cleared_to, discarded, loaded, n_pixels,
-    resolved, sampled,
+    Attachment, Group, Recorded, Recorder, Render, cleared, loaded, n_pixels, resolved,
 };
 pub(crate) use samplers::Sampler;
 pub(crate) use shader::{Mirrors, Shader, mirrors, shader};
 pub(crate) use shared::{Mat3Columns, shared_struct};
 pub(crate) use stages::{Clock, StageTime, Stages};
-pub(crate) use texture::{Texture, TextureLayers, TextureView, fractions, half_float, picture_sampler};
+pub(crate) use texture::{Texture, TextureLayers, TextureView, half_float, picture_sampler};
 pub(crate) use timer::Timer;
 pub(crate) use work::Work;

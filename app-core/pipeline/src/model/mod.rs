@@ -11,7 +11,9 @@ pub mod state;
 
 use glam::Vec4;
 
-use crate::gpu::{Gpu, PassGroup, Recorder};
+use crate::gpu::context::Gpu;
+use crate::gpu::pass_run::PassGroup;
+use crate::gpu::recorder::Recorder;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::frame::{FramePath, FrameTargets};

@@ -2,7 +2,8 @@
 
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
-use crate::gpu::{Gpu, GpuError, Texture};
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::texture::Texture;
 use crate::model::Model;
 use crate::model::capture::appearance::source_texel;
 use crate::model::capture::validity::FAR_MARKS;

@@ -1,7 +1,8 @@
 //! The work region of the latest view: its plan and its globals.
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::{Buffer, Gpu};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
 use crate::model::plan::Plan;
 use crate::passes::globals::{Globals, GlobalsOnDevice};
 

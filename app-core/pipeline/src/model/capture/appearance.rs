@@ -3,10 +3,13 @@
 use glam::IVec2;
 use wgpu::{Color, TextureFormat};
 
-use crate::gpu::{
-    Buffer, Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Mirrors, Recorder, Shader, Slot, Texture,
-    TextureView, cleared, cleared_to, mirrors, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::{Recorder, cleared, cleared_to};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer;
 use crate::model::capture::gbuffer::{BASE_FORMAT, RECEIVED_FORMAT};
 use crate::model::plan::Plan;

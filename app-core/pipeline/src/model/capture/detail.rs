@@ -2,7 +2,12 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::{Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Shader, Slot, Texture, TextureView, shader};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::Observed;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};

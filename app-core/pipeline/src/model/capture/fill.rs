@@ -1,6 +1,11 @@
 //! `fill`: the cells that the toy hides, from those around, by pull-push.
 
-use crate::gpu::{Buffer, Compute, ComputeSpec, GROUP_PASS, Gpu, Recorder, Shader, Slot, shader};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
 use crate::model::state::grids::Grids;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 

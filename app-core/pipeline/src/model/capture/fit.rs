@@ -2,10 +2,14 @@
 
 use wgpu::BufferUsages;
 
-use crate::gpu::{
-    Buffer, Compute, ComputeSpec, GROUP_PASS, Gpu, Mirrors, Recorder, Resource, Shader, Slot, TextureView,
-    mirrors, n_pixels, shader, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::TextureView;
 use crate::model::capture::Observed;
 use crate::model::capture::gbuffer;
 use crate::model::plan::{MAX_FIT_ROWS, Plan};

@@ -1,8 +1,11 @@
 //! `fit_solve`: the solution of the normal equations that `fit` summed, with weak priors.
 
-use crate::gpu::{
-    Buffer, Compute, ComputeSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Resource, Shader, Slot, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
 use crate::model::capture::fit::FitStep;
 use crate::model::state::SceneState;
 use crate::model::state::solution::{PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};

@@ -3,9 +3,13 @@
 use glam::Vec3;
 use wgpu::{Face, StoreOp, TextureFormat};
 
-use crate::gpu::{
-    Buffer, Draw, DrawSpec, GROUP_SCENE, Gpu, Recorder, Shader, Texture, cleared, nearest_surface, shader,
-};
+use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
+use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::Texture;
 use crate::model::lighting::self_shadow;
 use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;

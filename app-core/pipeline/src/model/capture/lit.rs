@@ -1,6 +1,9 @@
 //! `lit`: colour of the lit receivers, pooled on coarse grids.
 
-use crate::gpu::{Gpu, Recorder, Shader, Slot, shader};
+use crate::gpu::bindings::Slot;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
 use crate::model::capture::Observed;
 use crate::model::capture::pool::{Pool, PoolGrids, Taken};
 use crate::model::plan::Plan;

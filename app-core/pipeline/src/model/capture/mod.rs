@@ -2,7 +2,9 @@
 
 pub(crate) mod pool;
 
-use crate::gpu::{Gpu, Recorder, Texture, TextureView};
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::fit::{Subject, Task};
 use crate::model::capture::pool::{PoolGrids, Taken};
 use crate::model::lighting;

@@ -1,9 +1,13 @@
 //! Pooling of pictures in the cells of coarse grids, for `lit` and `residual`.
 
-use crate::gpu::{
-    Buffer, Compute, ComputeSpec, GROUP_PASS, Gpu, Mirrors, Recorder, Resource, Shader, Slot, TextureView,
-    mirrors, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Mirrors, Shader, mirrors};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::TextureView;
 use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::passes::pictures::ByForm;

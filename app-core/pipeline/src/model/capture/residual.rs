@@ -1,6 +1,10 @@
 //! `residual`: residual of the model, pooled on coarse grids.
 
-use crate::gpu::{Gpu, Recorder, Shader, Slot, TextureView, shader};
+use crate::gpu::bindings::Slot;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::TextureView;
 use crate::model::capture::Observed;
 use crate::model::capture::pool::{Pool, PoolGrids, Taken};
 use crate::model::state::grids::Grids;

@@ -1,8 +1,11 @@
 //! `tint`: shown and expected colours of the toy's visible paint, summed in cells.
 
-use crate::gpu::{
-    Compute, ComputeSpec, GROUP_PASS, Gpu, Recorder, Resource, Shader, Slot, TextureView, n_pixels, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::{Recorder, n_pixels};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::TextureView;
 use crate::model::capture::gbuffer;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};

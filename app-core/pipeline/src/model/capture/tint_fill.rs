@@ -1,6 +1,10 @@
 //! `tint_fill`: tints of the toy's paint, filled where no camera has seen it.
 
-use crate::gpu::{Compute, ComputeSpec, GROUP_PASS, Gpu, Recorder, Shader, Slot, shader};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Compute, ComputeSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
 use crate::model::state::tints::Tints;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 

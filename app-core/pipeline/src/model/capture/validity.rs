@@ -2,9 +2,12 @@
 
 use wgpu::{Color, TextureFormat};
 
-use crate::gpu::{
-    Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Shader, Slot, Texture, TextureView, cleared_to, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::{Recorder, cleared_to};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::plan::Plan;
 
 pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [BLEED_PX]);

@@ -1,8 +1,11 @@
 //! `withhold`: validity mask without the real shadow, to measure its reconstruction.
 
-use crate::gpu::{
-    Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Shader, Slot, Texture, TextureView, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SCENE_SLOTS, Scene};

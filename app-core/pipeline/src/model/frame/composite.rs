@@ -2,10 +2,15 @@
 
 use wgpu::StoreOp;
 
-use crate::gpu::{
-    Buffer, Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Resource, Sampler, Shader, Slot, Texture, TextureView,
-    cleared, shader, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::samplers::Sampler;
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::region_parts::RegionParts;
 use crate::model::frame::toy;

@@ -2,10 +2,13 @@
 
 use wgpu::{BlendOperation, CompareFunction, TextureFormat, VertexFormat};
 
-use crate::gpu::{
-    DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Mirrors, Recorder, Resource, Shader, Slot, Stream, Texture,
-    cleared, mirrors, shader, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{DrawSpec, Stream};
+use crate::gpu::recorder::{Recorder, cleared};
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, ordered};

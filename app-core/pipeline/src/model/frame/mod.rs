@@ -3,7 +3,8 @@
 pub(crate) mod region_parts;
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::{Gpu, Recorder};
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
 use crate::model::capture::CaptureTargets;
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::lighting;

@@ -3,9 +3,12 @@
 use glam::Vec3;
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
-use crate::gpu::{
-    Draw, DrawSpec, GROUP_SCENE, Gpu, Recorder, Shader, Stream, Texture, nearest_surface, sampled, shader,
-};
+use crate::gpu::bindings::GROUP_SCENE;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::{Recorder, sampled};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::globals::GLOBALS_GROUP;

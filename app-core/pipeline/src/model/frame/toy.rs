@@ -4,10 +4,12 @@ use glam::{Vec2, Vec3};
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::{
-    Attachment, Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Resource, Shader, Slot, Stream, Texture,
-    TextureView, discarded, nearest_surface, sampled, shader,
-};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow;

@@ -5,7 +5,9 @@ use glam::{UVec2, Vec4};
 
 use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::geometry::tiles::Tiles;
-use crate::gpu::{Gpu, Recorder, Texture};
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
 use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
 use crate::passes::globals::GlobalsOnDevice;

@@ -5,10 +5,14 @@ use glam::{UVec2, Vec4};
 use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::{
-    Buffer, Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Shader, Slot, Stream, Texture,
-    cleared_to, fractions, half_float, shader, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
+use crate::gpu::recorder::{Recorder, cleared_to};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::{Texture, fractions, half_float};
 use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS_GROUP, GlobalsOnDevice};

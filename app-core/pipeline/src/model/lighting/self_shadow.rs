@@ -4,10 +4,14 @@ use glam::{UVec2, Vec4};
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::geometry::shadow_atlas::ShadowAtlas;
-use crate::gpu::{
-    Buffer, Draw, DrawSpec, Gpu, Mirrors, Recorder, Resource, Shader, Slot, Stream, Texture, mirrors,
-    nearest_surface, shader, shared_struct,
-};
+use crate::gpu::bindings::{Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
 use app_scene::geometry::bounds::Sphere;

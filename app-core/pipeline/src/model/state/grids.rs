@@ -3,7 +3,10 @@
 use wgpu::BufferUsages;
 
 use crate::geometry::rect::PlaneRect;
-use crate::gpu::{Buffer, Gpu, Mirrors, mirrors, shared_struct};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::shader::{Mirrors, mirrors};
+use crate::gpu::shared::shared_struct;
 use app_scene::scene::MAX_RECEIVERS;
 
 /// WGSL part of the grids.

@@ -6,7 +6,9 @@ pub mod tints;
 
 use wgpu::BufferUsages;
 
-use crate::gpu::{Buffer, Gpu, Recorder};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::Gpu;
+use crate::gpu::recorder::Recorder;
 use crate::model::state::grids::{CellBuffers, Grids};
 use crate::model::state::solution::accumulated_bytes;
 use crate::model::state::tints::Tints;

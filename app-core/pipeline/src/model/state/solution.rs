@@ -1,8 +1,11 @@
 //! The solution of the fits, and the sums that it is solved from.
 
-use crate::gpu::{
-    Buffer, GROUP_SCENE, Group, Mirrors, Pipeline, Recorder, Resource, Slot, mirrors, shared_struct,
-};
+use crate::gpu::bindings::{GROUP_SCENE, Resource, Slot};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::pipeline::Pipeline;
+use crate::gpu::recorder::{Group, Recorder};
+use crate::gpu::shader::{Mirrors, mirrors};
+use crate::gpu::shared::shared_struct;
 use crate::passes::globals::Globals;
 use crate::passes::pictures::{Encoding, Frame};
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};

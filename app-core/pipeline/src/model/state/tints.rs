@@ -2,7 +2,10 @@
 
 use wgpu::BufferUsages;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Mirrors, mirrors, shared_struct};
+use crate::gpu::buffer::Buffer;
+use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::shader::{Mirrors, mirrors};
+use crate::gpu::shared::shared_struct;
 use app_scene::geometry::bounds::Sphere;
 
 /// WGSL part of the grids.
