@@ -184,7 +184,7 @@ fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
         let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
         let columns = toy_columns(normal, received, &known.intensities);
         let lights = columns.into_iter().zip(lit);
-        let light: DVec3 = lights.map(|(column, lit)| DVec3::from(column) * lit).sum();
+        let light: DVec3 = lights.map(|(column, lit)| column * lit).sum();
         ToySample {
             frame: base * light,
             base,
