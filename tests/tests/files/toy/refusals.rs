@@ -28,7 +28,7 @@ fn changed(name: &'static str, words: &[&'static str], change: impl Fn(&mut Glb)
     broken(name, words, glb)
 }
 
-/// A triangle, with another value at a place of its tree.
+/// A triangle, with another value at a place of its tree, which is a field's.
 fn set(name: &'static str, words: &[&'static str], place: &str, value: Value) -> Refusal {
     changed(name, words, |glb| {
         let (parent, key) = place.rsplit_once('/').unwrap();
@@ -97,7 +97,7 @@ fn references() -> Vec<Refusal> {
     let giant = json!({ "componentType": 5126, "type": "VEC3", "count": 1_u64 << 62 });
     vec![
         set("no such accessor", &[position, "refers to accessor 99"], "/meshes/0/primitives/0/attributes/POSITION", json!(99)),
-        set("no positions", &[position, "missing"], "/meshes/0/primitives/0/attributes", json!({})),
+        set("no positions", &[position, "missing"], "/meshes/0/primitives/0/attributes", json!({ "NORMAL": 1 })),
         indexed("no such vertex", &["primitives[0].indices", "refers to vertex 3"], &[0, 1, 3]),
         indexed("no triangles", &["meshes", "no triangles"], &[0, 1, 1]),
         attribute("no area", &["meshes", "no triangles"], "POSITION", "VEC3", &[1.0; 9]),
@@ -106,7 +106,7 @@ fn references() -> Vec<Refusal> {
         set("beyond the view", &[position, "reaches to byte 48", "36"], "/accessors/0/count", json!(4)),
         set("beyond the buffer", &["bufferViews[0]", "reaches to byte 100000"], "/bufferViews/0/byteLength", json!(100_000)),
         set("offset near 2^64", &[position, "reaches to byte 18446744073709551615"], "/accessors/0/byteOffset", json!(u64::MAX - 3)),
-        set("giant count", &[position, "more than"], "/accessors/0", giant),
+        changed("giant count", &[position, "more than"], |glb| glb.json["accessors"][0] = giant.clone()),
         set("overlapping elements", &[position, "stride of 8"], "/bufferViews/0/byteStride", json!(8)),
     ]
 }
