@@ -26,87 +26,32 @@ const REPLAY: Program =
     Program::new("replay", "desk", "Replay a session: pictures, times, errors").on_device();
 
 /// Programs that are run with whatever stands after their name.
+#[rustfmt::skip] // One program a line.
 const PROGRAMS: [Program; 12] = [
     REPLAY,
-    Program::new(
-        "check",
-        "desk",
-        "Say what is wrong with a session, and draw what it predicts over its first frame",
-    ),
-    Program::new(
-        "align",
-        "desk",
-        "Write a session anew with cameras, pose and lights aligned by its pictures",
-    ),
-    Program::new(
-        "convert",
-        "desk",
-        "Make a recording of a session's folder, or a folder of a recording",
-    ),
-    Program::new(
-        "import",
-        "desk",
-        "Make a session of a recording of nerfstudio, Record3D or Stray Scanner",
-    ),
+    Program::new("check", "desk", "Say what is wrong with a session, and draw what it predicts over its first frame"),
+    Program::new("align", "desk", "Write a session anew with cameras, pose and lights aligned by its pictures"),
+    Program::new("convert", "desk", "Make a recording of a session's folder, or a folder of a recording"),
+    Program::new("import", "desk", "Make a session of a recording of nerfstudio, Record3D or Stray Scanner"),
     Program::new("card", "desk", "Write a card to print and to lay beside the toy"),
-    Program::new(
-        "bench",
-        "measure",
-        "Measure presets over sessions: time against error",
-    )
-    .on_device(),
-    Program::new(
-        "ledger",
-        "measure",
-        "What frames of a session must cost on any device, without one",
-    ),
-    Program::new(
-        "profile",
-        "measure",
-        "A trace for Perfetto and a table of tasks, of a session or of a phone's profile",
-    )
-    .on_device(),
-    Program::new(
-        "stability",
-        "measure",
-        "Measure numerical stability on hard cases against bounds",
-    )
-    .on_device(),
-    Program::new(
-        "view",
-        "view",
-        "Run the app on a desktop, with a session as its camera",
-    )
-    .on_device(),
-    Program::new(
-        "bless",
-        "tests",
-        "Rewrite the golden pictures, the schema of sessions and its tables in the document",
-    )
-    .on_device(),
+    Program::new("bench", "measure", "Measure presets over sessions: time against error").on_device(),
+    Program::new("ledger", "measure", "What frames of a session must cost on any device, without one"),
+    Program::new("profile", "measure", "A trace for Perfetto and a table of tasks, of a session or of a phone's profile").on_device(),
+    Program::new("stability", "measure", "Measure numerical stability on hard cases against bounds").on_device(),
+    Program::new("view", "view", "Run the app on a desktop, with a session as its camera").on_device(),
+    Program::new("bless", "tests", "Rewrite the golden pictures, the schema of sessions and its tables in the document").on_device(),
 ];
 
 /// Commands of this program's own, and what they do.
+#[rustfmt::skip] // One command a line.
 const COMMANDS: [(&str, &str); 7] = [
     ("demo", "Replay the bundled session into target/demo"),
     ("test", "Check everything that must hold before a change is taken"),
     ("fmt", "Format every source file"),
-    (
-        "size [--record]",
-        "Package both shells and hold their sizes against the budgets; or take the sizes anew, within them",
-    ),
-    (
-        "calls",
-        "Write the table of what the shells call of their platforms",
-    ),
-    (
-        "ios check|build|package",
-        "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links)",
-    ),
-    (
-        "android check|build|package [--arcore AAR --sha256 HEX]",
-        "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install)",
-    ),
+    ("size [--record]", "Package both shells and hold their sizes against the budgets; or take the sizes anew, within them"),
+    ("calls", "Write the table of what the shells call of their platforms"),
+    ("ios check|build|package", "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links)"),
+    ("android check|build|package [--arcore AAR --sha256 HEX]", "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install)"),
 ];
 
 /// What is left to do once all arguments are read.

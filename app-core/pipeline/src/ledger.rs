@@ -4,8 +4,7 @@
 //! with; [`Core::counting`](crate::Core::counting) makes such reports without a device.
 
 use crate::frame::FrameReport;
-use crate::gpu::pass_run::{PassGroup, PassRun};
-use crate::gpu::work::Work;
+use crate::gpu::{PassGroup, PassRun, Work};
 
 /// Bytes of a mebibyte.
 const MEBIBYTE: f64 = 1048576.0;

@@ -18,8 +18,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::frame::FrameReport;
-use crate::gpu::pass_run::PassTime;
-use crate::gpu::stages::StageTime;
+use crate::gpu::{PassTime, StageTime};
 
 /// Version of the format: another one may mean something else by the same names.
 pub const VERSION: u32 = 1;

@@ -369,56 +369,15 @@ mod tests {
             bytes: &[],
             row_stride: 0,
         };
+        #[rustfmt::skip] // One case a line.
         let wrong = [
-            (
-                "format",
-                RawFrame {
-                    pixel_format: 0,
-                    ..raw()
-                },
-            ),
-            (
-                "1 planes",
-                RawFrame {
-                    planes: vec![none],
-                    ..raw()
-                },
-            ),
-            (
-                "luma: ",
-                RawFrame {
-                    planes: vec![none; 2],
-                    ..raw()
-                },
-            ),
-            (
-                "px; 1 to 8192",
-                RawFrame {
-                    size_px: [usize::MAX, 2],
-                    ..raw()
-                },
-            ),
-            (
-                "focal length",
-                RawFrame {
-                    intrinsics: no_focal_length,
-                    ..raw()
-                },
-            ),
-            (
-                "time",
-                RawFrame {
-                    timestamp: f64::NAN,
-                    ..raw()
-                },
-            ),
-            (
-                "time",
-                RawFrame {
-                    timestamp: -1.0,
-                    ..raw()
-                },
-            ),
+            ("format", RawFrame { pixel_format: 0, ..raw() }),
+            ("1 planes", RawFrame { planes: vec![none], ..raw() }),
+            ("luma: ", RawFrame { planes: vec![none; 2], ..raw() }),
+            ("px; 1 to 8192", RawFrame { size_px: [usize::MAX, 2], ..raw() }),
+            ("focal length", RawFrame { intrinsics: no_focal_length, ..raw() }),
+            ("time", RawFrame { timestamp: f64::NAN, ..raw() }),
+            ("time", RawFrame { timestamp: -1.0, ..raw() }),
         ];
         for (message, raw) in wrong {
             let error = camera_frame(&raw, None, COUNT).expect_err(message).to_string();
@@ -429,27 +388,16 @@ mod tests {
     #[test]
     fn planes_that_make_no_sense_are_left_out() {
         let good = &raw().surfaces[0];
+        #[rustfmt::skip] // One case a line.
         let wrong = [
-            RawSurface {
-                alignment: 1,
-                ..good.clone()
-            },
-            RawSurface {
-                boundary: Vec::new(),
-                ..good.clone()
-            },
-            RawSurface {
-                boundary: vec![good.boundary[0]; 3],
-                ..good.clone()
-            },
+            RawSurface { alignment: 1, ..good.clone() },
+            RawSurface { boundary: Vec::new(), ..good.clone() },
+            RawSurface { boundary: vec![good.boundary[0]; 3], ..good.clone() },
             RawSurface {
                 transform: [[0.0; 4]; 4],
                 ..good.clone()
             },
-            RawSurface {
-                boundary: vec![good.boundary[0], good.boundary[1], [f32::NAN; 4]],
-                ..good.clone()
-            },
+            RawSurface { boundary: vec![good.boundary[0], good.boundary[1], [f32::NAN; 4]], ..good.clone() },
         ];
         assert!(found_plane(good).is_some());
         for wrong in wrong {

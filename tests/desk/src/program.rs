@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use app_core::CoreError;
 use app_core::gpu::GpuError;
 
@@ -30,6 +31,16 @@ pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
         let _ = writeln!(io::stderr(), "warning: {}: {loss}", path.display());
     }
     Ok(session)
+}
+
+/// Writes a text to standard output.
+///
+/// # Errors
+/// When nothing takes it, such as a closed pipe.
+pub fn print(text: &str) -> anyhow::Result<()> {
+    io::stdout()
+        .write_all(text.as_bytes())
+        .context("writing to standard output")
 }
 
 /// Success, or failure with one line on standard error that tells the whole cause, and what helps where that is known.

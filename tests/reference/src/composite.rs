@@ -5,7 +5,6 @@ use glam::{DVec3, DVec4, UVec2};
 use super::grid::PlaneGrid;
 use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
-use super::real::{Real, Vector};
 use super::smoothstep;
 
 /// Change of the model, in plates, up to which a seen pixel keeps all of its own residual.
@@ -41,47 +40,39 @@ pub struct Shown {
 /// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
 /// pixel too near to the toy to be evidence is its own.
 #[must_use]
-pub fn receiver_color<R: Real>(
-    region: &Region,
-    pictures: &Pictures,
-    shown: &Shown,
-    texel: UVec2,
-) -> [DVec3; 2] {
+pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
     let at = centre_px(texel);
-    let colors = [pictures.frame.at(texel), pictures.plate.at(texel)];
-    let [frame, plate] = colors.map(Vector::<R, 3>::from);
-    let seen = R::from_f64(pictures.seen.at(texel));
-    let lit = Vector::from(shown.solution.gain) * plate;
-    let Some(point) = region.receiver_point::<R>(at) else {
-        return [lit.lerp(frame, seen), frame].map(DVec3::from);
+    let (frame, plate) = (pictures.frame.at(texel), pictures.plate.at(texel));
+    let seen = pictures.seen.at(texel);
+    let lit = shown.solution.gain * plate;
+    let Some(point) = region.receiver_point(at) else {
+        return [lit.lerp(frame, seen), frame];
     };
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
-        let ambient = coarse_at::<R>(ambient, region, at).to_f64();
+        let ambient = coarse_at(ambient, region, at);
         let model = shown
             .solution
-            .receiver_model::<R>(region, point, ambient, visibility.at(texel));
-        Vector::from(shown_model(&shown.solution, point, model, plate.into()))
+            .receiver_model(region, point, ambient, visibility.at(texel));
+        shown_model(&shown.solution, point, model, plate)
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let after = model(&shown.ambient, &shown.visibility);
     let change = (after - before).abs().max_element();
 
     let grid = &shown.grids[point.receiver];
-    let pooled = grid.value_at::<R>(&shown.residuals[point.receiver], point.in_plane);
-    let pooled = Vector::from(pooled);
-    let residual = pooled * (R::ONE - smoothstep(0.0, 2.0 * RESIDUAL_HALF, change));
+    let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
+    let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, change));
     let unknown = smoothstep(OUTLIER_NONE, OUTLIER_ALL, pooled.abs().max_element());
-    let object = unknown * (R::ONE - shadow_likeness(pooled));
-    let black = Vector::splat(R::ZERO);
-    let made = lit * (after + residual).max(black);
-    let kept = frame + lit * (R::ONE - object) * (after - before);
-    let near = R::ONE - smoothstep(KEEP_ALL, KEEP_NONE, change);
+    let object = unknown * (1.0 - shadow_likeness(pooled));
+    let made = lit * (after + residual).max(DVec3::ZERO);
+    let kept = frame + lit * (1.0 - object) * (after - before);
+    let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 
     // What hides the receiver must go even at the border.
-    let inside = inside_border::<R>(region, texel).max(R::ONE - seen);
-    let laid = frame.lerp(made.lerp(kept, keep), inside).max(black);
-    [laid, laid.lerp(kept, (R::ONE - seen) * near).max(black)].map(DVec3::from)
+    let inside = inside_border(region, texel).max(1.0 - seen);
+    let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
+    [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
 /// The model, and 1 where the plate is clipped and nothing else is seen of its receiver.
@@ -93,22 +84,22 @@ fn shown_model(solution: &Solution, point: ReceiverPoint, model: DVec3, plate: D
 
 /// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.
 #[must_use]
-pub fn inside_border<R: Real>(region: &Region, texel: UVec2) -> R {
-    let [x, y] = centre_px(texel).to_array().map(R::from_f64);
-    let [width, height] = region.size_px.as_dvec2().to_array().map(R::from_f64);
+pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
+    let [x, y] = centre_px(texel).to_array();
+    let [width, height] = region.size_px.as_dvec2().to_array();
     let to_edge_px = [x, y, width - x, height - y];
     let inner_edges = to_edge_px
         .into_iter()
-        .zip(region.border_px.map(R::from_f64))
-        .filter(|(_, fade_px)| *fade_px > R::ZERO);
-    inner_edges.map(|(px, fade_px)| px / fade_px).fold(R::ONE, R::min)
+        .zip(region.border_px)
+        .filter(|(_, fade_px)| *fade_px > 0.0);
+    inner_edges.map(|(px, fade_px)| px / fade_px).fold(1.0, f64::min)
 }
 
 /// Whether a residual may be a shadow: darker in all channels, and in none much more than in the others.
-fn shadow_likeness<R: Real>(residual: Vector<R, 3>) -> R {
+fn shadow_likeness(residual: DVec3) -> f64 {
     let (least, most) = (-residual.max_element(), -residual.min_element());
-    if least <= R::ZERO {
-        return R::ZERO;
+    if least <= 0.0 {
+        return 0.0;
     }
     smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most)
 }

@@ -41,9 +41,9 @@ pub fn told(
     Raster::from_fn(region.size_px, |texel| {
         let at = centre_px(texel);
         let is_told = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
-        let point = region.receiver_point::<f64>(at).filter(|_| is_told)?;
+        let point = region.receiver_point(at).filter(|_| is_told)?;
         let ambient = coarse_at(&pictures.ambient, region, at);
-        let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
+        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
         let plate = pictures.plate.at(texel);
         let is_dark = plate.cmplt(DVec3::splat(DARKEST_USABLE));
         Some(Told {

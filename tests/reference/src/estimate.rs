@@ -32,16 +32,16 @@ pub struct Known<'a> {
 pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2) -> DVec4 {
     let (at, pictures) = (centre_px(texel), known.pictures);
     let photographed = pictures.plate.at(texel).extend(known.photographed.at(texel));
-    let point = region.receiver_point::<f64>(at).filter(|_| photographed.w < 1.0);
+    let point = region.receiver_point(at).filter(|_| photographed.w < 1.0);
     let Some(point) = point else {
         return photographed;
     };
     let (grid, lit) = &known.lit[point.receiver];
-    let smooth = grid.value_at::<f64>(lit, point.in_plane);
+    let smooth = grid.value_at(lit, point.in_plane);
     let ambient = coarse_at(&pictures.ambient, region, at);
     let model = known
         .solution
-        .receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
+        .receiver_model(region, point, ambient, pictures.visibility.at(texel));
     let told = smoothstep(TELLS_NONE, TELLS_ALL, model.min_element());
     if !is_final || pictures.seen.at(texel) == 0.0 || told == 0.0 {
         return smooth.extend(ESTIMATED);

@@ -28,7 +28,7 @@ fn push(level: Raster<DVec4>, n_coarser: u32) -> Raster<DVec4> {
     let coarse = push(pull(&level), n_coarser - 1);
     Raster::from_fn(level.size(), |at| {
         let own = level.at(at);
-        own + (1.0 - own.w) * coarse.bilinear::<f64, _>((0.5 * (at.as_dvec2() + 0.5)).into(), |texel| texel)
+        own + (1.0 - own.w) * coarse.bilinear(0.5 * (at.as_dvec2() + 0.5))
     })
 }
 

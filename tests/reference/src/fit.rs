@@ -1,6 +1,8 @@
 //! CPU reference of `fit.wgsl` and `fit_solve.wgsl`: what the real shadow and the real toy tell of the light, by iteratively
 //! reweighted least squares with weak priors.
 
+use std::iter;
+
 use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
@@ -8,7 +10,6 @@ use super::model::{
     Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, evidence, is_clipped,
 };
 use super::raster::Raster;
-use super::real::{Real, Vector};
 
 /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
 const CAUCHY_SCALE: f64 = 0.03;
@@ -81,7 +82,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     let sample = |texel: &UVec2| {
         let at = centre_px(*texel);
         let point = region
-            .receiver_point::<f64>(at)
+            .receiver_point(at)
             .filter(|_| pictures.seen.at(*texel) > 0.0)?;
         Some(ReceiverSample {
             frame: pictures.frame.at(*texel),
@@ -98,7 +99,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
 ///
 /// Receivers are fitted in turn: the first tells the gain and what is expected of the others.
 #[must_use]
-pub fn fit_receiver<R: Real>(
+pub fn fit_receiver(
     region: &Region,
     (receiver, samples): (usize, &[ReceiverSample]),
     start: &Solution,
@@ -114,12 +115,11 @@ pub fn fit_receiver<R: Real>(
                 .filter(|sample| sample.point.receiver == receiver)
                 .collect();
             let (equations, clipped) =
-                receiver_equations::<R>(region, &of_receiver, &before, constants, (step > 0, channel));
+                receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel));
             let priors = receiver_priors(region, receiver, &before, channel);
             take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
-            if equations.energy(0) > R::ZERO {
-                let clipped = clipped / equations.energy(0);
-                solution.receivers[receiver].clipped[channel] = clipped.to_f64();
+            if equations.energy(0) > 0.0 {
+                solution.receivers[receiver].clipped[channel] = clipped / equations.energy(0);
             }
         }
     }
@@ -127,37 +127,37 @@ pub fn fit_receiver<R: Real>(
 }
 
 /// The equations, and the energy of the first column that clipped pixels give.
-fn receiver_equations<R: Real>(
+fn receiver_equations(
     region: &Region,
     samples: &[&ReceiverSample],
     before: &Solution,
     constants: &FitConstants,
     (is_reweighted, channel): (bool, usize),
-) -> (NormalEquations<R>, R) {
+) -> (NormalEquations, f64) {
     let mut equations = NormalEquations::new(2 + region.lights.len());
-    let mut of_clipped = R::ZERO;
+    let mut of_clipped = 0.0;
     for sample in samples {
-        let [frame, plate] = [sample.frame, sample.plate].map(|color| R::from_f64(color[channel]));
-        let value = frame / R::from_f64(before.gain[channel]);
-        let total = R::from_f64(before.plate_falloff::<R>(region, sample.point)[channel]);
+        let [frame, plate] = [sample.frame, sample.plate].map(|color| color[channel]);
+        let value = frame / before.gain[channel];
+        let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
-        let ambient = R::from_f64(sample.ambient);
+        let ambient = sample.ambient;
         // As bright as in shadow, as far as such a pixel tells.
         let visibility = match is_clipped(frame, plate) {
             true => DVec4::ZERO,
             false => sample.visibility,
         };
-        let mut columns = vec![plate * ambient, plate * ambient * (R::ONE - ambient)];
+        let mut columns = vec![plate * ambient, plate * ambient * (1.0 - ambient)];
         columns.extend((0..region.lights.len()).map(|i| {
-            let intensity = R::from_f64(before.intensities[i][channel]);
-            let visible = intensity * R::from_f64(visibility[i]) - ambient;
+            let intensity = before.intensities[i][channel];
+            let visible = intensity * visibility[i] - ambient;
             plate * plane.falloff(i, sample.point.in_plane) * visible / total
         }));
         let mut weight = evidence(frame, plate);
         if is_reweighted {
-            let model = before.receiver_model::<R>(region, sample.point, sample.ambient, visibility);
-            let residual = value - plate * R::from_f64(model[channel]);
-            weight *= cauchy_weight(residual, R::from_f64(constants.cauchy_scale) * plate);
+            let model = before.receiver_model(region, sample.point, sample.ambient, visibility);
+            let residual = value - plate * model[channel];
+            weight *= cauchy_weight(residual, constants.cauchy_scale * plate);
         }
         if is_clipped(frame, plate) {
             of_clipped += weight * columns[0] * columns[0];
@@ -168,71 +168,62 @@ fn receiver_equations<R: Real>(
 }
 
 /// What is expected of bounce and shares before a receiver is seen in shadow.
-fn receiver_priors<R: Real>(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<R> {
+fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
     let n_lights = region.lights.len();
     let irradiance = |plane: &ReceiverPlane, i: usize| {
         let light = plane.lights[i];
         let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
-        let to_light = Vector::from(light.truncate()) - Vector::from(at * light.w);
+        let to_light = light.truncate() - at * light.w;
         let falloff = if light.w == 0.0 {
-            R::ONE
+            1.0
         } else {
-            to_light.dot(to_light)
+            to_light.length_squared()
         };
-        (to_light.normalize()[1] / falloff).max(R::ZERO)
+        (to_light.normalize().y / falloff).max(0.0)
     };
     if receiver == 0 {
         // As if each gave as much as the others at one metre.
-        let each: Vec<R> = (0..n_lights)
-            .map(|i| irradiance(&region.receivers[0], i))
-            .collect();
-        let total: R = each.iter().copied().sum();
-        let all = R::from_f64(PRIOR_DIRECT_FRACTION);
-        let direct_fractions = each.into_iter().map(|one| all * one / total);
-        return std::iter::once(R::from_f64(PRIOR_BOUNCE))
-            .chain(direct_fractions)
-            .collect();
+        let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));
+        let total: f64 = each.clone().sum();
+        let direct_fractions = each.map(|one| PRIOR_DIRECT_FRACTION * one / total);
+        return iter::once(PRIOR_BOUNCE).chain(direct_fractions).collect();
     }
     // The same lights amid as much ambient light.
     let first = &before.receivers[0];
     let of_first = |i| {
         let there = irradiance(&region.receivers[0], i);
-        if there > R::ZERO {
+        if there > 0.0 {
             irradiance(&region.receivers[receiver], i) / there
         } else {
-            R::ZERO
+            0.0
         }
     };
-    let of_channel = |color: &DVec3| R::from_f64(color[channel]);
-    let direct_fractions: Vec<R> = (0..n_lights)
-        .map(|i| of_channel(&first.direct_fractions[i]) * of_first(i))
-        .collect();
-    let direct: R = first.direct_fractions.iter().map(of_channel).sum();
-    let total = R::ONE - direct + direct_fractions.iter().copied().sum();
-    let direct_fractions = direct_fractions
-        .into_iter()
-        .map(|direct_fraction| direct_fraction / total);
-    std::iter::once(of_channel(&first.bounce))
+    let of_channel = |i: usize| first.direct_fractions[i][channel];
+    let direct_fractions: Vec<f64> = (0..n_lights).map(|i| of_channel(i) * of_first(i)).collect();
+    let direct: f64 = (0..n_lights).map(of_channel).sum();
+    let total = 1.0 - direct + direct_fractions.iter().sum::<f64>();
+    let direct_fractions = direct_fractions.iter().map(|fraction| fraction / total);
+    iter::once(first.bounce[channel])
         .chain(direct_fractions)
         .collect()
 }
 
-fn take_receiver<R: Real>(
-    observed: &NormalEquations<R>,
-    (receiver, priors): (usize, &[R]),
+fn take_receiver(
+    observed: &NormalEquations,
+    (receiver, priors): (usize, &[f64]),
     constants: &FitConstants,
     channel: usize,
     solution: &mut Solution,
 ) {
     let energy = observed.energy(0);
-    if energy <= R::ZERO {
+    if energy <= 0.0 {
         return;
     }
     let mut equations = observed.clone();
-    let weight = R::from_f64(constants.prior_weight) * energy;
-    equations.expect(0, R::ONE, weight);
+    let weight = constants.prior_weight * energy;
+    equations.expect(0, 1.0, weight);
     if receiver > 0 {
-        equations.expect(0, R::ONE, R::from_f64(SAME_GAIN_WEIGHT) * energy);
+        equations.expect(0, 1.0, SAME_GAIN_WEIGHT * energy);
     }
     priors
         .iter()
@@ -240,28 +231,24 @@ fn take_receiver<R: Real>(
         .for_each(|(i, prior)| equations.expect(1 + i, *prior, weight));
     let unknowns = equations.solve();
     let correction = unknowns[0];
-    if correction <= R::ZERO {
+    if correction <= 0.0 {
         return;
     }
     if receiver == 0 {
-        let gain = R::from_f64(solution.gain[channel]) * correction;
-        solution.gain[channel] = gain.to_f64();
+        solution.gain[channel] *= correction;
     }
-    let direct_fractions: Vec<R> = unknowns[2..]
-        .iter()
-        .map(|unknown| (*unknown / correction).max(R::ZERO))
-        .collect();
-    let total: R = direct_fractions.iter().copied().sum();
-    let most = R::from_f64(MAX_DIRECT_FRACTION);
-    let scale = if total > most { most / total } else { R::ONE };
+    let direct_fractions = unknowns.as_slice()[2..].iter();
+    let direct_fractions: Vec<f64> = direct_fractions.map(|one| (one / correction).max(0.0)).collect();
+    let total: f64 = direct_fractions.iter().sum();
+    let scale = if total > MAX_DIRECT_FRACTION {
+        MAX_DIRECT_FRACTION / total
+    } else {
+        1.0
+    };
     let found = &mut solution.receivers[receiver];
-    let bounce = (unknowns[1] / correction).clamp(R::ZERO, R::from_f64(MAX_BOUNCE));
-    found.bounce[channel] = bounce.to_f64();
-    found
-        .direct_fractions
-        .iter_mut()
-        .zip(&direct_fractions)
-        .for_each(|(slot, direct_fraction)| slot[channel] = (scale * *direct_fraction).to_f64());
+    found.bounce[channel] = (unknowns[1] / correction).clamp(0.0, MAX_BOUNCE);
+    let slots = found.direct_fractions.iter_mut().zip(&direct_fractions);
+    slots.for_each(|(slot, direct_fraction)| slot[channel] = scale * *direct_fraction);
 }
 
 /// A pixel of one surface of the toy.
@@ -281,7 +268,7 @@ pub struct ToySample {
 ///
 /// All channels together decide what one of them does not show.
 #[must_use]
-pub fn fit_toy<R: Real>(
+pub fn fit_toy(
     region: &Region,
     samples: &[ToySample],
     start: &Solution,
@@ -291,11 +278,11 @@ pub fn fit_toy<R: Real>(
     let n_columns = 2 + region.lights.len();
     let mut solution = start.clone();
     for step in 0..n_steps {
-        let each = [0, 1, 2].map(|k| toy_equations::<R>(region, samples, &solution, (step > 0, k)));
+        let each = [0, 1, 2].map(|k| toy_equations(region, samples, &solution, (step > 0, k)));
         let mut all = NormalEquations::new(n_columns);
         each.iter().for_each(|equations| all.join(equations));
         let energy = all.energy(0) + all.energy(1);
-        if energy <= R::ZERO {
+        if energy <= 0.0 {
             continue;
         }
         let [weight, white_weight, receiver_weight] = [
@@ -303,13 +290,13 @@ pub fn fit_toy<R: Real>(
             constants.white_weight,
             constants.receiver_light_weight,
         ]
-        .map(|weight| R::from_f64(weight) * energy);
-        let expect_receiver_light = |equations: &mut NormalEquations<R>, channels: DVec3| {
-            for relation in receiver_light::<R>(region, &solution, channels) {
-                equations.observe(&relation, R::ZERO, receiver_weight);
+        .map(|weight| weight * energy);
+        let expect_receiver_light = |equations: &mut NormalEquations, channels: DVec3| {
+            for relation in receiver_light(region, &solution, channels) {
+                equations.observe(&relation, 0.0, receiver_weight);
             }
         };
-        (0..n_columns).for_each(|i| all.expect(i, R::ZERO, weight));
+        (0..n_columns).for_each(|i| all.expect(i, 0.0, weight));
         expect_receiver_light(&mut all, DVec3::splat(1.0 / 3.0));
         let white = all.solve_non_negative();
         let found = each.into_iter().enumerate().map(|(channel, mut equations)| {
@@ -320,10 +307,9 @@ pub fn fit_toy<R: Real>(
             expect_receiver_light(&mut equations, DVec3::AXES[channel]);
             equations.solve_non_negative()
         });
-        let found: Vec<Vec<R>> = found.collect();
-        for (channel, found) in found.into_iter().enumerate() {
+        for (channel, found) in found.collect::<Vec<_>>().iter().enumerate() {
             let slots = solution.toy.iter_mut().zip(found);
-            slots.for_each(|(slot, value)| slot[channel] = value.to_f64());
+            slots.for_each(|(slot, value)| slot[channel] = *value);
         }
     }
     solution
@@ -335,7 +321,7 @@ pub fn fit_toy<R: Real>(
 /// Of what a receiver shows in the open, each light's part is to the ambient part as its light at the toy times the cosine to
 /// the receiver is to the ambient light on a surface that lies like the receiver; and from below comes what the first
 /// receiver throws back.
-fn receiver_light<R: Real>(region: &Region, solution: &Solution, channels: DVec3) -> Vec<Vec<R>> {
+fn receiver_light(region: &Region, solution: &Solution, channels: DVec3) -> Vec<Vec<f64>> {
     let n_lights = region.lights.len();
     let cosine = |plane: &ReceiverPlane, i: usize| {
         let light = plane.lights[i];
@@ -369,33 +355,31 @@ fn receiver_light<R: Real>(region: &Region, solution: &Solution, channels: DVec3
     let mut from_below = vec![-PRIOR_REFLECTANCE, 1.0];
     from_below.extend((0..n_lights).map(|i| -PRIOR_REFLECTANCE * cosine(&region.receivers[0], i)));
     let relations = (0..n_lights).map(of_light).chain([from_below]);
-    relations
-        .map(|relation| relation.into_iter().map(R::from_f64).collect())
-        .collect()
+    relations.collect()
 }
 
-fn toy_equations<R: Real>(
+fn toy_equations(
     region: &Region,
     samples: &[ToySample],
     before: &Solution,
     (is_reweighted, channel): (bool, usize),
-) -> NormalEquations<R> {
+) -> NormalEquations {
     let mut equations = NormalEquations::new(2 + region.lights.len());
     for sample in samples {
-        let [frame, base] = [sample.frame, sample.base].map(|color| R::from_f64(color[channel]));
-        let value = frame / R::from_f64(before.gain[channel]);
-        let columns: Vec<R> = toy_columns(sample.normal, sample.received, &before.intensities)
+        let [frame, base] = [sample.frame, sample.base].map(|color| color[channel]);
+        let value = frame / before.gain[channel];
+        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
         let mut weight = evidence(frame, frame);
         if is_reweighted {
-            let model: R = columns
+            let model: f64 = columns
                 .iter()
                 .zip(&before.toy)
-                .map(|(column, toy)| *column * R::from_f64(toy[channel]))
+                .map(|(column, toy)| *column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(value - model, R::from_f64(TOY_CAUCHY_SCALE) * base);
+            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
         }
         equations.observe(&columns, value, weight);
     }
@@ -404,29 +388,25 @@ fn toy_equations<R: Real>(
 
 /// What the light on the toy is made of: from above, from below, and what is received of each light at its level.
 #[must_use]
-pub fn toy_columns<R: Real>(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<Vector<R, 3>> {
+pub fn toy_columns(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<DVec3> {
     let lights = intensities.iter().zip(received.to_array());
-    [1.0 + normal.y, 1.0 - normal.y]
-        .map(|twice| R::from_f64(0.5 * twice))
-        .into_iter()
-        .map(Vector::splat)
-        .chain(lights.map(|(intensity, received)| Vector::from(*intensity) * R::from_f64(received)))
-        .collect()
+    let of_sky = [1.0 + normal.y, 1.0 - normal.y].map(|twice| DVec3::splat(0.5 * twice));
+    let of_lights = lights.map(|(intensity, received)| *intensity * received);
+    of_sky.into_iter().chain(of_lights).collect()
 }
 
 /// CPU reference of `common/toy_radiance.wgsl`: radiance of a surface of the toy over its base colour and the gain.
 #[must_use]
-pub fn toy_radiance<R: Real>(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
-    let columns = toy_columns::<R>(normal, received, &solution.intensities);
-    let terms = columns.into_iter().zip(&solution.toy);
-    let sum: Vector<R, 3> = terms.map(|(column, light)| column * Vector::from(*light)).sum();
-    sum.into()
+pub fn toy_radiance(solution: &Solution, normal: DVec3, received: DVec4) -> DVec3 {
+    let columns = toy_columns(normal, received, &solution.intensities);
+    let terms = columns.iter().zip(&solution.toy);
+    terms.map(|(column, light)| column * light).sum()
 }
 
 /// 1 for no residual, a half for one of `scale`.
-fn cauchy_weight<R: Real>(residual: R, scale: R) -> R {
-    if scale == R::ZERO {
-        R::ZERO
+fn cauchy_weight(residual: f64, scale: f64) -> f64 {
+    if scale == 0.0 {
+        0.0
     } else {
         scale * scale / (scale * scale + residual * residual)
     }

@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
 
 use super::model::{Region, centre_px};
 use super::raster::Raster;
-use super::real::{Real, Vector};
 
 /// Points of a cell along each side.
 const N_POINTS: u32 = 8;
@@ -79,17 +78,15 @@ impl PlaneGrid {
             let px = region.receivers[receiver].region_px(in_plane)?;
             let is_within = px.cmpge(DVec2::ZERO).all() && px.cmplt(region.size_px.as_dvec2()).all();
             let texel = is_within.then(|| px.as_uvec2())?;
-            let shown = region.receiver_point::<f64>(centre_px(texel))?;
+            let shown = region.receiver_point(centre_px(texel))?;
             (shown.receiver == receiver).then_some(texel)
         })
     }
 
     /// The value between cells at a point of the receiver.
     #[must_use]
-    pub fn value_at<R: Real>(&self, cells: &Raster<DVec3>, in_plane: DVec2) -> DVec3 {
-        let from_origin = Vector::<R, 2>::from(in_plane) - Vector::from(self.origin_in_plane);
-        let value: Vector<R, 3> = cells.bilinear(from_origin / R::from_f64(self.cell_m), Vector::from);
-        value.into()
+    pub fn value_at(&self, cells: &Raster<DVec3>, in_plane: DVec2) -> DVec3 {
+        cells.bilinear((in_plane - self.origin_in_plane) / self.cell_m)
     }
 }
 

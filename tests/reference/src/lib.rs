@@ -1,5 +1,5 @@
 //! The passes once more: plain functions on the processor, in 64 bits, without anything of the graphics device.
-//! Some compute in 32 bits, too, to tell what rounding costs: their functions ask for a [`Real`].
+//! Rays can be of 32 bits, too, to tell what rounding costs: they ask for a [`real::Real`].
 //!
 //! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
 //! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
@@ -35,12 +35,9 @@ pub mod validity;
 pub mod visibility;
 pub mod withhold;
 
-use real::Real;
-
 /// Hermite step from 0 at `low` to 1 at `high`.
 #[must_use]
-pub fn smoothstep<R: Real>(low: f64, high: f64, x: R) -> R {
-    let (low, high) = (R::from_f64(low), R::from_f64(high));
-    let t = ((x - low) / (high - low)).clamp(R::ZERO, R::ONE);
-    t * t * (R::from_f64(3.0) - R::from_f64(2.0) * t)
+pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }

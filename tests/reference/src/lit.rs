@@ -23,13 +23,13 @@ pub fn pool(
         for texel in grid.texels_of(region, receiver, cell, taken) {
             let at = centre_px(texel);
             let Some(point) = region
-                .receiver_point::<f64>(at)
+                .receiver_point(at)
                 .filter(|_| pictures.seen.at(texel) > 0.0)
             else {
                 continue;
             };
             let ambient = coarse_at(&pictures.ambient, region, at);
-            let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
+            let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
             let left = model.min_element();
             if left > 0.0 {
                 let weight = left.min(1.0).powf(LIT_POWER);

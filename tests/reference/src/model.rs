@@ -8,7 +8,6 @@ use app_pipeline::passes::globals::globals;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
-use super::real::{Real, Vector, transform};
 
 /// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
 pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
@@ -58,10 +57,9 @@ pub struct ReceiverPoint {
 impl ReceiverPlane {
     /// The point of the endless plane, (x, z) in metres, that is seen at `region_px`.
     #[must_use]
-    pub fn plane_point<R: Real>(&self, region_px: DVec2) -> Option<DVec2> {
-        let at = transform::<R>(&self.plane_from_region_px, region_px.extend(1.0).into());
-        let [x, z, w] = at.0;
-        (w > R::ZERO).then(|| (Vector([x, z]) / w).into())
+    pub fn plane_point(&self, region_px: DVec2) -> Option<DVec2> {
+        let at = self.plane_from_region_px * region_px.extend(1.0);
+        (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
     /// Where a point of the plane is seen.
@@ -79,19 +77,17 @@ impl ReceiverPlane {
 
     /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; none from behind the receiver.
     #[must_use]
-    pub fn falloff<R: Real>(&self, i: usize, in_plane: DVec2) -> R {
+    pub fn falloff(&self, i: usize, in_plane: DVec2) -> f64 {
         let light = self.lights[i];
         if light.y <= 0.0 {
-            return R::ZERO;
+            return 0.0;
         }
         if light.w == 0.0 {
-            return R::ONE;
+            return 1.0;
         }
         let irradiance = |at: DVec2| {
-            let at = DVec3::new(at.x, 0.0, at.y);
-            let to_light = Vector::from(light.truncate()) - Vector::from(at);
-            let cosine: R = to_light.normalize()[1];
-            cosine / to_light.dot(to_light)
+            let to_light = light.truncate() - DVec3::new(at.x, 0.0, at.y);
+            to_light.normalize().y / to_light.length_squared()
         };
         irradiance(in_plane) / irradiance(self.reference_in_plane)
     }
@@ -128,18 +124,17 @@ impl Region {
 
     /// The nearest receiver seen at `region_px`, and the point of it; none where that is the receiver's back.
     #[must_use]
-    pub fn receiver_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
-        self.surface_point::<R>(region_px)
+    pub fn receiver_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+        self.surface_point(region_px)
             .filter(|point| self.plane_of(*point).shows_front())
     }
 
     /// The nearest receiver seen at `region_px`, from whichever side, and the point of it.
     #[must_use]
-    pub fn surface_point<R: Real>(&self, region_px: DVec2) -> Option<ReceiverPoint> {
+    pub fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
-            let in_plane = plane.plane_point::<R>(region_px)?;
-            let [_, _, inverse_depth] =
-                transform::<R>(&plane.plane_from_region_px, region_px.extend(1.0).into()).0;
+            let in_plane = plane.plane_point(region_px)?;
+            let inverse_depth = (plane.plane_from_region_px * region_px.extend(1.0)).z;
             plane
                 .rect
                 .holds(in_plane)
@@ -183,45 +178,40 @@ pub struct ReceiverSolution {
 impl Solution {
     /// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
     #[must_use]
-    pub fn plate_falloff<R: Real>(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
+    pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
         let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
         let plane = region.plane_of(point);
-        let more = direct_fractions.map(|(i, direct_fraction)| {
-            Vector::from(*direct_fraction) * (plane.falloff::<R>(i, point.in_plane) - R::ONE)
-        });
-        let more: Vector<R, 3> = more.sum();
-        (Vector::splat(R::ONE) + more).into()
+        let more = direct_fractions
+            .map(|(i, direct_fraction)| *direct_fraction * (plane.falloff(i, point.in_plane) - 1.0));
+        DVec3::ONE + more.sum::<DVec3>()
     }
 
     /// A light's share of the plate's radiance at a point.
     #[must_use]
-    pub fn light_fraction<R: Real>(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
-        let falloff: R = region.plane_of(point).falloff(i, point.in_plane);
-        let at_reference = Vector::from(self.receivers[point.receiver].direct_fractions[i]);
-        let here = at_reference * falloff / Vector::from(self.plate_falloff::<R>(region, point));
-        here.into()
+    pub fn light_fraction(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
+        let falloff = region.plane_of(point).falloff(i, point.in_plane);
+        let at_reference = self.receivers[point.receiver].direct_fractions[i];
+        at_reference * falloff / self.plate_falloff(region, point)
     }
 
     /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
     ///
     /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V.
     #[must_use]
-    pub fn receiver_model<R: Real>(
+    pub fn receiver_model(
         &self,
         region: &Region,
         point: ReceiverPoint,
         ambient: f64,
         visibility: DVec4,
     ) -> DVec3 {
-        let bounce = Vector::from(self.receivers[point.receiver].bounce);
-        let ambient = R::from_f64(ambient);
-        let mut ratio = Vector::splat(ambient) + bounce * ambient * (R::ONE - ambient);
+        let bounce = self.receivers[point.receiver].bounce;
+        let mut ratio = DVec3::splat(ambient) + bounce * ambient * (1.0 - ambient);
         for (i, intensity) in self.intensities.iter().enumerate() {
-            let lit = Vector::from(*intensity) * R::from_f64(visibility[i]);
-            let fraction = Vector::from(self.light_fraction::<R>(region, i, point));
-            ratio = ratio + fraction * (lit - Vector::splat(ambient));
+            let lit = *intensity * visibility[i];
+            ratio += self.light_fraction(region, i, point) * (lit - ambient);
         }
-        ratio.into()
+        ratio
     }
 }
 
@@ -248,34 +238,28 @@ pub fn centre_px(texel: UVec2) -> DVec2 {
 
 /// The value of a coarse map of the whole region at `region_px`.
 #[must_use]
-pub fn coarse_at<R: Real>(map: &Raster<f64>, region: &Region, region_px: DVec2) -> R {
-    let sizes_px = [map.size(), region.size_px].map(|size_px| Vector::from(size_px.as_dvec2()));
-    let at: Vector<R, 2> = Vector::from(region_px) * sizes_px[0] / sizes_px[1];
-    map.bilinear(at, R::from_f64)
+pub fn coarse_at(map: &Raster<f64>, region: &Region, region_px: DVec2) -> f64 {
+    map.bilinear(region_px * map.size().as_dvec2() / region.size_px.as_dvec2())
 }
 
 /// Whether both linear values may be clipped.
 #[must_use]
-pub fn is_clipped<R: Real>(a: R, b: R) -> bool {
-    a.to_f64().min(b.to_f64()) > BRIGHTEST_USABLE
+pub fn is_clipped(a: f64, b: f64) -> bool {
+    a.min(b) > BRIGHTEST_USABLE
 }
 
 /// How much a pixel of frame and plate tells of the light there, in one channel.
 #[must_use]
-pub fn evidence<R: Real>(frame: R, plate: R) -> R {
+pub fn evidence(frame: f64, plate: f64) -> f64 {
     if is_clipped(frame, plate) {
-        R::from_f64(CLIPPED_WEIGHT)
+        CLIPPED_WEIGHT
     } else {
         usable(frame, plate)
     }
 }
 
 /// 1 where both linear values carry evidence, else 0.
-pub(super) fn usable<R: Real>(a: R, b: R) -> R {
-    let is_within = |value: R| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value.to_f64());
-    if is_within(a) && is_within(b) {
-        R::ONE
-    } else {
-        R::ZERO
-    }
+pub(super) fn usable(a: f64, b: f64) -> f64 {
+    let is_within = |value: f64| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value);
+    if is_within(a) && is_within(b) { 1.0 } else { 0.0 }
 }

@@ -15,7 +15,7 @@ pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
     (DVec2::new(column, row) + 0.5) / n_points as f64
 }
 
-type Triangle<R> = [Vector<R, 3>; 3];
+type Triangle<R> = [Vector<R>; 3];
 
 /// A posed mesh in plane space, and the precision in which rays meet it.
 #[derive(Clone, Debug)]
@@ -112,13 +112,13 @@ pub fn hidden_share<R: Real>(
         0
     } else {
         let centre = (texel.as_dvec2() + 0.5) * region_px_per_texel;
-        region.receiver_point::<R>(centre)?.receiver
+        region.receiver_point(centre)?.receiver
     };
     let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
     let mut n_hidden = 0.0;
     for (i, light_point) in caster.light_points.iter().enumerate() {
         let position = texel.as_dvec2() + sample_position(i, caster.light_points.len());
-        let in_plane = plane.plane_point::<R>(position * region_px_per_texel)?;
+        let in_plane = plane.plane_point(position * region_px_per_texel)?;
         // A point behind the receiver lights nothing of it.
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
         n_hidden += f64::from(u8::from(is_hidden));
@@ -130,8 +130,8 @@ pub fn hidden_share<R: Real>(
 /// Triangles within a box, halved until few are left.
 #[derive(Clone, Debug)]
 struct Tree<R> {
-    min: Vector<R, 3>,
-    max: Vector<R, 3>,
+    min: Vector<R>,
+    max: Vector<R>,
     branch: Branch<R>,
 }
 
@@ -146,9 +146,9 @@ impl<R: Real> Tree<R> {
 
     fn new(mut triangles: Vec<Triangle<R>>) -> Self {
         let corners = triangles.as_flattened();
-        let far = Vector::splat(R::from_f64(f64::INFINITY));
+        let [far, near] = [f64::INFINITY, f64::NEG_INFINITY].map(|far| Vector::splat(R::from_f64(far)));
         let min = corners.iter().copied().fold(far, Vector::min);
-        let max = corners.iter().copied().fold(-far, Vector::max);
+        let max = corners.iter().copied().fold(near, Vector::max);
         let branch = if triangles.len() <= Self::MAX_LEAF {
             Branch::Leaf(triangles)
         } else {
@@ -162,7 +162,7 @@ impl<R: Real> Tree<R> {
     }
 
     /// Whether a ray meets a triangle before `end`.
-    fn stops(&self, origin: Vector<R, 3>, direction: Vector<R, 3>, end: R) -> bool {
+    fn stops(&self, origin: Vector<R>, direction: Vector<R>, end: R) -> bool {
         self.reaches_box(origin, direction, end)
             && match &self.branch {
                 Branch::Leaf(triangles) => triangles
@@ -173,7 +173,7 @@ impl<R: Real> Tree<R> {
     }
 
     /// Slab test against the bounding box: most rays pass by.
-    fn reaches_box(&self, origin: Vector<R, 3>, direction: Vector<R, 3>, end: R) -> bool {
+    fn reaches_box(&self, origin: Vector<R>, direction: Vector<R>, end: R) -> bool {
         let to_min = (self.min - origin) / direction;
         let to_max = (self.max - origin) / direction;
         let enter = to_min.min(to_max).max_element();
@@ -187,7 +187,7 @@ impl<R: Real> Tree<R> {
 /// Multiples of `direction` after which a ray meets a triangle, from either side.
 ///
 /// Source: Moller and Trumbore 1997.
-fn meets<R: Real>(origin: Vector<R, 3>, direction: Vector<R, 3>, corners: &Triangle<R>) -> Option<R> {
+fn meets<R: Real>(origin: Vector<R>, direction: Vector<R>, corners: &Triangle<R>) -> Option<R> {
     let [a, b, c] = *corners;
     let (ab, ac, from_a) = (b - a, c - a, origin - a);
     let p = direction.cross(ac);

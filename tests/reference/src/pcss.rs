@@ -66,7 +66,7 @@ pub fn soft_visibility(
     texel: UVec2,
 ) -> f64 {
     let at = centre_px(texel);
-    let Some(point) = region.receiver_point::<f64>(at) else {
+    let Some(point) = region.receiver_point(at) else {
         return 1.0;
     };
     let (plane, softness) = (region.plane_of(point), &of_receivers[point.receiver]);
@@ -75,7 +75,7 @@ pub fn soft_visibility(
     }
     let in_plane = point.in_plane;
     let half_pixel_m = plane
-        .plane_point::<f64>(at + DVec2::X)
+        .plane_point(at + DVec2::X)
         .map_or(0.0, |next| 0.5 * next.distance(in_plane));
     let blockers = |offsets: &mut dyn Iterator<Item = DVec2>| -> Vec<f64> {
         offsets

@@ -51,13 +51,13 @@ impl Viewpoint {
     /// The surface at a pixel, front or back of a receiver; beyond all of them the first one's plane without end.
     fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let beyond = || {
-            let in_plane = self.region.receivers[0].plane_point::<f64>(region_px)?;
+            let in_plane = self.region.receivers[0].plane_point(region_px)?;
             Some(ReceiverPoint {
                 receiver: 0,
                 in_plane,
             })
         };
-        self.region.surface_point::<f64>(region_px).or_else(beyond)
+        self.region.surface_point(region_px).or_else(beyond)
     }
 
     /// Where the camera sees a point; none where it does not face it, or another receiver is nearer there.
@@ -67,7 +67,7 @@ impl Viewpoint {
         };
         let px = self.region.plane_of(point).region_px(point.in_plane)?;
         let own = inverse_depth(point.receiver, px);
-        let is_free = self.region.surface_point::<f64>(px).is_none_or(|nearest| {
+        let is_free = self.region.surface_point(px).is_none_or(|nearest| {
             nearest.receiver == point.receiver
                 || inverse_depth(nearest.receiver, px) <= own * (1.0 + SAME_DEPTH)
         });
@@ -129,7 +129,7 @@ fn candidate<'a>(
     let border_px = px.min(plate.picture.size().as_dvec2() - px).min_element();
     let inside = (border_px / FEATHER_PX).clamp(0.0, 1.0);
     let plate_px = |at: DVec2| {
-        let in_plane = view.region.receivers[receiver].plane_point::<f64>(at)?;
+        let in_plane = view.region.receivers[receiver].plane_point(at)?;
         plate.camera.region.receivers[receiver].region_px(in_plane)
     };
     let across = plate_px(at + STEP_PX * DVec2::X)? - plate_px(at - STEP_PX * DVec2::X)?;

@@ -4,8 +4,6 @@ use std::ops::{Add, Mul};
 
 use glam::{DVec2, UVec2};
 
-use super::real::{Real, Vector};
-
 /// Values over a rectangle, rows from the top; the centre of the first lies at (0.5, 0.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster<T> {
@@ -13,13 +11,17 @@ pub struct Raster<T> {
     texels: Vec<T>,
 }
 
+/// All texels of a rectangle, row by row.
+pub fn texels_of(size: UVec2) -> impl Iterator<Item = UVec2> {
+    (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)))
+}
+
 impl<T: Copy> Raster<T> {
     /// Asks `value` for each texel.
     pub fn from_fn(size: UVec2, mut value: impl FnMut(UVec2) -> T) -> Self {
-        let rows = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
         Self {
             size,
-            texels: rows.map(&mut value).collect(),
+            texels: texels_of(size).map(&mut value).collect(),
         }
     }
 
@@ -53,22 +55,21 @@ impl<T: Copy> Raster<T> {
         assert!(texel.cmplt(self.size).all(), "no texel {texel} in {}", self.size);
         self.texels[(texel.y * self.size.x + texel.x) as usize]
     }
+}
 
+impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Raster<T> {
     /// What lies between the values at the four nearest centres, of which those outside are moved to the border.
     #[must_use]
-    pub fn bilinear<R: Real, V>(&self, at: Vector<R, 2>, value: impl Fn(T) -> V) -> V
-    where
-        V: Add<Output = V> + Mul<R, Output = V>,
-    {
+    pub fn bilinear(&self, at: DVec2) -> T {
         let last = self.size.as_dvec2() - 1.0;
-        let from_centre = at - Vector::splat(R::from_f64(0.5));
+        let from_centre = at - 0.5;
         let low = from_centre.floor();
-        let [x, y] = (from_centre - low).0;
+        let part = from_centre - low;
         let texel = |dx: f64, dy: f64| {
-            let texel = (DVec2::from(low) + DVec2::new(dx, dy)).clamp(DVec2::ZERO, last);
-            value(self.at(texel.as_uvec2()))
+            let texel = (low + DVec2::new(dx, dy)).clamp(DVec2::ZERO, last);
+            self.at(texel.as_uvec2())
         };
-        let row = |dy: f64| texel(0.0, dy) * (R::ONE - x) + texel(1.0, dy) * x;
-        row(0.0) * (R::ONE - y) + row(1.0) * y
+        let row = |dy: f64| texel(0.0, dy) * (1.0 - part.x) + texel(1.0, dy) * part.x;
+        row(0.0) * (1.0 - part.y) + row(1.0) * part.y
     }
 }

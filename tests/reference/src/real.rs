@@ -1,4 +1,4 @@
-//! Real numbers of either precision: the references compute in 64 bits for themselves, and in 32 to tell what rounding costs.
+//! Real numbers of either precision: rays are of 64 bits, and of 32 to tell what rounding costs.
 //!
 //! What goes in and out stays in 64 bits, which hold all numbers of 32: only the arithmetic in between is of the precision
 //! that is asked for.
@@ -7,9 +7,9 @@ use std::array;
 use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Index, Mul, Neg, Sub};
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::DVec3;
 
 /// A floating-point number.
 pub trait Real:
@@ -22,8 +22,6 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
-    + SubAssign
-    + MulAssign
     + Sum
 {
     /// Nothing.
@@ -40,21 +38,12 @@ pub trait Real:
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Without its sign.
-    #[must_use]
-    fn abs(self) -> Self;
-    /// The nearest whole number that is not larger.
-    #[must_use]
-    fn floor(self) -> Self;
     /// The larger one.
     #[must_use]
     fn max(self, other: Self) -> Self;
     /// The smaller one.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The nearest one from `low` to `high`.
-    #[must_use]
-    fn clamp(self, low: Self, high: Self) -> Self;
     /// An order that holds numbers that are none, too.
     fn total_cmp(&self, other: &Self) -> Ordering;
 }
@@ -81,24 +70,12 @@ macro_rules! impl_real {
                 self.sqrt()
             }
 
-            fn abs(self) -> Self {
-                self.abs()
-            }
-
-            fn floor(self) -> Self {
-                self.floor()
-            }
-
             fn max(self, other: Self) -> Self {
                 self.max(other)
             }
 
             fn min(self, other: Self) -> Self {
                 self.min(other)
-            }
-
-            fn clamp(self, low: Self, high: Self) -> Self {
-                self.clamp(low, high)
             }
 
             fn total_cmp(&self, other: &Self) -> Ordering {
@@ -111,15 +88,15 @@ macro_rules! impl_real {
 impl_real!(f32);
 impl_real!(f64);
 
-/// A vector, point or colour of `N` components.
+/// A vector or point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vector<R, const N: usize>(pub [R; N]);
+pub struct Vector<R>(pub [R; 3]);
 
-impl<R: Real, const N: usize> Vector<R, N> {
-    /// The same component `N` times.
+impl<R: Real> Vector<R> {
+    /// The same component three times.
     #[must_use]
     pub fn splat(value: R) -> Self {
-        Self([value; N])
+        Self([value; 3])
     }
 
     /// `of` each component and the one of `other`.
@@ -130,37 +107,13 @@ impl<R: Real, const N: usize> Vector<R, N> {
     /// Length times length times cosine.
     #[must_use]
     pub fn dot(self, other: Self) -> R {
-        (self * other).0.into_iter().sum()
+        self.zip(other, |a, b| a * b).0.into_iter().sum()
     }
 
     /// Length.
     #[must_use]
     pub fn length(self) -> R {
         self.dot(self).sqrt()
-    }
-
-    /// In the same direction, of length 1.
-    #[must_use]
-    pub fn normalize(self) -> Self {
-        self * (R::ONE / self.length())
-    }
-
-    /// Each component without its sign.
-    #[must_use]
-    pub fn abs(self) -> Self {
-        Self(self.0.map(R::abs))
-    }
-
-    /// Each component's nearest whole number that is not larger.
-    #[must_use]
-    pub fn floor(self) -> Self {
-        Self(self.0.map(R::floor))
-    }
-
-    /// From this at 0 to `other` at 1.
-    #[must_use]
-    pub fn lerp(self, other: Self, at: R) -> Self {
-        self * (R::ONE - at) + other * at
     }
 
     /// The smaller of each two components; that of `other` where they have no order.
@@ -179,18 +132,16 @@ impl<R: Real, const N: usize> Vector<R, N> {
     #[must_use]
     pub fn min_element(self) -> R {
         let backwards = self.0.into_iter().rev();
-        backwards.fold(self[N - 1], |least, one| if one < least { one } else { least })
+        backwards.fold(self[2], |least, one| if one < least { one } else { least })
     }
 
     /// The largest component; those after one that has no order decide.
     #[must_use]
     pub fn max_element(self) -> R {
         let backwards = self.0.into_iter().rev();
-        backwards.fold(self[N - 1], |most, one| if one > most { one } else { most })
+        backwards.fold(self[2], |most, one| if one > most { one } else { most })
     }
-}
 
-impl<R: Real> Vector<R, 3> {
     /// At right angles to both, as long as the area between them.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
@@ -214,14 +165,7 @@ impl<R: Real> Vector<R, 3> {
     }
 }
 
-/// `matrix` times `at`.
-#[must_use]
-pub fn transform<R: Real>(matrix: &DMat3, at: Vector<R, 3>) -> Vector<R, 3> {
-    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vector::from);
-    x * at[0] + y * at[1] + z * at[2]
-}
-
-impl<R, const N: usize> Index<usize> for Vector<R, N> {
+impl<R> Index<usize> for Vector<R> {
     type Output = R;
 
     fn index(&self, i: usize) -> &R {
@@ -229,7 +173,7 @@ impl<R, const N: usize> Index<usize> for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Add for Vector<R, N> {
+impl<R: Real> Add for Vector<R> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -237,7 +181,7 @@ impl<R: Real, const N: usize> Add for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Sub for Vector<R, N> {
+impl<R: Real> Sub for Vector<R> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -245,25 +189,8 @@ impl<R: Real, const N: usize> Sub for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Neg for Vector<R, N> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self(self.0.map(Neg::neg))
-    }
-}
-
 /// Component by component.
-impl<R: Real, const N: usize> Mul for Vector<R, N> {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
-
-/// Component by component.
-impl<R: Real, const N: usize> Div for Vector<R, N> {
+impl<R: Real> Div for Vector<R> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -271,7 +198,7 @@ impl<R: Real, const N: usize> Div for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Mul<R> for Vector<R, N> {
+impl<R: Real> Mul<R> for Vector<R> {
     type Output = Self;
 
     fn mul(self, factor: R) -> Self {
@@ -279,7 +206,7 @@ impl<R: Real, const N: usize> Mul<R> for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Div<R> for Vector<R, N> {
+impl<R: Real> Div<R> for Vector<R> {
     type Output = Self;
 
     fn div(self, divisor: R) -> Self {
@@ -287,32 +214,14 @@ impl<R: Real, const N: usize> Div<R> for Vector<R, N> {
     }
 }
 
-impl<R: Real, const N: usize> Sum for Vector<R, N> {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::splat(R::ZERO), Add::add)
-    }
-}
-
-impl<R: Real> From<DVec2> for Vector<R, 2> {
-    fn from(value: DVec2) -> Self {
-        Self(value.to_array().map(R::from_f64))
-    }
-}
-
-impl<R: Real> From<Vector<R, 2>> for DVec2 {
-    fn from(value: Vector<R, 2>) -> Self {
-        value.0.map(R::to_f64).into()
-    }
-}
-
-impl<R: Real> From<DVec3> for Vector<R, 3> {
+impl<R: Real> From<DVec3> for Vector<R> {
     fn from(value: DVec3) -> Self {
         Self(value.to_array().map(R::from_f64))
     }
 }
 
-impl<R: Real> From<Vector<R, 3>> for DVec3 {
-    fn from(value: Vector<R, 3>) -> Self {
+impl<R: Real> From<Vector<R>> for DVec3 {
+    fn from(value: Vector<R>) -> Self {
         value.0.map(R::to_f64).into()
     }
 }

@@ -40,7 +40,7 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, region: &Region, pictures: &Pictures, solution: &Solution, texel: UVec2) {
-        let Some(point) = region.receiver_point::<f64>(centre_px(texel)) else {
+        let Some(point) = region.receiver_point(centre_px(texel)) else {
             return;
         };
         let (frame, plate) = (pictures.frame.at(texel), pictures.plate.at(texel));
@@ -49,7 +49,7 @@ impl Sums {
             return;
         }
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
-        let model = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
+        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
         let unexplained = frame / solution.gain - plate * model;
         let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {

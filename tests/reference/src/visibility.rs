@@ -63,7 +63,7 @@ pub fn exact_visibility<R: Real>(
         let area = R::from_f64(at.length_squared());
         let cosine = R::ONE - area * sine * sine / (R::ONE + (R::ONE - sine * sine).sqrt());
         let sideways = (R::ONE - cosine * cosine).max(R::ZERO).sqrt();
-        let side = Vector::from(at.normalize_or_zero()) * sideways;
+        let side = Vector::from(at.normalize_or_zero().extend(0.0)) * sideways;
         let direction = axis * cosine + across * side[0] + along * side[1];
         let weight = direction[1].max(R::ZERO);
         let light_point = if distance_m.to_f64().is_finite() {

@@ -18,9 +18,9 @@ pub fn withhold(
 ) -> Raster<DVec4> {
     Raster::from_fn(region.size_px, |texel| {
         let (marks, at) = (validity.at(texel), centre_px(texel));
-        let in_shadow = region.receiver_point::<f64>(at).is_some_and(|point| {
+        let in_shadow = region.receiver_point(at).is_some_and(|point| {
             let ambient = coarse_at(&pictures.ambient, region, at);
-            let left = solution.receiver_model::<f64>(region, point, ambient, pictures.visibility.at(texel));
+            let left = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
             marks.x > 0.0 && left.min_element() < LIT
         });
         if in_shadow {

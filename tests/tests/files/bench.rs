@@ -1,12 +1,8 @@
 //! What a measurement of the bundled session comes to, as a program reads it.
 
-use app_core::core::Core;
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::session::Capture;
-use app_core::wgpu;
 use desk::alignment::{Lights, Ratio};
-use desk::files::{BUNDLED_SESSION, Folder};
+use harness::{bundled_session, open_core};
 use measure::bench::{
     Draw, FrameKind, Off, Options, Point, Pull, Row, basin, basin_csv, basin_drawing, basin_table, bench,
     csv, front, front_drawing, json, points,
@@ -15,9 +11,8 @@ use serde_json::Value;
 
 #[test]
 fn rows_are_complete_and_the_published_method_is_the_unit() {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let instance = wgpu::Instance::default();
-    let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap();
+    let session = bundled_session();
+    let mut core = open_core();
     let options = Options {
         presets: vec![Preset::Balanced, Preset::Paper],
         with_front: true,
@@ -178,7 +173,7 @@ fn the_front_is_of_what_nothing_faster_is_as_good_as() {
 
 #[test]
 fn starts_of_the_basin_are_as_far_off_as_they_say_and_drawn_from_their_seed() {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     let draws = basin(&session, 1, 2).unwrap();
     assert_eq!(draws, basin(&session, 1, 2).unwrap());
     let [half, whole] = draws[..] else {

@@ -2,7 +2,6 @@
 //! of the two phones, and what the core must not reach.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde::Deserialize;
@@ -63,16 +62,15 @@ const C_ON_PHONES: [(&str, &str); 5] = [
     ("ndk-sys", "declares the platform's libraries alone"),
     ("renderdoc-sys", "declares a header alone"),
 ];
+
 /// What `cargo metadata` prints, as far as it is looked at.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,
-    resolve: Resolve,
 }
 
 #[derive(Deserialize)]
 struct Package {
-    id: String,
     name: String,
     version: String,
     license: Option<String>,
@@ -80,39 +78,12 @@ struct Package {
     source: Option<String>,
 }
 
-#[derive(Deserialize)]
-struct Resolve {
-    nodes: Vec<Node>,
-}
-
-#[derive(Deserialize)]
-struct Node {
-    id: String,
-    deps: Vec<Dependency>,
-}
-
-#[derive(Deserialize)]
-struct Dependency {
-    pkg: String,
-    dep_kinds: Vec<DependencyKind>,
-}
-
-#[derive(Deserialize)]
-struct DependencyKind {
-    /// None for what is linked, else `build` or `dev`.
-    kind: Option<String>,
-}
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
-
 /// What a command of cargo prints of the workspace as it is locked.
 fn cargo(args: &[&str]) -> Vec<u8> {
     let output = Command::new(env!("CARGO"))
         .args(args)
         .arg("--locked")
-        .current_dir(repository())
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
         .output()
         .unwrap();
     assert!(
@@ -182,14 +153,12 @@ fn licence_expressions_are_weighed() {
     }
 }
 
-/// Name and version of every package that is compiled for a target, of `--workspace` or of one `--package=…`.
+/// Name and version of every package that is compiled for a target, of what `cargo tree` is told to list.
 ///
 /// Metadata lists more: packages, too, that features name only for the case that something else asks for them.
-fn compiled(of: &str, target: &str) -> Vec<(String, String)> {
-    let tree = [
-        "tree", of, "--prefix", "none", "--format", "{p}", "--target", target,
-    ];
-    let packages = String::from_utf8(cargo(&tree)).unwrap();
+fn compiled(of: &[&str], target: &str) -> Vec<(String, String)> {
+    let tree = ["tree", "--prefix=none", "--format={p}", "--target", target];
+    let packages = String::from_utf8(cargo(&[&tree, of].concat())).unwrap();
     let named = packages.lines().filter_map(|line| line.split_once(" v"));
     let versions = named.map(|(name, rest)| (name, rest.split(' ').next().unwrap()));
     versions
@@ -202,7 +171,7 @@ fn no_package_is_compiled_twice_without_a_reason() {
     let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (name, version) in TARGETS
         .into_iter()
-        .flat_map(|target| compiled("--workspace", target))
+        .flat_map(|target| compiled(&["--workspace"], target))
     {
         versions.entry(name).or_default().insert(version);
     }
@@ -225,7 +194,7 @@ fn no_package_is_compiled_twice_without_a_reason() {
 #[test]
 fn apps_know_no_schema() {
     let has_schema = |package: &str, target| {
-        let packages = compiled(&format!("--package={package}"), target);
+        let packages = compiled(&["--package", package], target);
         assert!(packages.iter().any(|(name, _)| name == "app-core"));
         packages.iter().any(|(name, _)| name == "schemars")
     };
@@ -237,8 +206,12 @@ fn apps_know_no_schema() {
 
 #[test]
 fn the_core_reaches_no_window_network_or_file() {
-    for metadata in all_metadata() {
-        let reached = linked_into(&metadata, "app-core");
+    for (target, metadata) in TARGETS.into_iter().zip(all_metadata()) {
+        let linked = compiled(
+            &["--package=app-core", "--all-features", "--edges=normal"],
+            target,
+        );
+        let reached: BTreeSet<&str> = linked.iter().map(|(name, _)| name.as_str()).collect();
         assert!(reached.contains("wgpu"), "{reached:?}");
         let wrong: Vec<&&str> = NOT_IN_CORE
             .iter()
@@ -261,7 +234,7 @@ fn the_core_reaches_no_window_network_or_file() {
 fn phones_compile_no_c_but_what_is_known() {
     let [_, ios, android] = TARGETS;
     let of_c = |package: &str, target| -> BTreeSet<String> {
-        let names = compiled(&format!("--package={package}"), target).into_iter();
+        let names = compiled(&["--package", package], target).into_iter();
         let names = names.map(|(name, _)| name);
         names.filter(|name| is_of_c(name)).collect()
     };
@@ -274,36 +247,4 @@ fn phones_compile_no_c_but_what_is_known() {
 /// Whether a package builds C, or is by its name of a library in C.
 fn is_of_c(name: &str) -> bool {
     ["cc", "cmake", "pkg-config", "bindgen"].contains(&name) || name.ends_with("-sys")
-}
-
-/// Names of all that is linked into a package, itself included.
-fn linked_into<'a>(metadata: &'a Metadata, name: &str) -> BTreeSet<&'a str> {
-    let packages: BTreeMap<&str, &Package> = metadata
-        .packages
-        .iter()
-        .map(|package| (package.id.as_str(), package))
-        .collect();
-    let nodes: BTreeMap<&str, &Node> = metadata
-        .resolve
-        .nodes
-        .iter()
-        .map(|node| (node.id.as_str(), node))
-        .collect();
-    let mut open: Vec<&str> = metadata
-        .packages
-        .iter()
-        .filter(|package| package.name == name)
-        .map(|package| package.id.as_str())
-        .collect();
-    let mut reached = BTreeSet::new();
-    while let Some(id) = open.pop() {
-        if reached.insert(id) {
-            let linked = nodes[id]
-                .deps
-                .iter()
-                .filter(|dep| dep.dep_kinds.iter().any(|kind| kind.kind.is_none()));
-            open.extend(linked.map(|dep| dep.pkg.as_str()));
-        }
-    }
-    reached.into_iter().map(|id| packages[id].name.as_str()).collect()
 }

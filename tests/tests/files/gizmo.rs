@@ -3,9 +3,8 @@
 use app_core::alignment::LightSearch;
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use desk::false_color::ERROR_RAMP;
-use desk::files::{BUNDLED_SESSION, Folder};
 use desk::gizmo::{Gizmo, hemisphere, rays};
 use glam::{DQuat, DVec2, DVec3};
 
@@ -13,7 +12,7 @@ use glam::{DQuat, DVec2, DVec3};
 const MARK: [u8; 3] = [1, 254, 2];
 
 fn session() -> (Scene, FrameInput) {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = harness::bundled_session();
     (
         session.scene().clone(),
         FrameInput::from(&session.frame(0).unwrap()),

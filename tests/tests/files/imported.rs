@@ -1,13 +1,14 @@
 //! Recordings of other programs: what each format is known to do otherwise, one by one.
 
-use std::path::{Path, PathBuf};
-use std::{env, fs, process};
+use std::path::Path;
 
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use desk::files::{BUNDLED_SESSION, Folder};
 use desk::import::{Format, ImportError, Imported, Lacking, parse, read, write, write_transforms};
 use desk::stored::Stored;
 use glam::{DMat4, DQuat, DVec3};
+use harness::bundled_session;
+use harness::temporary::Temporary;
 use measure::random::Random;
 
 const ODOMETRY: &str = "timestamp, frame, x, y, z, qx, qy, qz, qw, fx, fy, cx, cy\n\
@@ -141,40 +142,17 @@ fn nerfstudio_has_rows_and_z_up_and_its_own_intrinsics() {
 
 #[test]
 fn errors_name_file_field_and_reason() {
+    #[rustfmt::skip] // One case a line.
     let cases = [
-        (
-            stray(&ODOMETRY.replace("100.050, 000002, 0.1", "100.050, 000002, far")),
-            "odometry.csv (line 4, x): \"far\" is not a finite number",
-        ),
-        (
-            stray(&ODOMETRY.replace("0.3, 1.0, 0.0,", "0.3, 0.0, 0.0,")),
-            "odometry.csv (line 3, qw): the quaternion has no direction",
-        ),
-        (
-            stray(&ODOMETRY.replace("000003, 0.1", "000003, inf")),
-            "odometry.csv (line 5, x): \"inf\" is not a finite number",
-        ),
-        (
-            record3d(&METADATA.replace(",1,2,3]", ",1,2]")),
-            "metadata (poses[1]): 6 numbers, 7 are needed",
-        ),
+        (stray(&ODOMETRY.replace("100.050, 000002, 0.1", "100.050, 000002, far")), "odometry.csv (line 4, x): \"far\" is not a finite number"),
+        (stray(&ODOMETRY.replace("0.3, 1.0, 0.0,", "0.3, 0.0, 0.0,")), "odometry.csv (line 3, qw): the quaternion has no direction"),
+        (stray(&ODOMETRY.replace("000003, 0.1", "000003, inf")), "odometry.csv (line 5, x): \"inf\" is not a finite number"),
+        (record3d(&METADATA.replace(",1,2,3]", ",1,2]")), "metadata (poses[1]): 6 numbers, 7 are needed"),
         (record3d("{}"), "metadata (the file): missing field `poses`"),
-        (
-            nerfstudio(&TRANSFORMS.replace("OPENCV", "OPENCV_FISHEYE")),
-            "transforms.json (camera_model): \"OPENCV_FISHEYE\": only pinholes",
-        ),
-        (
-            nerfstudio(&TRANSFORMS.replace("\"p2\":0", "\"p2\":0.1")),
-            "transforms.json (p2): \"p2 = 0.1\": only pinholes",
-        ),
-        (
-            nerfstudio(&TRANSFORMS.replace("[0,0,1,6]", "[0,0,1]")),
-            "transforms.json (frames[1].transform_matrix): 3 numbers, 4 are needed",
-        ),
-        (
-            parse(Format::Record3d, [METADATA, ""], &[]),
-            "metadata (the frames): no frame with a pose has a picture",
-        ),
+        (nerfstudio(&TRANSFORMS.replace("OPENCV", "OPENCV_FISHEYE")), "transforms.json (camera_model): \"OPENCV_FISHEYE\": only pinholes"),
+        (nerfstudio(&TRANSFORMS.replace("\"p2\":0", "\"p2\":0.1")), "transforms.json (p2): \"p2 = 0.1\": only pinholes"),
+        (nerfstudio(&TRANSFORMS.replace("[0,0,1,6]", "[0,0,1]")), "transforms.json (frames[1].transform_matrix): 3 numbers, 4 are needed"),
+        (parse(Format::Record3d, [METADATA, ""], &[]), "metadata (the frames): no frame with a pose has a picture"),
     ];
     for (result, expected) in cases {
         let error = result.err().map(|error| error.to_string()).unwrap_or_default();
@@ -222,24 +200,6 @@ fn mutated(text: &str, random: &mut Random) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A folder that goes with the test.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new(name: &str) -> Self {
-        let folder = env::temp_dir().join(format!("import-{name}-{}", process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Out to nerfstudio's format and in again: cameras and pictures are the same.
 #[test]
 fn the_bundled_session_comes_back_from_nerfstudio() {
@@ -248,7 +208,7 @@ fn the_bundled_session_comes_back_from_nerfstudio() {
     write_transforms(&Stored::open(BUNDLED_SESSION).unwrap(), &there).unwrap();
     let files = Folder::open(&there).unwrap();
     let imported = read(Format::Nerfstudio, &files, &files.paths().unwrap()).unwrap();
-    let given = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let given = bundled_session();
     let error = write("llama", &files, &imported, &Lacking::default(), &back)
         .err()
         .unwrap()

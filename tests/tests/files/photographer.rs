@@ -1,13 +1,13 @@
 //! The analytic photographer against closed forms, each comparison with a planted fault that it finds.
 
 use std::f64::consts::PI;
-use std::fs;
 
 use app_core::scene::{Light, Pose};
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::toy::{PosedMesh, Toy};
 use desk::files::Folder;
 use glam::{DMat4, DVec2, DVec3};
+use harness::temporary::Temporary;
 use measure::photographer::{
     CLIP, Lamp, Paint, Part, Photos, Place, Quality, Sensor, Shape, Shot, Shown, Stance, ToyFile, World,
     folder, toy_glb,
@@ -211,12 +211,11 @@ fn noise_and_exposure_are_as_asked_for() {
 fn a_folder_is_read_back_as_it_was() {
     let world = World::boxes().resized([64, 36]);
     let shot = Shot::of(&world).unwrap();
-    let path = std::env::temp_dir().join(format!("photographer-{}", std::process::id()));
-    folder::write(&path, &shot).unwrap();
-    let session = Capture::open(Folder::open(&path).unwrap()).unwrap();
+    let path = Temporary::new("photographer");
+    folder::write(&path.0, &shot).unwrap();
+    let session = Capture::open(Folder::open(&path.0).unwrap()).unwrap();
     let frame = session.frame(0).unwrap();
     let truth = session.truth(0).unwrap().unwrap();
-    fs::remove_dir_all(&path).unwrap();
     assert!(session.warnings().is_empty(), "{:?}", session.warnings());
     assert!(*frame.image == **shot.input.image.rgba());
     assert!(truth.image == shot.truth.image && truth.mask == shot.truth.mask);

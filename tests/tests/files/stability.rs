@@ -2,9 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use app_core::core::Core;
-use app_core::gpu::AdapterChoice;
-use app_core::wgpu;
 use measure::stability::{Bound, Case, Lab, Label, Measured, Row, Scope, cases, csv, run, table};
 
 /// The cheapest case of each group that the quick subset holds, to plant a fault in.
@@ -19,9 +16,7 @@ const PLANTED: &[&str] = &[
 ];
 
 fn lab(is_planted: bool) -> Lab {
-    let instance = wgpu::Instance::default();
-    let core = Core::headless(&instance, &AdapterChoice::Fastest);
-    Lab::new(pollster::block_on(core).unwrap(), Scope::Quick, is_planted)
+    Lab::new(harness::open_core(), Scope::Quick, is_planted)
 }
 
 #[test]

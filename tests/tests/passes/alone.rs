@@ -30,6 +30,19 @@ pub(crate) struct Draw<'a> {
     pub(crate) size: UVec2,
 }
 
+impl<'a> Draw<'a> {
+    /// The first output, without constants.
+    pub(crate) fn of(source: &'a str, fragment: &'a str, size: UVec2) -> Self {
+        Self {
+            source,
+            fragment,
+            constants: &[],
+            output: 0,
+            size,
+        }
+    }
+}
+
 /// The WGSL of a pass of the registry.
 pub(crate) fn source(shader: &str) -> String {
     shaders().find(|one| one.name == shader).unwrap().source()

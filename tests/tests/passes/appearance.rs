@@ -89,11 +89,8 @@ fn errors(source: &str) -> Errors {
     .concat();
     let drawn = |output| {
         let draw = Draw {
-            source,
-            fragment: "fs_clean",
-            constants: &[],
             output,
-            size,
+            ..Draw::of(source, "fs_clean", size)
         };
         device.draw(draw, [&buffers(0, &shared[..1]), &own])
     };

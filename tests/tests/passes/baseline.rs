@@ -13,13 +13,13 @@ use reference::box_filter::{box_sums, mean};
 use reference::census::seen_sets;
 use reference::model::Region;
 use reference::pcss::{Softness, soft_visibility};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 use reference::search::{Found, Rings, Start, search, term};
 use reference::sets::LightSet;
 
 use crate::cores::core_on;
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, channels};
 use crate::photo::photograph;
 use crate::run::{crop, input, raster, scene};
 use crate::setups::{SETUPS, Setup};
@@ -46,12 +46,9 @@ static RUNS: LazyLock<Result<Vec<BaselineRun>, String>> = LazyLock::new(|| {
     let decoded = Device::shared().decoded();
     let run = |(index, setup): (usize, Setup)| {
         // What is eligible keeps some pixels away from every edge, so that the shadow must be larger than those.
-        let larger = Setup {
-            image_px: 2 * setup.image_px + 1,
-            ..setup
-        };
+        let stand = Stand::new(setup.twice());
         // Every other receiver is said to be uniform.
-        let run = BaselineRun::new(Stand::new(larger), index % 2 == 0, &decoded);
+        let run = BaselineRun::new(stand, index % 2 == 0, &decoded);
         run.map_err(|error| error.to_string())
     };
     // The published method has one receiver.
@@ -101,7 +98,7 @@ impl BaselineRun {
     /// Texels of the shown shadows, with the lights that cast them and where those shadows came from.
     fn shaded(&self) -> impl Iterator<Item = (UVec2, Start)> + '_ {
         let size = self.region.size_px;
-        let texels = (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)));
+        let texels = texels_of(size);
         texels.filter_map(|texel| {
             let warps = (0..).zip(&self.warp).map(|(light, warp)| (light, warp.at(texel)));
             let (lights, sources_px): (Vec<u32>, Vec<_>) = warps
@@ -182,9 +179,7 @@ fn box_filter() {
             run.check("count", &Errors::between(counts), (0.0, 0.0), 0.0);
             let means = sums()
                 .filter_map(|(actual, expected)| mean(*actual).zip(mean(*expected)))
-                .flat_map(|(actual, expected)| {
-                    (0..3).map(move |channel| (actual[channel], expected[channel]))
-                });
+                .flat_map(|(actual, expected)| channels(actual, expected));
             // Two sums in halves, each off by half of 2^-10 of values up to 2.
             run.check("mean", &Errors::between(means), (2e-3, 0.0), 2e-3);
         }

@@ -4,6 +4,7 @@ use app_core::preset::Preset;
 use app_pipeline::geometry::view::View;
 use glam::{DVec2, DVec3, UVec2};
 use reference::model::{Region, centre_px};
+use reference::raster::texels_of;
 
 use crate::composite::shows_toy;
 use crate::cores::core_on;
@@ -18,12 +19,7 @@ const BEHIND: DVec3 = DVec3::new(0.12, 0.3, -0.42);
 /// Within this distance of the toy a pixel may have its colour, and of the table that of its seam.
 const BESIDE_PX: f64 = 3.0;
 
-fn setup() -> Setup {
-    Setup {
-        image_px: UVec2::new(195, 131),
-        ..WALL
-    }
-}
+const SETUP: Setup = WALL.of_size(195, 131);
 
 /// Texels that show the back of the wall, away from its end and clear of the toy in both poses.
 fn texels_of_back(stand: &Stand, region: &Region) -> Vec<UVec2> {
@@ -31,24 +27,22 @@ fn texels_of_back(stand: &Stand, region: &Region) -> Vec<UVec2> {
     let end = region.size_px.as_dvec2() - 1.0;
     let is_back = |at: DVec2| {
         let texel = at.clamp(DVec2::ZERO, end).as_uvec2();
-        let surface = region.surface_point::<f64>(at);
+        let surface = region.surface_point(at);
         surface.is_some_and(|point| point.receiver == 1) && toys.iter().all(|toy| !toy.at(texel))
     };
     let steps = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ZERO];
-    let size = region.size_px;
-    let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
     let is_amid = |texel: &UVec2| {
         let around = steps.map(|step| centre_px(*texel) + BESIDE_PX * step);
         around.into_iter().all(is_back)
     };
-    texels.filter(is_amid).collect()
+    texels_of(region.size_px).filter(is_amid).collect()
 }
 
 /// The light on the wall is known from before it.
 #[test]
 fn nothing_moves_on_the_back_of_a_wall() {
-    let before = Stand::seen_from(setup(), BEFORE);
-    let behind = Stand::seen_from(setup(), BEHIND);
+    let before = Stand::seen_from(SETUP, BEFORE);
+    let behind = Stand::seen_from(SETUP, BEHIND);
     let photo = Photo::plain(2);
     let shots = [&before, &behind].map(|stand| photo.frame(stand, &stand.physical));
     let with_plates = scene(&before, &shots[0]).with_plates(vec![
@@ -77,7 +71,7 @@ fn nothing_moves_on_the_back_of_a_wall() {
 #[test]
 fn the_side_is_told_from_the_camera_and_from_the_homography_alike() {
     for offset in [BEHIND, BEFORE] {
-        let stand = Stand::seen_from(setup(), offset);
+        let stand = Stand::seen_from(SETUP, offset);
         let region = stand.region(&stand.whole_image());
         let view: View = stand.view();
         let told = stand

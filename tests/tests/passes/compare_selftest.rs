@@ -1,12 +1,12 @@
 //! Proof that the comparer and the goldens can fail: each fault below must be found.
 
-use std::path::{Path, PathBuf};
-use std::{fs, process};
+use std::fs;
 
 use app_core::scene::Image;
 use app_pipeline::readback::FloatMap;
 use harness::compare::{Check, CompareError, Difference, Pair, Texels};
 use harness::golden::{GoldenError, Goldens};
+use harness::temporary::Temporary;
 
 const WIDTH: u32 = 17;
 const HEIGHT: u32 = 11;
@@ -185,7 +185,7 @@ fn every_check_counts() {
 
 #[test]
 fn goldens_are_found_missing_unreadable_or_different_and_never_written() {
-    let folder = TemporaryFolder::new();
+    let folder = Temporary::new("goldens");
     let goldens = Goldens::in_folder(&folder.0.join("goldens"), &folder.0.join("failures"));
 
     let error = goldens.check("llama", &picture(), EXACT).unwrap_err();
@@ -222,21 +222,4 @@ fn goldens_are_found_missing_unreadable_or_different_and_never_written() {
     fs::write(goldens.path("llama"), &before[..before.len() / 2]).unwrap();
     let error = goldens.check("llama", &picture(), EXACT).unwrap_err();
     assert!(matches!(error, GoldenError::Unreadable { .. }), "{error}");
-}
-
-struct TemporaryFolder(PathBuf);
-
-impl TemporaryFolder {
-    fn new() -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("goldens-{}", process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for TemporaryFolder {
-    fn drop(&mut self) {
-        // What cannot be removed does no harm in a build folder.
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }

@@ -5,7 +5,7 @@ use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
 use reference::composite::{Shown, inside_border, receiver_color};
 use reference::model::centre_px;
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 use crate::errors::Errors;
 use crate::photo::unrounded_code;
@@ -40,14 +40,11 @@ pub(crate) fn check_receiver(run: &Run) {
         grids: run.grids.clone(),
     };
     let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
-    let texels = Raster::from_fn(run.region.size_px, |texel| texel);
-    let pairs = texels
-        .texels()
-        .iter()
-        .filter(|texel| !hidden.at(**texel))
+    let pairs = texels_of(run.region.size_px)
+        .filter(|texel| !hidden.at(*texel))
         .flat_map(|texel| {
-            let expected = receiver_color::<f64>(&run.region, &run.pictures, &shown, *texel);
-            let actual = run.picture.at(*texel);
+            let expected = receiver_color(&run.region, &run.pictures, &shown, texel);
+            let actual = run.picture.at(texel);
             assert_eq!(actual[3], 255, "alpha at {texel}");
             (0..3).map(move |channel| {
                 let (actual, [a, b]) = (
@@ -70,27 +67,23 @@ fn setups_meet_every_branch() {
     type Condition = fn(&Run, UVec2) -> bool;
     let conditions: [(&str, Condition); 4] = [
         ("on a second receiver", |run, texel| {
-            let point = run.region.receiver_point::<f64>(centre_px(texel));
+            let point = run.region.receiver_point(centre_px(texel));
             point.is_some_and(|point| point.receiver == 1)
         }),
         ("beside the receiver", |run, texel| {
-            run.region.receiver_point::<f64>(centre_px(texel)).is_none()
+            run.region.receiver_point(centre_px(texel)).is_none()
         }),
         ("away from every border", |run, texel| {
-            inside_border::<f64>(&run.region, texel) == 1.0
+            inside_border(&run.region, texel) == 1.0
         }),
         ("seen at an inner border", |run, texel| {
-            inside_border::<f64>(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
+            inside_border(&run.region, texel) < 1.0 && run.pictures.seen.at(texel) == 1.0
         }),
     ];
     for (what, is_met) in conditions {
         let is_met_somewhere = runs().iter().any(|run| {
             let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
-            let texels = Raster::from_fn(run.region.size_px, |texel| texel);
-            texels
-                .texels()
-                .iter()
-                .any(|texel| !hidden.at(*texel) && is_met(run, *texel))
+            texels_of(run.region.size_px).any(|texel| !hidden.at(texel) && is_met(run, texel))
         });
         assert!(is_met_somewhere, "no pixel is {what}");
     }

@@ -4,10 +4,9 @@ use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
 use app_core::core::{Core, CoreError};
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
-use app_core::wgpu;
+use harness::open_core;
 
 static IDLE: Mutex<Vec<Core>> = Mutex::new(Vec::new());
 
@@ -36,21 +35,14 @@ impl Drop for SharedCore {
 }
 
 /// A core that no test uses, with whatever scene.
-pub(crate) fn any_core() -> Result<SharedCore, CoreError> {
+pub(crate) fn any_core() -> SharedCore {
     let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
-    let core = match idle {
-        Some(core) => core,
-        None => pollster::block_on(Core::headless(
-            &wgpu::Instance::default(),
-            &AdapterChoice::Fastest,
-        ))?,
-    };
-    Ok(SharedCore(Some(core)))
+    SharedCore(Some(idle.unwrap_or_else(open_core)))
 }
 
 /// A core that has a scene.
 pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<SharedCore, CoreError> {
-    let mut core = any_core()?;
+    let mut core = any_core();
     core.set_scene(scene, preset)?;
     Ok(core)
 }

@@ -8,7 +8,7 @@ use reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::numbers::number;
 use crate::scrambled::{Scrambled, views};
 
@@ -50,25 +50,18 @@ fn errors(source: &str) -> Errors {
     let linear = device.linear_sampler();
     let mut own = views(0, &maps);
     own.push((4, wgpu::BindingResource::Sampler(&linear)));
-    let draw = Draw {
-        source,
-        fragment: "fs_separate",
-        constants: &[],
-        output: 0,
-        size,
-    };
+    let draw = Draw::of(source, "fs_separate", size);
     let actual = device.draw(draw, [&scene.seen(device).bindings(), &own]);
 
     let photographed = scene.plate.map(|texel| texel.w);
     let told = told(&scene.region, &scene.pictures(0), &photographed, &scene.solution);
     let expected = Raster::from_fn(size, |texel| {
-        let point = scene.region.receiver_point::<f64>(centre_px(texel));
+        let point = scene.region.receiver_point(centre_px(texel));
         point.map_or(DVec4::ZERO, |point| {
             separate(&told, (texel, point.receiver)).extend(1.0)
         })
     });
-    let both = actual.texels().iter().zip(expected.texels());
-    Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
+    Errors::between(pairs_of(&actual, &expected))
 }
 
 #[test]

@@ -1,5 +1,20 @@
 //! How far two lists of numbers are apart.
 
+use glam::{DVec3, DVec4};
+use reference::raster::Raster;
+
+/// All channels of two pictures of a size.
+pub(crate) fn pairs_of(actual: &Raster<DVec4>, expected: &Raster<DVec4>) -> Vec<(f64, f64)> {
+    let both = actual.texels().iter().zip(expected.texels());
+    both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k])))
+        .collect()
+}
+
+/// The channels of two colours.
+pub(crate) fn channels(actual: DVec3, expected: DVec3) -> impl Iterator<Item = (f64, f64)> {
+    (0..3).map(move |channel| (actual[channel], expected[channel]))
+}
+
 /// Differences between what the device made and what the reference says.
 pub(crate) struct Errors {
     sorted: Vec<f64>,

@@ -11,7 +11,7 @@ use reference::raster::Raster;
 use crate::alone::{Draw, check_faults, source};
 use crate::cores::core_on;
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::intensities::{codes_beside, pairs_beside};
 use crate::numbers::number;
 use crate::photo::Photo;
@@ -24,9 +24,8 @@ use crate::stand::Stand;
 fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
     for setup in [SETUPS[0], SETUPS[2]] {
         let stand = Stand::new(Setup {
-            image_px: 2 * setup.image_px + 1,
             feet_m: 0.0,
-            ..setup
+            ..setup.twice()
         });
         let photo = Photo::plain(1);
         let frame = photo.frame(&stand, &stand.physical);
@@ -101,18 +100,10 @@ fn errors(source: &str) -> Errors {
         solution: &scene.solution,
         lit: &lit,
     };
-    let draw = Draw {
-        source,
-        fragment: "fs_complete",
-        constants: &[],
-        output: 0,
-        size: scene.rect.size_px,
-    };
+    let draw = Draw::of(source, "fs_complete", scene.rect.size_px);
     let actual = device.draw(draw, [&scene.seen(device).bindings(), &own]);
     let texels = Raster::from_fn(scene.rect.size_px, |texel| texel);
     let expected = texels.map(|texel| complete(&scene.region, &known, true, texel));
-    let both = actual.texels().iter().zip(expected.texels());
-    let pairs = both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k])));
     let n_own = expected
         .texels()
         .iter()
@@ -120,7 +111,7 @@ fn errors(source: &str) -> Errors {
         .filter(|(color, texel)| color.w == ESTIMATED && is_own(&scene, &known, **color, **texel))
         .count();
     assert!(n_own > 500, "{n_own} pixels tell their own plate");
-    Errors::between(pairs)
+    Errors::between(pairs_of(&actual, &expected))
 }
 
 #[test]
@@ -143,9 +134,9 @@ fn a_fault_in_the_completion_is_found() {
 
 /// Whether an estimated pixel is not as smooth as what is around.
 fn is_own(scene: &Scrambled, known: &Known<'_>, color: DVec4, texel: glam::UVec2) -> bool {
-    let Some(point) = scene.region.receiver_point::<f64>(texel.as_dvec2() + 0.5) else {
+    let Some(point) = scene.region.receiver_point(texel.as_dvec2() + 0.5) else {
         return false;
     };
     let (grid, colors) = &known.lit[point.receiver];
-    color.truncate() != grid.value_at::<f64>(colors, point.in_plane)
+    color.truncate() != grid.value_at(colors, point.in_plane)
 }

@@ -6,8 +6,9 @@ use app_core::preset::Preset;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
-use glam::{DVec3, UVec2};
+use glam::DVec3;
 use reference::model::centre_px;
+use reference::raster::texels_of;
 
 use crate::cores::core_on;
 use crate::photo::Photo;
@@ -36,8 +37,8 @@ fn exposure(core: &Core, stand: &Stand, photo: &Photo, rect: &PixelRect) -> DVec
     let plate = raster(&core.read_map(Map::Plate).unwrap().unwrap());
     let region = stand.region(rect);
     let (mut sum, mut n) = (DVec3::ZERO, 0.0);
-    for texel in (0..plate.size().y).flat_map(|y| (0..plate.size().x).map(move |x| UVec2::new(x, y))) {
-        let point = region.receiver_point::<f64>(centre_px(texel));
+    for texel in texels_of(plate.size()) {
+        let point = region.receiver_point(centre_px(texel));
         if let Some(point) = point.filter(|_| plate.at(texel).w == 1.0) {
             sum += plate.at(texel).truncate() / photo.plate_at(&region, point);
             n += 1.0;

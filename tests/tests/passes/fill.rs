@@ -1,12 +1,12 @@
 //! `fill` on grids of any size and any certainty, without the passes before it.
 
-use glam::{DVec3, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 use reference::fill::fill;
 use reference::grid::Cell;
 use reference::raster::Raster;
 
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, channels};
 
 /// A cell of a patchwork: known, half known, and holes of all sizes.
 fn patchwork(at: UVec2) -> Cell {
@@ -46,7 +46,7 @@ fn pull_push() {
                 .iter()
                 .zip(expected.texels())
                 .flat_map(|(actual, expected)| {
-                    (0..3).map(|channel| (f64::from(actual[channel]), expected[channel]))
+                    channels(DVec4::from(actual.map(f64::from)).truncate(), *expected)
                 });
             // Some ten roundings of 32 bits of values up to 0.1.
             Errors::between(pairs).check_all(&format!("fill of {size}"), 1e-7);

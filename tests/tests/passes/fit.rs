@@ -11,7 +11,7 @@ use reference::raster::Raster;
 
 use crate::composite::check_receiver;
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, channels};
 use crate::photo::{Photo, truth};
 use crate::run::{Run, runs};
 use crate::setups::SETUPS;
@@ -52,7 +52,7 @@ fn check_receivers(run: &Run) {
     let mut expected = start(run.region.lights.len());
     for receiver in 0..run.stand.receivers.len() {
         let of_receiver = (receiver, &samples[..]);
-        expected = fit_receiver::<f64>(
+        expected = fit_receiver(
             &run.region,
             of_receiver,
             &expected,
@@ -94,7 +94,6 @@ fn clipped_pictures_tell_of_no_shadow() {
 fn receiver_finds_the_light_that_was_there() {
     for run in runs() {
         let truth = truth(run.region.lights.len());
-        let pairs = |colors: [DVec3; 2]| (0..3).map(move |channel| (colors[0][channel], colors[1][channel]));
         // Codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map, and the faint light that no list
         // names. Measured: 8e-3 and 8e-4.
         let n_receivers = run.stand.receivers.len();
@@ -107,10 +106,10 @@ fn receiver_finds_the_light_that_was_there() {
         let direct_fractions = direct_fractions(&run.solution)
             .into_iter()
             .zip(direct_fractions(&truth))
-            .flat_map(|(a, b)| pairs([a, b]));
+            .flat_map(|(a, b)| channels(a, b));
         Errors::between(direct_fractions)
             .check_all(&format!("{}, true direct_fractions", run.stand.setup.name), 0.02);
-        Errors::between(pairs([run.solution.gain, truth.gain])).check_all("true gain", 0.01);
+        Errors::between(channels(run.solution.gain, truth.gain)).check_all("true gain", 0.01);
     }
 }
 
@@ -146,15 +145,14 @@ fn toy() {
             receivers: run.solution.receivers.clone(),
             ..start(run.region.lights.len())
         };
-        let expected = fit_toy::<f64>(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+        let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
         // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
         let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
-            toy_radiance::<f64>(solution, sample.normal, sample.received)
+            toy_radiance(solution, sample.normal, sample.received)
         };
-        let pairs = samples.iter().flat_map(|sample| {
-            let (actual, expected) = (light(&run.solution, sample), light(&expected, sample));
-            (0..3).map(move |channel| (actual[channel], expected[channel]))
-        });
+        let pairs = samples
+            .iter()
+            .flat_map(|sample| channels(light(&run.solution, sample), light(&expected, sample)));
         // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.
         Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), 1e-3);
     }
@@ -167,12 +165,12 @@ fn share_of_the_lights_over_the_receiver() {
         let size = run.direct_fraction.size();
         let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
         let expected = Raster::from_fn(size, |texel| {
-            let Some(point) = run.region.receiver_point::<f64>(centre_px(texel) * scale) else {
+            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
                 return DVec3::ZERO;
             };
             let lights = 0..run.region.lights.len();
             lights
-                .map(|i| run.solution.light_fraction::<f64>(&run.region, i, point))
+                .map(|i| run.solution.light_fraction(&run.region, i, point))
                 .sum()
         });
         for (actual, expected) in run.direct_fraction.texels().iter().zip(expected.texels()) {

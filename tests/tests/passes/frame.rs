@@ -7,7 +7,7 @@ use reference::raster::Raster;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::numbers::numbers;
 use crate::scrambled::{Scrambled, views};
 
@@ -65,11 +65,8 @@ fn errors(source: &str) -> Errors {
     ]);
     let shown = format!("{source}{SHOWN}");
     let draw = Draw {
-        source: &shown,
-        fragment: "fs_frame",
         constants: &[("IS_PLANAR", 1.0)],
-        output: 0,
-        size: scene.rect.size_px,
+        ..Draw::of(&shown, "fs_frame", scene.rect.size_px)
     };
     let actual = device.draw(draw, [&bindings, &[]]);
     let expected = Raster::from_fn(scene.rect.size_px, |texel| {
@@ -81,8 +78,7 @@ fn errors(source: &str) -> Errors {
         let codes = decoded(ENCODING, [luma.at(at).x, blue, red].map(|code| 255.0 * code)) / 255.0;
         DVec4::from([linear(codes.x), linear(codes.y), linear(codes.z), 1.0])
     });
-    let both = actual.texels().iter().zip(expected.texels());
-    Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
+    Errors::between(pairs_of(&actual, &expected))
 }
 
 fn index(at: i64) -> u32 {

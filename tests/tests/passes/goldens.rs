@@ -57,7 +57,7 @@ fn seen_by(stands: &[Stand]) -> Image {
 
 #[test]
 fn pictures_are_their_goldens() {
-    let is_software = any_core().unwrap().is_software();
+    let is_software = any_core().is_software();
     let checks = if is_software { ON_SOFTWARE } else { ON_HARDWARE };
     let failures =
         pictures().map(|(name, picture)| Goldens::of_project().check(name, &picture, checks).err());

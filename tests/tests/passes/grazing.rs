@@ -3,7 +3,7 @@
 use app_core::frame::Warning;
 use app_core::preset::Preset;
 use app_pipeline::core::inspect::Inspect;
-use glam::{DVec3, UVec2};
+use glam::DVec3;
 
 use crate::cores::core_on;
 use crate::photo::{Photo, truth};
@@ -33,10 +33,7 @@ fn stand(setup: Setup, elevation_deg: f64, half_extent_m: Option<f64>) -> Stand 
 #[test]
 fn a_faint_shadow_is_told_where_its_strength_is_assumed() {
     for setup in [SETUPS[0], SETUPS[2]] {
-        let setup = Setup {
-            image_px: UVec2::new(231, 173),
-            ..setup
-        };
+        let setup = setup.of_size(231, 173);
         for elevation_deg in ELEVATIONS_DEG {
             for half_extent_m in [None, Some(1.5)] {
                 let stand = stand(setup, elevation_deg, half_extent_m);

@@ -10,17 +10,14 @@ use app_pipeline::readback::{FloatMap, Map};
 use crate::cores::core_on;
 use crate::photo::photograph;
 use crate::run::{input, scene};
-use crate::setups::{SETUPS, Setup};
+use crate::setups::SETUPS;
 use crate::stand::Stand;
 
 #[test]
 fn injected_visibility_takes_the_place_of_the_devices_own() {
     for preset in [Preset::Balanced, Preset::Paper] {
         // Two lights: the maps have two channels.
-        let stand = Stand::new(Setup {
-            image_px: 2 * SETUPS[1].image_px + 1,
-            ..SETUPS[1]
-        });
+        let stand = Stand::new(SETUPS[1].twice());
         let [plate, image] = photograph(&stand);
         let input = input(&stand, &image);
         let mut core = core_on(scene(&stand, &plate), preset).unwrap();
@@ -88,10 +85,7 @@ fn clear_of_shadows_all_is_composed_as_elsewhere() {
     };
     let mut n_apart = 0;
     for setup in SETUPS {
-        let stand = Stand::new(Setup {
-            image_px: 2 * setup.image_px + 1,
-            ..setup
-        });
+        let stand = Stand::new(setup.twice());
         let [plate, image] = photograph(&stand);
         let mut core = core_on(scene(&stand, &plate), Preset::Balanced).unwrap();
         let mut picture = |maps: Option<&InjectedVisibility>| {

@@ -7,12 +7,13 @@ use app_pipeline::core::inspect::Inspect;
 use app_scene::geometry::color::linear_from_srgb;
 use glam::{DVec3, UVec2};
 use reference::model::centre_px;
+use reference::raster::texels_of;
 
 use crate::composite::shows_toy;
 use crate::cores::core_on;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{input, scene, solution, texel_of};
+use crate::run::{codes_at, input, scene, solution, texel_of};
 use crate::setups::{SETUPS, Setup, WALL};
 use crate::stand::Stand;
 
@@ -28,14 +29,10 @@ pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f6
 /// Codes of two pictures where neither pose hides the receivers.
 pub(crate) fn pairs_beside(stand: &Stand, actual: &Image, expected: &Image) -> Vec<(f64, f64)> {
     let hidden = [&stand.physical, &stand.shown].map(|posed| shows_toy(stand, posed, &stand.whole_image()));
-    let UVec2 { x: width, y: height } = stand.setup.image_px;
-    let texels = (0..height).flat_map(|y| (0..width).map(move |x| UVec2::new(x, y)));
-    let beside = texels.filter(|texel| hidden.iter().all(|hidden| !hidden.at(*texel)));
+    let beside =
+        texels_of(stand.setup.image_px).filter(|texel| hidden.iter().all(|hidden| !hidden.at(*texel)));
     beside
-        .flat_map(|texel| {
-            let codes = [actual, expected].map(|image| texel_of(image, texel));
-            (0..3).map(move |channel| (f64::from(codes[0][channel]), f64::from(codes[1][channel])))
-        })
+        .flat_map(|texel| codes_at(actual, expected, texel))
         .collect()
 }
 
@@ -52,10 +49,7 @@ fn dimmed(photo: &Photo, exposure: DVec3, powers: &[f64]) -> Photo {
 #[test]
 fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
     for setup in [SETUPS[1], WALL] {
-        let stand = Stand::new(Setup {
-            image_px: UVec2::new(195, 131),
-            ..setup
-        });
+        let stand = Stand::new(setup.of_size(195, 131));
         let photo = Photo::plain(2);
         let (plate, first) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
         for (what, exposure, powers) in [
@@ -96,8 +90,6 @@ fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
 /// Texels that show sides of the shown toy which are turned away in the physical pose.
 fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
     let occluder = stand.occluder(&stand.shown);
-    let size = stand.setup.image_px;
-    let texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
     let is_hidden = |texel: &UVec2| {
         let (origin, direction) = stand.camera_ray(centre_px(*texel));
         occluder.nearest(origin, direction).is_some_and(|hit| {
@@ -106,7 +98,7 @@ fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
             stand.physical.normals[corner].as_dvec3().dot(to_camera) < 0.0
         })
     };
-    texels.filter(is_hidden).collect()
+    texels_of(stand.setup.image_px).filter(is_hidden).collect()
 }
 
 /// What the camera never saw of the toy is dimmed with the light that it turns to.

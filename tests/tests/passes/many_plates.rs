@@ -12,7 +12,7 @@ use glam::{DMat4, DVec3};
 
 use crate::cores::any_core;
 use crate::photo::Photo;
-use crate::plates::{HERE, flat, setup, turned};
+use crate::plates::{HERE, SETUP, flat, turned};
 use crate::run::{plate_of, scene};
 use crate::stand::Stand;
 
@@ -22,7 +22,7 @@ const MAX_OFF: f64 = 0.005;
 /// A camera of `n` around the toy.
 fn around(index: usize, n: usize) -> Stand {
     let angle_rad = TAU * index as f64 / n as f64;
-    Stand::seen_from(setup(), DMat4::from_rotation_y(angle_rad).transform_vector3(HERE))
+    Stand::seen_from(SETUP, DMat4::from_rotation_y(angle_rad).transform_vector3(HERE))
 }
 
 /// Exposure and white balance of a plate: 1 for the first, and up to a factor of two either way.
@@ -32,7 +32,7 @@ fn gain(index: usize) -> DVec3 {
 }
 
 fn scene_with(plates: Vec<Plate>) -> (Stand, Scene) {
-    let stand = Stand::seen_from(setup(), HERE);
+    let stand = Stand::seen_from(SETUP, HERE);
     let scene = scene(&stand, &flat(128)).with_plates(plates);
     (stand, scene)
 }
@@ -50,7 +50,7 @@ fn off(plates: Vec<Plate>, exposures: &[DVec3]) -> f64 {
 #[test]
 fn exposures_all_around_the_toy_are_matched() {
     const N: usize = 60;
-    let photo = Photo::plain(setup().lights.len());
+    let photo = Photo::plain(SETUP.lights.len());
     let plate = |index| {
         let stand = around(index, N);
         plate_of(&stand, &photo.exposed_plate(&stand, gain(index)))
@@ -64,13 +64,13 @@ fn exposures_all_around_the_toy_are_matched() {
 /// The first two share nothing, and what connects them comes last.
 #[test]
 fn exposures_are_matched_by_way_of_a_later_plate() {
-    let here = Stand::seen_from(setup(), HERE);
-    let photo = Photo::plain(setup().lights.len());
+    let here = Stand::seen_from(SETUP, HERE);
+    let photo = Photo::plain(SETUP.lights.len());
     let exposures = [0, 1, 2].map(gain);
     let plates = [0.45, -0.45, 0.0].iter().zip(exposures).map(|(left_rad, gain)| {
         let stand = Stand {
             camera: turned(&here.camera, *left_rad),
-            ..Stand::seen_from(setup(), HERE)
+            ..Stand::seen_from(SETUP, HERE)
         };
         plate_of(&stand, &photo.exposed_plate(&stand, gain))
     });
@@ -128,9 +128,7 @@ fn n_parts(compared: &[Vec<usize>]) -> usize {
 #[test]
 fn more_plates_than_are_handled_are_refused_by_name() {
     let plates = vec![plate_of(&around(0, 1), &flat(128)); MAX_SCENE_PLATES + 1];
-    let refused = any_core()
-        .unwrap()
-        .set_scene(scene_with(plates).1, Preset::Balanced);
+    let refused = any_core().set_scene(scene_with(plates).1, Preset::Balanced);
     let Err(CoreError::Input(InputError { field, reason })) = refused else {
         panic!("{refused:?}");
     };

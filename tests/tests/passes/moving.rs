@@ -80,7 +80,7 @@ impl Shots {
 fn residual_at(core: &Core, in_plane: DVec2) -> DVec3 {
     let (grid, cells) = &core.read_residuals().unwrap()[0];
     let grid = PlaneGrid::from(grid);
-    grid.value_at::<f64>(&raster(cells).map(DVec4::truncate), in_plane)
+    grid.value_at(&raster(cells).map(DVec4::truncate), in_plane)
 }
 
 #[test]

@@ -5,6 +5,7 @@ use app_core::scene::{Image, Light};
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use reference::model::{ReceiverPoint, centre_px};
+use reference::raster::texels_of;
 use reference::visibility::visibility_map;
 
 use crate::composite::shows_toy;
@@ -44,7 +45,7 @@ fn is_hand(point: ReceiverPoint) -> bool {
 
 /// Mean difference of codes where `is_compared`.
 fn difference(a: &Image, b: &Image, is_compared: impl Fn(UVec2) -> bool) -> f64 {
-    let texels = (0..a.height_px).flat_map(|y| (0..a.width_px).map(move |x| UVec2::new(x, y)));
+    let texels = texels_of(UVec2::new(a.width_px, a.height_px));
     let (mut sum, mut n) = (0.0, 0.0);
     for texel in texels.filter(|texel| is_compared(*texel)) {
         let codes = [a, b].map(|image| texel_of(image, texel));
@@ -80,9 +81,7 @@ fn a_hand_in_the_new_shadow_stays() {
     let (before, after) = (lights(&stand.physical), lights(&stand.shown));
     let toys = [&stand.physical, &stand.shown].map(|posed| shows_toy(&stand, posed, &stand.whole_image()));
     let is_compared = |texel: UVec2| {
-        let on_hand = region
-            .receiver_point::<f64>(centre_px(texel))
-            .is_some_and(is_hand);
+        let on_hand = region.receiver_point(centre_px(texel)).is_some_and(is_hand);
         let is_changed = (0..2).any(|i| (before[i].at(texel) - after[i].at(texel)).abs() > 0.5);
         on_hand && is_changed && toys.iter().all(|toy| !toy.at(texel))
     };

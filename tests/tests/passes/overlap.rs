@@ -16,7 +16,7 @@ use crate::cores::{SharedCore, core_on};
 use crate::device::Device;
 use crate::photo::photograph;
 use crate::run::{crop, input, raster, scene};
-use crate::setups::{SETUPS, Setup};
+use crate::setups::SETUPS;
 use crate::stand::Stand;
 
 /// A core that has made one frame, what it was made from, and its work region.
@@ -34,10 +34,7 @@ impl Shot {
 
     /// The same of a scene that was changed.
     fn of_scene(preset: Preset, change: impl FnOnce(&mut Scene)) -> Self {
-        let stand = Stand::new(Setup {
-            image_px: 2 * SETUPS[1].image_px + 1,
-            ..SETUPS[1]
-        });
+        let stand = Stand::new(SETUPS[1].twice());
         let [plate, image] = photograph(&stand);
         let input = input(&stand, &image);
         let mut scene = scene(&stand, &plate);

@@ -50,9 +50,9 @@ fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
     let at = centre_px(texel);
     let beyond = || ReceiverPoint {
         receiver: 0,
-        in_plane: region.receivers[0].plane_point::<f64>(at).unwrap_or_default(),
+        in_plane: region.receivers[0].plane_point(at).unwrap_or_default(),
     };
-    region.receiver_point::<f64>(at).unwrap_or_else(beyond)
+    region.receiver_point(at).unwrap_or_else(beyond)
 }
 
 /// Plate and frame of wood under the true light, with a little that no model explains.
@@ -90,7 +90,7 @@ impl Photo {
 
     /// The place without the toy, linear.
     pub(crate) fn plate_at(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
-        (self.albedo)(point) * self.solution.plate_falloff::<f64>(region, point)
+        (self.albedo)(point) * self.solution.plate_falloff(region, point)
     }
 
     pub(crate) fn plate(&self, stand: &Stand) -> Arc<Image> {
@@ -135,7 +135,7 @@ impl Photo {
                 let normal = posed.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
                 let at = origin + hit.distance * direction;
                 let received = received(&region, &occluder, &light_points, at, normal);
-                let light = toy_radiance::<f64>(&self.solution, normal, received);
+                let light = toy_radiance(&self.solution, normal, received);
                 return self.solution.gain
                     * (self.paint)(hit.triangle)
                     * toy::base_color(hit.triangle)
@@ -149,7 +149,7 @@ impl Photo {
                 .for_each(|(i, light)| visibility[i] = light.at(texel));
             let model = self
                 .solution
-                .receiver_model::<f64>(&region, at, ambient.at(texel), visibility);
+                .receiver_model(&region, at, ambient.at(texel), visibility);
             self.solution.gain * self.plate_at(&region, at) * (model + (self.unmodelled)(at))
         });
         Arc::new(image(&frame))

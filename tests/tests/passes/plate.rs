@@ -11,9 +11,9 @@ use app_pipeline::geometry::rect::PixelRect;
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::numbers::numbers;
-use crate::setups::{Setup, WALL};
+use crate::setups::WALL;
 use crate::stand::Stand;
 
 /// Before the wall, and behind it.
@@ -28,11 +28,7 @@ const PLATES: [DVec3; 4] = [
 ];
 
 fn stand(offset: DVec3) -> Stand {
-    let setup = Setup {
-        image_px: UVec2::new(161, 123),
-        ..WALL
-    };
-    Stand::seen_from(setup, offset)
+    Stand::seen_from(WALL.of_size(161, 123), offset)
 }
 
 fn viewpoint(stand: &Stand, rect: &PixelRect) -> Viewpoint {
@@ -105,11 +101,7 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
         .iter()
         .map(|(_, photo)| photo.picture.map(|color| color.extend(1.0)))
         .collect();
-    let pictures = device.layers(&pictures.iter().collect::<Vec<_>>());
-    let array = pictures.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..Default::default()
-    });
+    let array = device.array(&pictures.iter().collect::<Vec<_>>());
     let photos: Vec<PlatePhoto> = plates.iter().map(|(_, photo)| photo.clone()).collect();
     let here = stand(offset);
     let rect = PixelRect {
@@ -123,13 +115,7 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
         (0, views.as_entire_binding()),
         (1, wgpu::BindingResource::TextureView(&array)),
     ];
-    let draw = Draw {
-        source,
-        fragment: "fs_choose",
-        constants: &[],
-        output: 0,
-        size: rect.size_px,
-    };
+    let draw = Draw::of(source, "fs_choose", rect.size_px);
     let actual = device.draw(draw, [&shared, &own]);
     let view = viewpoint(&here, &rect);
     let expected = Raster::from_fn(rect.size_px, |texel| choose(&view, &photos, texel));
@@ -138,9 +124,7 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
         n_shown > 1000 && n_shown < expected.texels().len(),
         "{n_shown} are shown"
     );
-    let both = actual.texels().iter().zip(expected.texels());
-    both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k])))
-        .collect()
+    pairs_of(&actual, &expected)
 }
 
 /// A place in a plate is off by some 1e-5 of a pixel, and neighbours by up to 4. Measured: 1.1e-4.

@@ -10,7 +10,7 @@ use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use reference::model::{ReceiverPoint, Region, centre_px};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 use crate::cores::{SharedCore, core_on};
 use crate::device::Device;
@@ -25,10 +25,13 @@ pub(crate) const HERE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
 const BESIDE: DVec3 = DVec3::new(0.26, 0.36, 0.34);
 const AWAY: DVec3 = DVec3::new(-0.4, 0.42, 0.12);
 
-pub(crate) fn setup() -> Setup {
+pub(crate) const SETUP: Setup = WALL.of_size(231, 173);
+
+fn without_wall() -> Setup {
     Setup {
-        image_px: UVec2::new(231, 173),
-        ..WALL
+        has_wall: false,
+        lights: &WALL.lights[..1],
+        ..SETUP
     }
 }
 
@@ -49,8 +52,8 @@ fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec
 /// Texels of a region, with the receivers' points.
 fn points(region: &Region) -> impl Iterator<Item = (UVec2, ReceiverPoint)> + '_ {
     let size = region.size_px;
-    let texels = (0..size.y).flat_map(move |y| (0..size.x).map(move |x| UVec2::new(x, y)));
-    texels.filter_map(|texel| Some((texel, region.receiver_point::<f64>(centre_px(texel))?)))
+    let texels = texels_of(size);
+    texels.filter_map(|texel| Some((texel, region.receiver_point(centre_px(texel))?)))
 }
 
 /// How far inside another camera's picture it shows a point; negative where it does not, or another receiver hides it.
@@ -58,7 +61,7 @@ fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
     let region = stand.region(&stand.whole_image());
     let px = region.receivers[point.receiver].region_px(point.in_plane);
     let seen = px.filter(|px| {
-        let hit = region.receiver_point::<f64>(*px);
+        let hit = region.receiver_point(*px);
         hit.is_some_and(|hit| hit.receiver == point.receiver)
     });
     seen.map_or(-1.0, |px| px.min(region.size_px.as_dvec2() - px).min_element())
@@ -67,9 +70,7 @@ fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
 /// Whether the filter's sixteen texels around a pixel all show one receiver, or that many around.
 fn is_one_receiver(region: &Region, px: DVec2, receiver: usize) -> bool {
     let steps = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ZERO];
-    let mut around = steps
-        .iter()
-        .map(|step| region.receiver_point::<f64>(px + 4.0 * *step));
+    let mut around = steps.iter().map(|step| region.receiver_point(px + 4.0 * *step));
     around.all(|hit| hit.is_some_and(|hit| hit.receiver == receiver))
 }
 
@@ -95,7 +96,7 @@ fn same_camera_gives_its_codes_bit_for_bit() {
 
 #[test]
 fn plate_of_another_camera_is_the_place_as_seen_from_here() {
-    let (here, beside) = (Stand::seen_from(setup(), HERE), Stand::seen_from(setup(), BESIDE));
+    let (here, beside) = (Stand::seen_from(SETUP, HERE), Stand::seen_from(SETUP, BESIDE));
     let photo = photo(&here);
     let plates = vec![plate_of(&beside, &photo.plate(&beside))];
     let (plate, rect, _) = plate_from(plates, Preset::Balanced, &here);
@@ -106,7 +107,7 @@ fn plate_of_another_camera_is_the_place_as_seen_from_here() {
     for (texel, point) in points(&region) {
         let plate_px = whole.receivers[point.receiver].region_px(point.in_plane).unwrap();
         if whole
-            .receiver_point::<f64>(plate_px)
+            .receiver_point(plate_px)
             .is_some_and(|hit| hit.receiver != point.receiver)
         {
             n_hidden += 1;
@@ -136,11 +137,7 @@ fn plate_of_another_camera_is_the_place_as_seen_from_here() {
 
 #[test]
 fn what_no_plate_shows_is_not_there() {
-    let setup = Setup {
-        has_wall: false,
-        lights: &WALL.lights[..1],
-        ..setup()
-    };
+    let setup = without_wall();
     // Closer: it sees a part of the place.
     let (here, close) = (
         Stand::seen_from(setup, HERE),
@@ -165,7 +162,7 @@ fn what_no_plate_shows_is_not_there() {
 
 /// A picture of one code, which tells nothing of its exposure when it is white.
 pub(crate) fn flat(code: u8) -> Arc<Image> {
-    let UVec2 { x, y } = setup().image_px;
+    let UVec2 { x, y } = SETUP.image_px;
     Arc::new(Image {
         width_px: x,
         height_px: y,
@@ -175,8 +172,8 @@ pub(crate) fn flat(code: u8) -> Arc<Image> {
 
 #[test]
 fn of_two_plates_the_one_that_saw_it_better_wins() {
-    let here = Stand::seen_from(setup(), HERE);
-    let (beside, away) = (Stand::seen_from(setup(), BESIDE), Stand::seen_from(setup(), AWAY));
+    let here = Stand::seen_from(SETUP, HERE);
+    let (beside, away) = (Stand::seen_from(SETUP, BESIDE), Stand::seen_from(SETUP, AWAY));
     let grey = Device::shared().decoded()[128];
     for order in [[0, 1], [1, 0]] {
         let both = [plate_of(&away, &flat(255)), plate_of(&beside, &flat(128))];
@@ -202,12 +199,12 @@ fn of_two_plates_the_one_that_saw_it_better_wins() {
 
 #[test]
 fn exposures_of_plates_are_matched_to_the_first() {
-    let here = Stand::seen_from(setup(), HERE);
+    let here = Stand::seen_from(SETUP, HERE);
     let first = photo(&here);
     let gains = [DVec3::ONE, DVec3::new(1.35, 0.8, 1.1), DVec3::new(0.7, 0.75, 0.9)];
     let offsets = [AWAY, BESIDE, DVec3::new(0.02, 0.4, 0.4)];
     let plates = offsets.iter().zip(gains).map(|(offset, gain)| {
-        let stand = Stand::seen_from(setup(), *offset);
+        let stand = Stand::seen_from(SETUP, *offset);
         plate_of(&stand, &first.exposed_plate(&stand, gain))
     });
     let plates: Vec<Plate> = plates.collect();
@@ -243,10 +240,10 @@ pub(crate) fn turned(camera: &Camera, left_rad: f64) -> Camera {
 #[test]
 fn a_narrow_gap_between_plates_is_reported() {
     const HALF_GAP_PX: f64 = 3.5;
-    let here = Stand::seen_from(setup(), HERE);
+    let here = Stand::seen_from(SETUP, HERE);
     let k = &here.camera.intrinsics;
     let angle_rad = |px: f64| (px / k.fx_px).atan();
-    let to_right_border = f64::from(setup().image_px.x) - k.cx_px;
+    let to_right_border = f64::from(SETUP.image_px.x) - k.cx_px;
     let plates_apart_by = |half_gap_px: f64, aside_px: f64| {
         let left_rad = angle_rad(to_right_border) + angle_rad(half_gap_px - aside_px);
         let right_rad = angle_rad(k.cx_px) + angle_rad(half_gap_px + aside_px);
@@ -279,11 +276,7 @@ fn a_narrow_gap_between_plates_is_reported() {
 /// Low on either side of the toy, so that they look against each other, near and far.
 #[test]
 fn what_only_a_plate_from_the_other_side_shows_is_there() {
-    let setup = Setup {
-        has_wall: false,
-        lights: &WALL.lights[..1],
-        ..setup()
-    };
+    let setup = without_wall();
     let here = Stand::seen_from(setup, DVec3::new(0.1, 0.12, 0.5));
     for far in [1.0, 6.0] {
         let across = Stand::seen_from(setup, far * DVec3::new(-0.1, 0.08, -0.5));

@@ -3,7 +3,7 @@
 use reference::fill::fill;
 use reference::residual::pool;
 
-use crate::errors::Errors;
+use crate::errors::{Errors, channels};
 use crate::run::runs;
 
 #[test]
@@ -22,7 +22,7 @@ fn pooled_and_filled() {
             .texels()
             .iter()
             .zip(expected.texels())
-            .flat_map(|(actual, expected)| (0..3).map(|channel| (actual[channel], expected[channel])));
+            .flat_map(|(actual, expected)| channels(actual.truncate(), *expected));
         let largest = expected
             .texels()
             .iter()

@@ -31,7 +31,7 @@ impl Device {
     }
 
     /// A texture of 32 bits, to load texels from: a layer each.
-    pub(crate) fn layers(&self, layers: &[&Raster<DVec4>]) -> wgpu::Texture {
+    fn layers(&self, layers: &[&Raster<DVec4>]) -> wgpu::Texture {
         let texels: Vec<[f32; 4]> = layers
             .iter()
             .flat_map(|layer| layer.texels().iter().map(|texel| texel.as_vec4().to_array()))
@@ -43,6 +43,14 @@ impl Device {
             RESULT_FORMAT,
             bytemuck::cast_slice(&texels),
         )
+    }
+
+    /// The view of a texture array.
+    pub(crate) fn array(&self, layers: &[&Raster<DVec4>]) -> wgpu::TextureView {
+        self.layers(layers).create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        })
     }
 
     /// The view of a texture of one layer.

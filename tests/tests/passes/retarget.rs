@@ -9,7 +9,7 @@ use reference::retarget::{Layers, Shade, receiver_color};
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::numbers::{number, numbers};
 use crate::scrambled::views;
 use crate::setups::SETUPS;
@@ -94,12 +94,7 @@ fn pairs(device: &Device, source: &str, shade: Shade) -> Vec<(f64, f64)> {
         device.uniform(&stand.globals(&rect)),
         device.uniform(&settings(shade)),
     ];
-    let array = device
-        .layers(&terms.each_ref())
-        .create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        });
+    let array = device.array(&terms.each_ref());
     let maps = [&image, &plate, &masks, &layers.visibility].map(|map| device.map(map));
     let labels = device.labels(&eligible);
     let shared: Bindings<'_> = vec![
@@ -109,20 +104,12 @@ fn pairs(device: &Device, source: &str, shade: Shade) -> Vec<(f64, f64)> {
     let mut own = views(0, &maps);
     own.push((4, wgpu::BindingResource::TextureView(&array)));
     own.push((6, wgpu::BindingResource::TextureView(&labels)));
-    let draw = Draw {
-        source,
-        fragment: "fs_receiver",
-        constants: &[],
-        output: 0,
-        size,
-    };
+    let draw = Draw::of(source, "fs_receiver", size);
     let actual = device.draw(draw, [&shared, &own]);
     let expected = Raster::from_fn(size, |texel| {
         receiver_color(&layers, 2, shade, SEAM_PX, texel).extend(1.0)
     });
-    let both = actual.texels().iter().zip(expected.texels());
-    both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k])))
-        .collect()
+    pairs_of(&actual, &expected)
 }
 
 #[test]

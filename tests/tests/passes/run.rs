@@ -180,6 +180,16 @@ pub(crate) fn texel_of(image: &Image, at: UVec2) -> [u8; 4] {
     [0, 1, 2, 3].map(|channel| image.rgba8[first + channel])
 }
 
+/// Codes of two pictures at a place, channel by channel.
+pub(crate) fn codes_at(
+    actual: &Image,
+    expected: &Image,
+    at: UVec2,
+) -> impl Iterator<Item = (f64, f64)> + use<> {
+    let (actual, expected) = (texel_of(actual, at), texel_of(expected, at));
+    (0..3).map(move |channel| (f64::from(actual[channel]), f64::from(expected[channel])))
+}
+
 /// What the device fitted, as the references have it.
 pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
     let color = |value: &[f32; 4]| Vec4::from(*value).truncate().as_dvec3();

@@ -15,7 +15,7 @@ use crate::alone::Bindings;
 use crate::device::Device;
 use crate::numbers::{number, numbers};
 use crate::photo::truth;
-use crate::setups::{Setup, WALL};
+use crate::setups::WALL;
 use crate::stand::Stand;
 
 /// Pixels of the region for a texel of the ambient map.
@@ -40,10 +40,7 @@ pub(crate) struct Scrambled {
 
 impl Scrambled {
     pub(crate) fn new() -> Self {
-        let stand = Stand::new(Setup {
-            image_px: UVec2::new(173, 131),
-            ..WALL
-        });
+        let stand = Stand::new(WALL.of_size(173, 131));
         let rect = PixelRect {
             origin_px: UVec2::new(21, 10),
             size_px: UVec2::new(123, 101),

@@ -1,7 +1,6 @@
 //! `search` on few and scattered samples, some of them nowhere: warps that point within the region and beyond it.
 
 use app_core::scene::MAX_RECEIVERS;
-use app_core::wgpu;
 use app_pipeline::baseline::uniform::Baseline as BaselineUniform;
 use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
@@ -100,13 +99,8 @@ fn pairs(source: &str) -> [Vec<(f64, f64)>; 2] {
     let mut words = [0; MAX_RECEIVERS];
     words[0] = seen;
     let seen = device.storage(bytemuck::bytes_of(&words));
-    let layers = device.layers(&[&warps[0], &warps[1]]);
-    let array = wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..Default::default()
-    };
     let maps = [
-        layers.create_view(&array),
+        device.array(&[&warps[0], &warps[1]]),
         device.labels(&eligible.map(|label| [label, 0])),
         device.map(&image),
         device.map(&plate),
@@ -119,11 +113,8 @@ fn pairs(source: &str) -> [Vec<(f64, f64)>; 2] {
     own.push((4, seen.as_entire_binding()));
     let actual = [0, 1].map(|output| {
         let draw = Draw {
-            source,
-            fragment: "fs_search",
-            constants: &[],
             output,
-            size: rect.size_px,
+            ..Draw::of(source, "fs_search", rect.size_px)
         };
         device.draw(draw, [&shared, &own])
     });

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use reference::model::centre_px;
 use reference::occlusion::Occluder;
-use reference::raster::Raster;
+use reference::raster::texels_of;
 use reference::self_shadow::received;
 
 use crate::errors::Errors;
@@ -58,14 +58,13 @@ fn received_light() {
             Some((side, light, unhidden))
         };
         let (mut everywhere, mut away) = (Vec::new(), Vec::new());
-        let texels = Raster::from_fn(run.region.size_px, |texel| texel);
-        let is_on_toy = |texel: &&UVec2| run.validity.at(**texel).y > 0.0;
-        for texel in texels.texels().iter().filter(is_on_toy) {
-            let Some((side, expected, unhidden)) = of_ray(centre_px(*texel)) else {
+        let is_on_toy = |texel: &UVec2| run.validity.at(*texel).y > 0.0;
+        for texel in texels_of(run.region.size_px).filter(is_on_toy) {
+            let Some((side, expected, unhidden)) = of_ray(centre_px(texel)) else {
                 continue;
             };
-            let actual = run.gbuffer_received.at(*texel);
-            let around = AROUND_PX.map(|offset| of_ray(centre_px(*texel) + offset));
+            let actual = run.gbuffer_received.at(texel);
+            let around = AROUND_PX.map(|offset| of_ray(centre_px(texel) + offset));
             for i in 0..run.region.lights.len() {
                 everywhere.push((actual[i], expected[i]));
                 let is_alike = |other: &Option<(usize, DVec4, DVec4)>| {

@@ -17,6 +17,22 @@ pub(crate) struct Setup {
     pub(crate) has_wall: bool,
 }
 
+impl Setup {
+    /// The same in a picture of another size.
+    pub(crate) const fn of_size(self, width_px: u32, height_px: u32) -> Self {
+        Self {
+            image_px: UVec2::new(width_px, height_px),
+            ..self
+        }
+    }
+
+    /// The same in a picture twice as large, and odd.
+    pub(crate) fn twice(self) -> Self {
+        let UVec2 { x, y } = 2 * self.image_px + 1;
+        self.of_size(x, y)
+    }
+}
+
 const BULB: Light = Light::Sphere {
     position_in_world: DVec3::new(0.32, 0.62, 0.02),
     radius_m: 0.05,

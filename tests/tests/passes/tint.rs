@@ -6,13 +6,13 @@ use glam::{DVec2, DVec3, UVec2};
 use reference::fit::toy_radiance;
 use reference::model::centre_px;
 use reference::occlusion::Occluder;
-use reference::raster::Raster;
+use reference::raster::texels_of;
 use reference::tint::{SeenPaint, tints};
 
 use crate::cores::core_on;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{Run, input, runs, scene, texel_of};
+use crate::run::{Run, codes_at, input, runs, scene};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 
@@ -25,24 +25,23 @@ const HEAD: usize = 3;
 /// What a run's frame shows of the toy, by rays.
 fn seen(run: &Run) -> Vec<SeenPaint> {
     let occluder = run.stand.occluder(&run.stand.physical);
-    let texels = Raster::from_fn(run.region.size_px, |texel| texel);
-    let taken = texels.texels().iter().filter(|texel| {
-        let is_taken = **texel % run.plan.fit_stride_px == UVec2::ZERO;
-        is_taken && run.validity.at(**texel).y == 1.0
+    let taken = texels_of(run.region.size_px).filter(|texel| {
+        let is_taken = *texel % run.plan.fit_stride_px == UVec2::ZERO;
+        is_taken && run.validity.at(*texel).y == 1.0
     });
     let of_texel = taken.filter_map(|texel| {
         let (origin, direction) = run
             .stand
-            .camera_ray(run.plan.region.origin_px.as_dvec2() + centre_px(*texel));
+            .camera_ray(run.plan.region.origin_px.as_dvec2() + centre_px(texel));
         let hit = occluder.nearest(origin, direction)?;
         let normal =
             run.stand.physical.normals[run.stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-        let light = toy_radiance::<f64>(&run.solution, normal, run.gbuffer_received.at(*texel));
+        let light = toy_radiance(&run.solution, normal, run.gbuffer_received.at(texel));
         Some(SeenPaint {
             in_anchor: origin + hit.distance * direction,
             material: hit.triangle / N_TRIANGLES,
-            shown: run.pictures.frame.at(*texel),
-            expected: run.solution.gain * run.gbuffer_base.at(*texel) * light,
+            shown: run.pictures.frame.at(texel),
+            expected: run.solution.gain * run.gbuffer_base.at(texel) * light,
         })
     });
     of_texel.collect()
@@ -101,16 +100,12 @@ fn error_of_what_was_hidden(paint: fn(usize) -> DVec3) -> f64 {
     let was_hidden =
         |at: DVec2| box_at(&stand, &shown, at) == Some(BODY) && box_at(&stand, &physical, at) == Some(HEAD);
     let around = [DVec2::ZERO, DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y];
-    let texels = Raster::from_fn(stand.setup.image_px, |texel| texel);
-    let inside = texels.texels().iter().filter(|texel| {
+    let inside = texels_of(stand.setup.image_px).filter(|texel| {
         around
             .iter()
-            .all(|offset| was_hidden(centre_px(**texel) + *offset))
+            .all(|offset| was_hidden(centre_px(*texel) + *offset))
     });
-    let pairs = inside.flat_map(|texel| {
-        let (actual, expected) = (texel_of(&picture, *texel), texel_of(&expected, *texel));
-        (0..3).map(move |k| (f64::from(actual[k]), f64::from(expected[k])))
-    });
+    let pairs = inside.flat_map(|texel| codes_at(&picture, &expected, texel));
     Errors::between(pairs).mean()
 }
 

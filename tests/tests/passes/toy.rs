@@ -1,7 +1,7 @@
 //! A toy of four boxes, as a binary glTF file: two legs, a body, and a head that moves.
 
-use measure::glb::container;
-use serde_json::{Value, json};
+use measure::glb::Glb;
+use serde_json::json;
 
 /// Name of the clip, which lasts one second.
 pub(crate) const CLIP: &str = "look round";
@@ -15,27 +15,12 @@ struct BoxPart {
     color: [f32; 3],
 }
 
+#[rustfmt::skip] // One part a line.
 const PARTS: [BoxPart; 4] = [
-    BoxPart {
-        centre_m: [-0.03, 0.025, 0.0],
-        half_m: [0.012, 0.025, 0.02],
-        color: [0.5, 0.35, 0.2],
-    },
-    BoxPart {
-        centre_m: [0.03, 0.025, 0.0],
-        half_m: [0.012, 0.025, 0.02],
-        color: [0.5, 0.35, 0.2],
-    },
-    BoxPart {
-        centre_m: [0.0, 0.065, 0.0],
-        half_m: [0.05, 0.02, 0.025],
-        color: [0.25, 0.45, 0.6],
-    },
-    BoxPart {
-        centre_m: [0.045, 0.1, 0.0],
-        half_m: [0.02, 0.02, 0.02],
-        color: [0.6, 0.5, 0.15],
-    },
+    BoxPart { centre_m: [-0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
+    BoxPart { centre_m: [0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
+    BoxPart { centre_m: [0.0, 0.065, 0.0], half_m: [0.05, 0.02, 0.025], color: [0.25, 0.45, 0.6] },
+    BoxPart { centre_m: [0.045, 0.1, 0.0], half_m: [0.02, 0.02, 0.02], color: [0.6, 0.5, 0.15] },
 ];
 
 /// Base colour of a triangle of the toy, linear; each box has twelve.
@@ -45,82 +30,32 @@ pub(crate) fn base_color(triangle: usize) -> glam::DVec3 {
 
 /// The file. In a second the head rises, moves across the body and turns by 60 degrees.
 pub(crate) fn glb() -> Vec<u8> {
-    let mut bin = Bin::default();
-    let mut nodes = Vec::new();
-    let mut meshes = Vec::new();
-    let mut materials = Vec::new();
+    let mut glb = Glb::new();
     for (index, part) in PARTS.iter().enumerate() {
         let (positions, normals, corners) = box_mesh(part.half_m);
         let attributes =
-            json!({ "POSITION": bin.floats("VEC3", &positions), "NORMAL": bin.floats("VEC3", &normals) });
-        let indices = bin.indices(&corners);
-        meshes.push(
-            json!({ "primitives": [{ "attributes": attributes, "indices": indices, "material": index }] }),
-        );
-        nodes.push(json!({ "mesh": index, "translation": part.centre_m }));
+            json!({ "POSITION": glb.floats("VEC3", &positions), "NORMAL": glb.floats("VEC3", &normals) });
+        let indices = glb.u32s(&corners);
+        glb.mesh(json!({ "attributes": attributes, "indices": indices, "material": index }));
+        glb.push("nodes", json!({ "mesh": index, "translation": part.centre_m }));
         let [r, g, b] = part.color;
-        materials.push(json!({ "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0] } }));
+        let color = json!({ "baseColorFactor": [r, g, b, 1.0] });
+        glb.push("materials", json!({ "pbrMetallicRoughness": color }));
     }
-    let times = bin.floats("SCALAR", &[0.0, 1.0]);
-    let places = bin.floats("VEC3", &[0.045, 0.1, 0.0, -0.04, 0.125, 0.03]);
-    let turns = bin.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.866_025_4]);
+    glb.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    let times = glb.floats("SCALAR", &[0.0, 1.0]);
+    let places = glb.floats("VEC3", &[0.045, 0.1, 0.0, -0.04, 0.125, 0.03]);
+    let turns = glb.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.866_025_4]);
     let sampler = |output: usize| json!({ "input": times, "output": output });
     let channel =
         |sampler: usize, path: &str| json!({ "sampler": sampler, "target": { "node": HEAD, "path": path } });
-    let json = json!({
-        "asset": { "version": "2.0" },
-        "scene": 0,
-        "scenes": [{ "nodes": [0, 1, 2, 3] }],
-        "nodes": nodes,
-        "meshes": meshes,
-        "materials": materials,
-        "animations": [{
-            "name": CLIP,
-            "samplers": [sampler(places), sampler(turns)],
-            "channels": [channel(0, "translation"), channel(1, "rotation")],
-        }],
-        "buffers": [{ "byteLength": bin.bytes.len() }],
-        "bufferViews": bin.views,
-        "accessors": bin.accessors,
+    let clip = json!({
+        "name": CLIP,
+        "samplers": [sampler(places), sampler(turns)],
+        "channels": [channel(0, "translation"), channel(1, "rotation")],
     });
-    container(json.to_string().as_bytes(), &bin.bytes)
-}
-
-#[derive(Default)]
-struct Bin {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl Bin {
-    fn floats(&mut self, shape: &str, values: &[f32]) -> usize {
-        let width = match shape {
-            "SCALAR" => 1,
-            "VEC3" => 3,
-            _ => 4,
-        };
-        self.accessor(
-            bytemuck::cast_slice(values),
-            json!({ "componentType": 5126, "type": shape, "count": values.len() / width }),
-        )
-    }
-
-    fn indices(&mut self, values: &[u32]) -> usize {
-        self.accessor(
-            bytemuck::cast_slice(values),
-            json!({ "componentType": 5125, "type": "SCALAR", "count": values.len() }),
-        )
-    }
-
-    fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
-        self.views
-            .push(json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() }));
-        self.bytes.extend_from_slice(bytes);
-        accessor["bufferView"] = (self.views.len() - 1).into();
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
+    glb.push("animations", clip);
+    glb.bytes()
 }
 
 /// Six faces of four corners each, counter-clockwise from outside: positions, normals, indices.

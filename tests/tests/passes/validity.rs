@@ -31,13 +31,7 @@ fn errors(source: &str) -> Errors {
     let depth = Raster::from_fn(SIZE, depth);
     let map = device.depth(&depth);
     let own: Bindings<'_> = vec![(0, wgpu::BindingResource::TextureView(&map))];
-    let draw = Draw {
-        source,
-        fragment: "fs_mark",
-        constants: &[],
-        output: 0,
-        size: SIZE,
-    };
+    let draw = Draw::of(source, "fs_mark", SIZE);
     let actual = device.draw(draw, [&[], &own]);
     let expected = Raster::from_fn(SIZE, |texel| mark(&depth, texel));
     let both = actual.texels().iter().zip(expected.texels());

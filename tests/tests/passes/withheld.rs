@@ -9,14 +9,15 @@ use app_core::wgpu;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::Map;
 use glam::UVec2;
+use reference::raster::texels_of;
 use reference::withhold::withhold;
 
 use crate::alone::{Draw, check_faults, source};
 use crate::cores::core_on;
 use crate::device::Device;
-use crate::errors::Errors;
+use crate::errors::{Errors, pairs_of};
 use crate::photo::Photo;
-use crate::run::{input, raster, scene, texel_of};
+use crate::run::{codes_at, input, raster, scene};
 use crate::scrambled::{Scrambled, buffers, views};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
@@ -41,16 +42,12 @@ fn a_withheld_shadow_is_rebuilt_and_tells_nothing() {
 
     let origin_px = core.plan().unwrap().region.origin_px;
     let validity = raster(&core.read_map(Map::Validity).unwrap().unwrap());
-    let texels = (0..validity.size().y).flat_map(|y| (0..validity.size().x).map(move |x| UVec2::new(x, y)));
-    let withheld: Vec<UVec2> = texels
+    let withheld: Vec<UVec2> = texels_of(validity.size())
         .filter(|texel| validity.at(*texel).w < 1.0)
         .map(|texel| origin_px + texel)
         .collect();
     let pairs = |a: &Image, b: &Image| {
-        let codes = withheld.iter().flat_map(|texel| {
-            let (a, b) = (texel_of(a, *texel), texel_of(b, *texel));
-            (0..3).map(move |k| (f64::from(a[k]), f64::from(b[k])))
-        });
+        let codes = withheld.iter().flat_map(|texel| codes_at(a, b, *texel));
         Errors::between(codes.collect::<Vec<_>>())
     };
     // Rounding of codes, and edges. Measured: 0.61.
@@ -78,13 +75,7 @@ fn errors(source: &str) -> Errors {
     let linear = device.linear_sampler();
     let mut own = views(0, &maps);
     own.push((3, wgpu::BindingResource::Sampler(&linear)));
-    let draw = Draw {
-        source,
-        fragment: "fs_withhold",
-        constants: &[],
-        output: 0,
-        size: scene.rect.size_px,
-    };
+    let draw = Draw::of(source, "fs_withhold", scene.rect.size_px);
     let actual = device.draw(draw, [&buffers(0, &scene.shared(device)), &own]);
     let expected = withhold(
         &scene.region,
@@ -92,8 +83,7 @@ fn errors(source: &str) -> Errors {
         &scene.solution,
         &scene.validity,
     );
-    let both = actual.texels().iter().zip(expected.texels());
-    Errors::between(both.flat_map(|(actual, expected)| (0..4).map(|k| (actual[k], expected[k]))))
+    Errors::between(pairs_of(&actual, &expected))
 }
 
 #[test]

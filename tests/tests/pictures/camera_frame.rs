@@ -114,27 +114,12 @@ fn every_layout_is_the_same_picture() {
         row_stride: 12,
         pixel_stride: 2,
     });
+    #[rustfmt::skip] // One layout a line.
     let layouts = [
-        (
-            "I420",
-            Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601),
-        ),
-        (
-            "NV12",
-            Planes::nv12(SIZE_PX, (&luma, 16), (&blue_red, 12), FULL_601),
-        ),
-        (
-            "NV21",
-            Planes::nv21(SIZE_PX, (&luma, 16), (&red_blue, 12), FULL_601),
-        ),
-        (
-            "as Android's Image has NV12, each plane a byte short",
-            Planes {
-                blue: strided[0],
-                red: strided[1],
-                ..Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601)
-            },
-        ),
+        ("I420", Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601)),
+        ("NV12", Planes::nv12(SIZE_PX, (&luma, 16), (&blue_red, 12), FULL_601)),
+        ("NV21", Planes::nv21(SIZE_PX, (&luma, 16), (&red_blue, 12), FULL_601)),
+        ("as Android's Image has NV12, each plane a byte short", Planes { blue: strided[0], red: strided[1], ..Planes::i420(SIZE_PX, (&luma, 16), (&blue, 9), (&red, 9), FULL_601) }),
     ];
     let expected = PlanarImage::new(&layouts[0].1).unwrap();
     for (name, planes) in &layouts {
@@ -188,49 +173,14 @@ fn planes_that_hold_no_picture_are_refused_by_name() {
         row_stride: 4,
         pixel_stride: 1,
     };
+    #[rustfmt::skip] // One case a line.
     let cases = [
-        (
-            Planes {
-                size_px: [0, 5],
-                ..planes
-            },
-            "camera planes: 0 x 5 px",
-        ),
-        (
-            Planes {
-                size_px: [7, 9000],
-                ..planes
-            },
-            "camera planes: 7 x 9000 px",
-        ),
-        (
-            Planes { red: short, ..planes },
-            "camera planes, Cr: 11 bytes, 12 are needed",
-        ),
-        (
-            Planes::i420(SIZE_PX, (&luma, 6), (&chroma, 4), (&chroma, 4), FULL_601),
-            "camera planes, luma: rows 6 and samples 1 bytes apart cannot hold 7 samples a row",
-        ),
-        (
-            Planes {
-                blue: Plane {
-                    pixel_stride: 0,
-                    ..short
-                },
-                ..planes
-            },
-            "camera planes, Cb: rows 4 and samples 0 bytes apart",
-        ),
-        (
-            Planes {
-                blue: Plane {
-                    row_stride: usize::MAX,
-                    ..short
-                },
-                ..planes
-            },
-            "camera planes, Cb: rows 18446744073709551615",
-        ),
+        (Planes { size_px: [0, 5], ..planes }, "camera planes: 0 x 5 px"),
+        (Planes { size_px: [7, 9000], ..planes }, "camera planes: 7 x 9000 px"),
+        (Planes { red: short, ..planes }, "camera planes, Cr: 11 bytes, 12 are needed"),
+        (Planes::i420(SIZE_PX, (&luma, 6), (&chroma, 4), (&chroma, 4), FULL_601), "camera planes, luma: rows 6 and samples 1 bytes apart cannot hold 7 samples a row"),
+        (Planes { blue: Plane { pixel_stride: 0, ..short }, ..planes }, "camera planes, Cb: rows 4 and samples 0 bytes apart"),
+        (Planes { blue: Plane { row_stride: usize::MAX, ..short }, ..planes }, "camera planes, Cb: rows 18446744073709551615"),
     ];
     for (planes, expected) in cases {
         let error = error(planes).unwrap_or_default();

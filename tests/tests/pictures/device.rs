@@ -10,12 +10,12 @@ use app_core::frame::{FrameInput, FrameReport};
 use app_core::preset::Preset;
 use app_core::scene::{Camera, Image, Pose};
 use app_core::self_test;
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use app_core::wgpu;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::plan::Change;
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::{DMat4, DVec3};
+use harness::bundled_session;
 use measure::planar::{BT601_FULL, planar};
 
 use crate::trace::Traced;
@@ -87,10 +87,6 @@ fn from_beside(input: &FrameInput) -> FrameInput {
     })
 }
 
-fn session() -> Capture {
-    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
-}
-
 /// The frames after which nothing but one thing changes, and what that is.
 fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
     let pose = later(first);
@@ -108,7 +104,7 @@ fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
 
 #[test]
 fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
-    let session = session();
+    let session = bundled_session();
     let mut first = FrameInput::from(&session.frame(0).unwrap());
     first.image = as_planes(first.image.rgba());
     let mut traced = Traced::new("steady");
@@ -138,7 +134,7 @@ fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
 
 #[test]
 fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
-    let session = session();
+    let session = bundled_session();
     let mut traced = Traced::new("warm");
     let warm_up = traced.core.warm_up(Preset::Balanced);
     let n_passes = warm_up.len();
@@ -166,7 +162,7 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
 /// What a core does past its count and its report is found.
 #[test]
 fn a_planted_pass_and_a_planted_buffer_are_found() {
-    let session = session();
+    let session = bundled_session();
     let mut traced = Traced::new("planted");
     traced
         .core

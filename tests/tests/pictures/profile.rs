@@ -1,27 +1,17 @@
 //! Profiles: a trace as viewers take it, and the layout of Table 1, from whichever file.
 
-use app_core::core::Core;
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::profile::{DEVICE, FRAME, PROCESSOR, Profile};
-use app_core::session::{Capture, Session};
-use app_core::wgpu;
+use app_core::session::Session;
 use app_pipeline::shaders;
-use desk::files::{BUNDLED_SESSION, Folder};
+use harness::{bundled_session, open_core};
 use measure::profiled::{TASKS, parse, profile, tables, task};
 use serde_json::Value;
 
 fn measured() -> (Profile, usize) {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let mut core = pollster::block_on(Core::headless(
-        &wgpu::Instance::default(),
-        &AdapterChoice::Fastest,
-    ))
-    .unwrap();
-    (
-        profile(&session, &mut core, Preset::Paper).unwrap(),
-        session.n_frames(),
-    )
+    let session = bundled_session();
+    let profile = profile(&session, &mut open_core(), Preset::Paper).unwrap();
+    (profile, session.n_frames())
 }
 
 #[test]

@@ -1,11 +1,8 @@
 //! The core's self-test: every preset passes it here, and what a device may do wrong does not.
 
-use app_core::Core;
-use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::self_test::{self, Difference, SIZE_PX, SelfTestError};
-use app_core::wgpu;
 
 /// A picture whose pixels are made of those of another.
 fn changed(picture: &Image, pixel: impl Fn(usize, usize) -> [u8; 4]) -> Image {
@@ -40,74 +37,37 @@ fn faults(picture: &Image) -> Vec<(&'static str, Image)> {
         let code = (255.0 * linear.powf(1.1)).round() as u8;
         code
     };
-    vec![
-        (
-            "red is blue",
-            changed(picture, |x, y| {
-                let [r, g, b, a] = at(picture, x, y);
-                [b, g, r, a]
-            }),
-        ),
-        (
-            "one pixel to the right",
-            changed(picture, |x, y| at(picture, x.saturating_sub(1), y)),
-        ),
-        (
-            "one pixel down",
-            changed(picture, |x, y| at(picture, x, y.saturating_sub(1))),
-        ),
-        (
-            "upside down",
-            changed(picture, |x, y| at(picture, x, height - 1 - y)),
-        ),
+    let recoloured = |color: &dyn Fn([u8; 4]) -> [u8; 4]| changed(picture, |x, y| color(at(picture, x, y)));
+    let replaced = |is_replaced: &dyn Fn(usize, usize) -> bool, by: &dyn Fn(usize, usize) -> [u8; 4]| {
+        changed(picture, |x, y| {
+            if is_replaced(x, y) {
+                by(x, y)
+            } else {
+                at(picture, x, y)
+            }
+        })
+    };
+    let black = |_, _| [0, 0, 0, 255];
+    #[rustfmt::skip] // One fault a line.
+    let faults = vec![
+        ("red is blue", recoloured(&|[r, g, b, a]| [b, g, r, a])),
+        ("one pixel to the right", changed(picture, |x, y| at(picture, x.saturating_sub(1), y))),
+        ("one pixel down", changed(picture, |x, y| at(picture, x, y.saturating_sub(1)))),
+        ("upside down", changed(picture, |x, y| at(picture, x, height - 1 - y))),
         ("mirrored", changed(picture, |x, y| at(picture, width - 1 - x, y))),
-        (
-            "black shadow",
-            changed(picture, |x, y| {
-                if is_shadow(x, y) {
-                    [0, 0, 0, 255]
-                } else {
-                    at(picture, x, y)
-                }
-            }),
-        ),
-        (
-            "no shadow",
-            changed(picture, |x, y| {
-                if is_shadow(x, y) {
-                    at(&photograph, x, y)
-                } else {
-                    at(picture, x, y)
-                }
-            }),
-        ),
-        (
-            "another transfer function",
-            changed(picture, |x, y| {
-                let [r, g, b, a] = at(picture, x, y);
-                [gamma(r), gamma(g), gamma(b), a]
-            }),
-        ),
-        (
-            "a tile that is missing",
-            changed(picture, |x, y| {
-                if x / 16 == 2 && y / 16 == 1 {
-                    [0, 0, 0, 255]
-                } else {
-                    at(picture, x, y)
-                }
-            }),
-        ),
+        ("black shadow", replaced(&is_shadow, &black)),
+        ("no shadow", replaced(&is_shadow, &|x, y| at(&photograph, x, y))),
+        ("another transfer function", recoloured(&|[r, g, b, a]| [gamma(r), gamma(g), gamma(b), a])),
+        ("a tile that is missing", replaced(&|x, y| x / 16 == 2 && y / 16 == 1, &black)),
         ("the toy as it stands", photograph.clone()),
-        ("black", changed(picture, |_, _| [0, 0, 0, 255])),
-    ]
+        ("black", changed(picture, black)),
+    ];
+    faults
 }
 
 #[test]
 fn every_preset_passes_and_no_fault_does() {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    let mut core = pollster::block_on(opened).unwrap();
+    let mut core = harness::open_core();
     for &preset in Preset::ALL {
         let picture = self_test::render(&mut core, preset).unwrap();
         let difference = self_test::check(&picture, preset);

@@ -23,15 +23,10 @@ use crate::toolchain::Toolchain;
 const CLANG: &str = "clang-19";
 const LINKER: &str = "ld.lld-19";
 /// Linkers alone; the tools of a package are `apk`'s.
+#[rustfmt::skip] // One tool a line.
 const TOOLS: [Tool; 2] = [
-    Tool {
-        program: CLANG,
-        package: "clang-19",
-    },
-    Tool {
-        program: LINKER,
-        package: "lld-19",
-    },
+    Tool { program: CLANG, package: "clang-19" },
+    Tool { program: LINKER, package: "lld-19" },
 ];
 /// Debian's unwinder for the phone's processor, which stands in for the NDK's.
 const UNWINDER: &str = "libunwind-19-dev";

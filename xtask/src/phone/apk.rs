@@ -13,23 +13,12 @@ use super::zip::{self, Entry};
 use crate::command;
 
 /// Tools of a package, where Android's own are missing.
+#[rustfmt::skip] // One tool a line.
 const TOOLS: [Tool; 4] = [
-    Tool {
-        program: "aapt2",
-        package: "aapt",
-    },
-    Tool {
-        program: "apksigner",
-        package: "apksigner",
-    },
-    Tool {
-        program: "unzip",
-        package: "unzip",
-    },
-    Tool {
-        program: "keytool",
-        package: "default-jre-headless",
-    },
+    Tool { program: "aapt2", package: "aapt" },
+    Tool { program: "apksigner", package: "apksigner" },
+    Tool { program: "unzip", package: "unzip" },
+    Tool { program: "keytool", package: "default-jre-headless" },
 ];
 /// What manifests refer to, from Debian: Android 10's.
 const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk";

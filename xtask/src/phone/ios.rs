@@ -25,15 +25,10 @@ const OLDEST: [u32; 2] = [16, 0];
 const SDK: &str = "18.0";
 const CLANG: &str = "clang-19";
 const LINKER: &str = "ld64.lld-19";
+#[rustfmt::skip] // One tool a line.
 const TOOLS: [Tool; 2] = [
-    Tool {
-        program: CLANG,
-        package: "clang-19",
-    },
-    Tool {
-        program: LINKER,
-        package: "lld-19",
-    },
+    Tool { program: CLANG, package: "clang-19" },
+    Tool { program: LINKER, package: "lld-19" },
 ];
 /// Loaded although no name of it is imported: its classes are looked up while the app runs.
 const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
@@ -284,27 +279,13 @@ mod tests {
         };
         let none = Imports::default();
         assert!(check(&good(), &none).is_ok());
+        #[rustfmt::skip] // One case a line.
         let wrong = [
-            Executable {
-                processor: 7,
-                ..good()
-            },
-            Executable {
-                platform: Some((macho::IOS, [17, 0])),
-                ..good()
-            },
-            Executable {
-                platform: Some((1, OLDEST)),
-                ..good()
-            },
-            Executable {
-                loads: BTreeSet::new(),
-                ..good()
-            },
-            Executable {
-                imports: BTreeSet::from(["_system".to_owned()]),
-                ..good()
-            },
+            Executable { processor: 7, ..good() },
+            Executable { platform: Some((macho::IOS, [17, 0])), ..good() },
+            Executable { platform: Some((1, OLDEST)), ..good() },
+            Executable { loads: BTreeSet::new(), ..good() },
+            Executable { imports: BTreeSet::from(["_system".to_owned()]), ..good() },
         ];
         for wrong in wrong {
             assert!(check(&wrong, &none).is_err(), "{wrong:?}");

@@ -3,13 +3,10 @@
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::search::TERM_FORMAT;
 use crate::baseline::uniform::{SCENE_SLOTS, Scene};
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Attachment, Recorder, cleared, loaded};
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::{Texture, TextureLayers, TextureView};
+use crate::gpu::{
+    Attachment, Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Resource, Shader, Slot, Texture,
+    TextureLayers, TextureView, cleared, loaded, shader, shared_struct,
+};
 use app_scene::scene::MAX_LIGHTS;
 
 pub(crate) const SHADER: Shader = shader!("baseline/box_filter", structs: [Summed]);

@@ -3,13 +3,7 @@
 use wgpu::BufferUsages;
 
 use crate::baseline::plan::BaselinePlan;
-use crate::gpu::bindings::{GROUP_PASS, Slot};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Compute, ComputeSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::Texture;
+use crate::gpu::{Buffer, Compute, ComputeSpec, GROUP_PASS, Gpu, Recorder, Shader, Slot, Texture, shader};
 use app_scene::scene::MAX_RECEIVERS;
 
 pub(crate) const SHADER: Shader = shader!("baseline/census");

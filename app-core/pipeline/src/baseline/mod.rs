@@ -7,11 +7,7 @@ mod unseen;
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, Scene};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pass_run::PassGroup;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{Buffer, Gpu, PassGroup, Recorder, Texture, TextureView};
 use crate::passes::globals::Globals;
 use crate::passes::list::passes;
 use crate::passes::pictures::{Picture, Pictures};

@@ -4,12 +4,10 @@ use wgpu::TextureFormat;
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{SCENE_SLOTS, Scene};
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::{Texture, TextureView, half_float};
+use crate::gpu::{
+    Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Shader, Slot, Texture, TextureView, half_float,
+    shader,
+};
 use app_scene::scene::MAX_LIGHTS;
 
 pub(crate) const SHADER: Shader = shader!("baseline/pcss");

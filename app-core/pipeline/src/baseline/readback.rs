@@ -1,7 +1,7 @@
 //! The baseline's maps, read back for reports and tests.
 
 use crate::baseline::Baseline;
-use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use crate::readback::{FloatMap, Map, read_texture};
 
 impl Baseline {

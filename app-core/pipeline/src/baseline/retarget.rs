@@ -4,12 +4,10 @@ use wgpu::{CompareFunction, DepthStencilState, StoreOp, TextureFormat, VertexFor
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{SCENE_SLOTS, Scene};
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, resolved};
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{
+    Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Shader, Slot, Stream, Texture, TextureView,
+    nearest_surface, resolved, shader,
+};
 use crate::passes::pictures::Picture;
 use crate::passes::present::REGION_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;

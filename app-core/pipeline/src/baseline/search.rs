@@ -4,13 +4,10 @@ use wgpu::TextureFormat;
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{SCENE_SLOTS, Scene};
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{
+    Buffer, Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Recorder, Shader, Slot, Texture, TextureView,
+    shader,
+};
 
 pub(crate) const SHADER: Shader = shader!("baseline/search");
 const SLOTS: &[Slot] = &[

@@ -1,10 +1,7 @@
 //! The uniform of the baseline's settings.
 
 use crate::geometry::scene_layout::SceneLayout;
-use crate::gpu::bindings::{Resource, Slot};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::shader::{Mirrors, mirrors};
-use crate::gpu::shared::shared_struct;
+use crate::gpu::{Buffer, Mirrors, Resource, Slot, mirrors, shared_struct};
 use crate::passes::globals::Globals;
 use crate::preset::BaselineSettings;
 use app_scene::geometry::bounds::Bounds;

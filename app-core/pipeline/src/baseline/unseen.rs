@@ -3,7 +3,7 @@
 use crate::baseline::Baseline;
 use crate::baseline::census::SeenSets;
 use crate::frame::warning::{UnseenShadow, Warning};
-use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use crate::readback::{FloatMap, Map};
 use app_scene::scene::MAX_LIGHTS;
 

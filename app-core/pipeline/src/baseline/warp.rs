@@ -3,13 +3,10 @@
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
 use crate::baseline::plan::BaselinePlan;
-use crate::gpu::bindings::GROUP_SCENE;
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
-use crate::gpu::recorder::{Recorder, cleared};
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::{Texture, TextureLayers};
+use crate::gpu::{
+    Buffer, Draw, DrawSpec, GROUP_SCENE, Gpu, Recorder, Shader, Stream, Texture, TextureLayers, cleared,
+    nearest_surface, shader,
+};
 use crate::passes::globals::GLOBALS_GROUP;
 use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use app_scene::scene::MAX_RECEIVERS;

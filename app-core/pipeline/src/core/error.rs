@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::gpu::context::GpuError;
+use crate::gpu::GpuError;
 use crate::preset::SettingsError;
 use app_scene::scene::InputError;
 use app_scene::toy::ToyError;

@@ -3,8 +3,7 @@
 use bytemuck::Zeroable;
 
 use super::{Core, CoreError};
-use crate::gpu::device::Kind;
-use crate::gpu::meter::Memory;
+use crate::gpu::{Kind, Memory};
 use crate::model::plan::Plan;
 use crate::model::state::grids::Grid;
 use crate::model::state::solution::Fit;

@@ -12,14 +12,9 @@ use std::sync::Arc;
 
 use crate::frame::FrameReport;
 use crate::governor::QualityStep;
-use crate::gpu::DeviceHandle;
-use crate::gpu::context::{AdapterChoice, Gpu, GpuError};
-use crate::gpu::pass_run::PassTime;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::stages::{Clock, Stages};
-use crate::gpu::texture::Texture;
-use crate::gpu::timer::Timer;
-use crate::gpu::work::Work;
+use crate::gpu::{
+    AdapterChoice, Clock, DeviceHandle, Gpu, GpuError, PassTime, Recorder, Stages, Texture, Timer, Work,
+};
 use crate::model::Model;
 use crate::passes::pictures::ComposedFrame;
 use crate::passes::present::OUTPUT_FORMAT;

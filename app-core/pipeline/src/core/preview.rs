@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::gpu::context::Gpu;
+use crate::gpu::Gpu;
 use crate::passes::pictures::ComposedFrame;
 use crate::stage::camera_texture::CameraTexture;
 use app_scene::camera_frame::CameraImage;

@@ -2,8 +2,7 @@
 
 use super::window::Window;
 use super::{Core, CoreError};
-use crate::gpu::context::GpuError;
-use crate::gpu::shader::ShaderTexts;
+use crate::gpu::{GpuError, ShaderTexts};
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;
 use crate::preset::Preset;

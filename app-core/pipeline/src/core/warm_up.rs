@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Core;
-use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use crate::passes::list::WarmUp as Compile;
 use crate::preset::Settings;
 use crate::stage::method;

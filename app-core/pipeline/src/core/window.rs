@@ -2,11 +2,7 @@
 
 use wgpu::CurrentSurfaceTexture;
 
-use crate::gpu::context::{Gpu, GpuError};
-use crate::gpu::recorder::{Recorded, Recorder};
-use crate::gpu::texture::{Texture, TextureView};
-use crate::gpu::timer::Timer;
-use crate::gpu::work::Work;
+use crate::gpu::{Gpu, GpuError, Recorded, Recorder, Texture, TextureView, Timer, Work};
 use crate::passes::pictures::ComposedFrame;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;

@@ -36,49 +36,15 @@ pub struct QualityStep {
 /// The order is that in which least error is added for what is saved. What a step is expected to bring is the mean of what
 /// the ledger says of triangles and of bytes, for a new pose, one light with a wide penumbra and 10,000 triangles; where it was
 /// taken once, the governor knows better. The step to 32 points brings nothing where all lights have as many.
+#[rustfmt::skip] // One step a line.
 pub const BALANCED_QUALITY_LADDER: &[QualityStep] = &[
-    QualityStep {
-        setting: QualitySetting::AmbientDivisor,
-        value: 8,
-        gain: 0.99,
-        what: "ambient shadow is drawn at an eighth of the resolution",
-    },
-    QualityStep {
-        setting: QualitySetting::AmbientDirections,
-        value: 32,
-        gain: 0.90,
-        what: "ambient shadow is drawn from 32 directions",
-    },
-    QualityStep {
-        setting: QualitySetting::LightPoints,
-        value: 32,
-        gain: 0.88,
-        what: "shadows are drawn from 32 points of each light",
-    },
-    QualityStep {
-        setting: QualitySetting::LightPoints,
-        value: 16,
-        gain: 0.92,
-        what: "shadows are drawn from 16 points of each light",
-    },
-    QualityStep {
-        setting: QualitySetting::AmbientDirections,
-        value: 16,
-        gain: 0.91,
-        what: "ambient shadow is drawn from 16 directions",
-    },
-    QualityStep {
-        setting: QualitySetting::CoveragePositions,
-        value: 16,
-        gain: 0.95,
-        what: "the toy's outline is drawn from 16 positions in each pixel",
-    },
-    QualityStep {
-        setting: QualitySetting::FramesPerSecond,
-        value: 30,
-        gain: 0.5,
-        what: "30 frames are shown a second",
-    },
+    QualityStep { setting: QualitySetting::AmbientDivisor, value: 8, gain: 0.99, what: "ambient shadow is drawn at an eighth of the resolution" },
+    QualityStep { setting: QualitySetting::AmbientDirections, value: 32, gain: 0.90, what: "ambient shadow is drawn from 32 directions" },
+    QualityStep { setting: QualitySetting::LightPoints, value: 32, gain: 0.88, what: "shadows are drawn from 32 points of each light" },
+    QualityStep { setting: QualitySetting::LightPoints, value: 16, gain: 0.92, what: "shadows are drawn from 16 points of each light" },
+    QualityStep { setting: QualitySetting::AmbientDirections, value: 16, gain: 0.91, what: "ambient shadow is drawn from 16 directions" },
+    QualityStep { setting: QualitySetting::CoveragePositions, value: 16, gain: 0.95, what: "the toy's outline is drawn from 16 positions in each pixel" },
+    QualityStep { setting: QualitySetting::FramesPerSecond, value: 30, gain: 0.5, what: "30 frames are shown a second" },
 ];
 
 impl QualityStep {

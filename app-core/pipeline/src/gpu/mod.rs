@@ -31,3 +31,21 @@ pub use handle::DeviceHandle;
 pub use lent::{LentError, LentTextures};
 pub use quirks::fault_on_surfaces;
 pub use shader::ShaderTexts;
+
+pub(crate) use bindings::{GROUP_DRAW, GROUP_PASS, GROUP_SCENE, Resource, Slot};
+pub(crate) use buffer::Buffer;
+pub(crate) use context::Gpu;
+pub(crate) use device::Kind;
+pub(crate) use meter::Memory;
+pub(crate) use pass_run::{PassGroup, PassRun, PassTime};
+pub(crate) use pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, Stream, nearest_surface};
+pub(crate) use recorder::{
+    Attachment, Group, Recorded, Recorder, Render, cleared, loaded, n_pixels, resolved,
+};
+pub(crate) use samplers::Sampler;
+pub(crate) use shader::{Mirrors, Shader, mirrors, shader};
+pub(crate) use shared::{Mat3Columns, shared_struct};
+pub(crate) use stages::{Clock, StageTime, Stages};
+pub(crate) use texture::{Texture, TextureLayers, TextureView, half_float, picture_sampler};
+pub(crate) use timer::Timer;
+pub(crate) use work::Work;

@@ -3,12 +3,9 @@
 use glam::UVec2;
 use wgpu::TextureFormat;
 
-use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{
+    Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Resource, Shader, Slot, Texture, TextureView, shader,
+};
 use crate::passes::pictures::{Encoding, FramePlanes};
 use app_scene::camera_frame::{PlanarImage, half_size_px};
 

@@ -13,10 +13,7 @@ use wgpu::{
     DepthStencilState, Face, StoreOp, TextureFormat,
 };
 
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec, nearest_surface};
-use crate::gpu::recorder::{Attachment, Group, Recorder, Render};
-use crate::gpu::texture::Texture;
+use crate::gpu::{Attachment, Draw, DrawSpec, Gpu, Group, Recorder, Render, Texture, nearest_surface};
 use crate::passes::toy_mesh::{Corners, PoseBuffers};
 
 /// Format of the depths that order the instances.

@@ -8,10 +8,7 @@ use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::seen::Caster;
 use crate::geometry::silhouette::{ByCamera, OntoReceiver, Viewers};
 use crate::geometry::view::View;
-use crate::gpu::bindings::Slot;
-use crate::gpu::buffer::Buffer;
-use crate::gpu::shader::{Mirrors, mirrors};
-use crate::gpu::shared::{Mat3Columns, shared_struct};
+use crate::gpu::{Buffer, Mat3Columns, Mirrors, Slot, mirrors, shared_struct};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 

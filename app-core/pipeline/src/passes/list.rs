@@ -1,6 +1,6 @@
 //! The list of a path's passes, which generates its modules, its pipelines, its targets and its shaders.
 
-use crate::gpu::context::Gpu;
+use crate::gpu::Gpu;
 
 /// For passes without render targets of their own.
 pub(crate) struct NoTargets;

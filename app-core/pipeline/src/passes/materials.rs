@@ -9,13 +9,9 @@ use std::iter;
 use glam::UVec2;
 use wgpu::BufferUsages;
 
-use crate::gpu::bindings::{GROUP_DRAW, Slot};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::Pipeline;
-use crate::gpu::recorder::{Group, Recorder};
-use crate::gpu::samplers::Sampler;
-use crate::gpu::texture::{Texture, picture_sampler};
+use crate::gpu::{
+    Buffer, GROUP_DRAW, Gpu, Group, Pipeline, Recorder, Sampler, Slot, Texture, picture_sampler,
+};
 use crate::passes::mips::mips;
 use app_scene::toy::{Material, Toy, Wrap};
 

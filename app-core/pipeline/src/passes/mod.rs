@@ -15,7 +15,7 @@ pub(crate) mod present;
 pub(crate) mod screen;
 pub(crate) mod toy_mesh;
 
-use crate::gpu::shader::Shader;
+use crate::gpu::Shader;
 use crate::passes::list::WarmUp;
 
 /// The shaders of the passes that several paths run.

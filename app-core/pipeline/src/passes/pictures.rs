@@ -5,12 +5,7 @@ use std::sync::OnceLock;
 use glam::UVec2;
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::recorder::{Render, n_pixels};
-use crate::gpu::shader::{Mirrors, mirrors};
-use crate::gpu::shared::{Mat3Columns, shared_struct};
-use crate::gpu::texture::TextureView;
+use crate::gpu::{Buffer, Gpu, Mat3Columns, Mirrors, Render, TextureView, mirrors, n_pixels, shared_struct};
 use app_scene::camera_frame::YcbcrEncoding;
 
 /// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.

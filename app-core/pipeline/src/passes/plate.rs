@@ -2,14 +2,10 @@
 
 use wgpu::TextureFormat;
 
-use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::shared::{Mat3Columns, shared_struct};
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{
+    Buffer, Draw, DrawSpec, GROUP_PASS, GROUP_SCENE, Gpu, Mat3Columns, Recorder, Shader, Slot, Texture,
+    TextureView, shader, shared_struct,
+};
 use crate::passes::globals::GLOBALS_GROUP;
 use app_scene::scene::MAX_RECEIVERS;
 

@@ -4,13 +4,9 @@
 use bytemuck::Zeroable;
 use wgpu::TextureFormat;
 
-use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::TextureView;
+use crate::gpu::{
+    Draw, DrawSpec, GROUP_PASS, Gpu, Recorder, Resource, Shader, Slot, TextureView, shader, shared_struct,
+};
 use crate::passes::pictures::{Picture, RegionOverlay};
 
 pub(crate) const SHADER: Shader = shader!("passes/present", structs: [Placement]);

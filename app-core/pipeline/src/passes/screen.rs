@@ -5,13 +5,10 @@ use glam::{DAffine2, DVec2, UVec2};
 use wgpu::{StoreOp, TextureFormat};
 
 use crate::geometry::rect::PixelRect;
-use crate::gpu::bindings::{GROUP_DRAW, GROUP_PASS, Resource, Slot};
-use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
-use crate::gpu::recorder::{Group, Recorder, cleared};
-use crate::gpu::shader::{Shader, shader};
-use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::TextureView;
+use crate::gpu::{
+    Draw, DrawSpec, GROUP_DRAW, GROUP_PASS, Gpu, Group, Recorder, Resource, Shader, Slot, TextureView,
+    cleared, shader, shared_struct,
+};
 use crate::passes::pictures::{ComposedFrame, Encoding, Frame, RegionOverlay, fill_parts, n_pixels_of};
 
 pub(crate) const SHADER: Shader = shader!("passes/screen", structs: [ScreenMap]);

@@ -4,9 +4,7 @@ use bytemuck::Zeroable;
 use glam::{DVec3, UVec2};
 
 use crate::geometry::anchored::AnchoredReceiver;
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::texture::Texture;
+use crate::gpu::{Buffer, Gpu, Texture};
 use crate::passes::plate::{MAX_PLATES, PlateViews};
 use crate::plates::exposure::match_plates;
 use app_scene::scene::Scene;

@@ -1,7 +1,6 @@
 //! Injected visibilities, in place of those that the passes compute.
 
-use crate::gpu::context::Gpu;
-use crate::gpu::texture::Texture;
+use crate::gpu::{Gpu, Texture};
 use crate::readback::FloatMap;
 
 /// Maps of the work region with the visibility of each light, light 0 in r, each in [0, 1].

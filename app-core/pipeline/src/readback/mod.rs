@@ -4,7 +4,7 @@ pub mod inject;
 
 use wgpu::TextureFormat;
 
-use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use app_scene::geometry::color::linear_from_srgb;
 
 /// An intermediate map of the pipeline over the work region.

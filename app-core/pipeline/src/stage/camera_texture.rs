@@ -7,10 +7,7 @@ use std::sync::OnceLock;
 use glam::UVec2;
 use wgpu::TextureFormat;
 
-use crate::gpu::LentTextures;
-use crate::gpu::context::Gpu;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::{Gpu, LentTextures, Recorder, Texture, TextureView};
 use crate::passes::camera_planes;
 use crate::passes::camera_planes::Planes;
 use crate::passes::pictures::{Frame, FramePlanes, Picture};

@@ -6,7 +6,7 @@ use super::Stage;
 use super::supported::Lights;
 use crate::geometry::displacement::between_poses;
 use crate::geometry::outline::Outline;
-use crate::gpu::context::Gpu;
+use crate::gpu::Gpu;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::Light;

@@ -15,7 +15,7 @@ use crate::frame::warning::Warning;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::governor::QualityStep;
-use crate::gpu::context::Gpu;
+use crate::gpu::Gpu;
 use crate::model::Model;
 use crate::model::plan::Plan;
 use crate::model::state::SceneState;

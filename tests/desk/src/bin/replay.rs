@@ -1,6 +1,5 @@
 //! Replays a recorded session through the core and writes its pictures and a report.
 
-use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,7 +15,7 @@ use desk::files::BUNDLED_SESSION;
 use desk::opened;
 use desk::opened::Opened;
 use desk::page::PAGE_FILE;
-use desk::program::{exit_code, repository};
+use desk::program::{exit_code, print, repository};
 use desk::progress::{Progress, Quiet, on_stderr};
 use desk::replay::{Options, REPORT_FILE, replay};
 use desk::report::Report;
@@ -90,9 +89,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let mut progress: Box<dyn Progress> = if args.quiet { Box::new(Quiet) } else { on_stderr() };
     let reports = replay(&capture, Some(&capture), &mut core, &options, progress.as_mut())?;
     if !args.quiet {
-        io::stdout()
-            .write_all(summary(&reports, &out).as_bytes())
-            .context("writing to standard output")?;
+        print(&summary(&reports, &out))?;
     }
     Ok(())
 }

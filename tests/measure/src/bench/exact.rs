@@ -176,7 +176,7 @@ impl Rays {
     fn texel(&self, occluders: &[Occluder], texel: UVec2) -> [f32; 4] {
         let mut visibility = [0.0; 4];
         for position in (0..N_POSITIONS).map(|i| sample_position(i, N_POSITIONS)) {
-            let point = self.region.receiver_point::<f64>(texel.as_dvec2() + position);
+            let point = self.region.receiver_point(texel.as_dvec2() + position);
             let receiver = point.map_or(0, |point| point.receiver);
             for (sum, light) in visibility.iter_mut().zip(&self.lights[receiver]) {
                 let of_sample = point.map_or(1.0, |point| {

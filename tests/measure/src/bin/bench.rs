@@ -17,7 +17,7 @@ use desk::files::BUNDLED_SESSION;
 use desk::opened;
 use desk::opened::Opened;
 use desk::output::{make_folder, remove_file, write_png, write_whole};
-use desk::program::{exit_code, open_session, repository};
+use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::bench::{
     Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front_drawing, json, rebuild,
@@ -133,9 +133,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     write_whole(&result, csv(&rows).as_bytes())?;
     let text = table(&rows, &core.adapter_name(), core.is_software());
-    io::stdout()
-        .write_all(format!("{text}{}\n", result.display()).as_bytes())
-        .context("writing to standard output")
+    print(&format!("{text}{}\n", result.display()))
 }
 
 /// Prints from how far off alignment comes back, and writes tables and drawings. Needs no device.
@@ -158,9 +156,7 @@ fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
     text.push_str(
         "Median and worst of what is left, against what is recorded; starts are by sixths of the largest.\n",
     );
-    io::stdout()
-        .write_all(format!("{text}{}\n", out.display()).as_bytes())
-        .context("writing to standard output")
+    print(&format!("{text}{}\n", out.display()))
 }
 
 /// Prints how well real shadows are rebuilt, and writes the pictures.
@@ -176,9 +172,7 @@ fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) ->
         let file = format!("{}-{}-rebuilt_{:04}.png", one.session, one.preset, one.frame);
         write_png(&out.join(file), &one.picture)?;
     }
-    io::stdout()
-        .write_all(format!("{}{}\n", rebuilt_table(&all), out.display()).as_bytes())
-        .context("writing to standard output")
+    print(&format!("{}{}\n", rebuilt_table(&all), out.display()))
 }
 
 fn presets(args: &Args) -> Vec<Preset> {

@@ -1,6 +1,5 @@
 //! Prints what frames of a session must cost on any device, pass by pass. Needs no device.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -11,7 +10,7 @@ use app_core::scene::Pose;
 use app_core::session::{Capture, Session};
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
-use desk::program::{exit_code, open_session};
+use desk::program::{exit_code, open_session, print};
 use measure::count::{count, ledgers};
 use measure::scaling::{by_area, by_lights, by_picture, by_triangles};
 use measure::sized::{SizePx, parse_size, sized_input, sized_scene};
@@ -63,9 +62,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
             ledgers(&counted)
         ));
     }
-    io::stdout()
-        .write_all(text.as_bytes())
-        .context("writing to standard output")
+    print(&text)
 }
 
 fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
@@ -73,7 +70,7 @@ fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
     for sweep in [by_picture()?, by_area()?, by_lights()?, by_triangles()?] {
         draw(folder, &sweep)?;
         let path = folder.join(format!("{}.svg", sweep.name));
-        writeln!(io::stdout(), "{}", path.display()).context("writing to standard output")?;
+        print(&format!("{}\n", path.display()))?;
     }
     Ok(())
 }

@@ -1,7 +1,6 @@
 //! Profiles a session, or reads a profile from elsewhere: a trace for Perfetto, and the layout of the paper's Table 1.
 
 use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -14,7 +13,7 @@ use app_core::wgpu;
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
 use desk::output::{make_folder, write_whole};
-use desk::program::{exit_code, open_session, repository};
+use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::profiled::{parse, profile, tables};
 
@@ -53,9 +52,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     } else {
         measure(&of, args)?
     };
-    io::stdout()
-        .write_all(text.as_bytes())
-        .context("writing to standard output")
+    print(&text)
 }
 
 fn measure(folder: &Path, args: &Args) -> anyhow::Result<String> {

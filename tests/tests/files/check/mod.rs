@@ -2,9 +2,8 @@
 
 mod pictures;
 
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::{fs, process};
+use std::fs;
+use std::path::Path;
 
 use app_core::scene::{Camera, Light};
 use app_core::session::{Capture, Session};
@@ -13,29 +12,10 @@ use desk::check::{aligned_session, check};
 use desk::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use desk::stored::Stored;
 use glam::{DMat4, DVec3};
+use harness::bundled_session;
 use harness::session_format::example;
+use harness::temporary::Temporary;
 use serde_json::{Value, json};
-
-/// A new folder, which goes with it.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new(name: &str) -> Self {
-        static N_MADE: AtomicU32 = AtomicU32::new(0);
-        let number = N_MADE.fetch_add(1, Ordering::Relaxed);
-        let name = format!("check-{name}-{}-{number}", process::id());
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 /// The bundled session with a changed index.
 fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
@@ -95,12 +75,9 @@ fn a_good_session_has_nothing_wrong_and_is_drawn() {
 #[test]
 fn each_wrong_session_is_told_by_its_field() {
     type Change = fn(&mut Value);
+    #[rustfmt::skip] // One case a line.
     let cases: [(&str, Change, &str); 6] = [
-        (
-            "key",
-            |index| index["toy"]["scale"] = json!(2.0),
-            "capture.json (toy.scale)",
-        ),
+        ("key", |index| index["toy"]["scale"] = json!(2.0), "capture.json (toy.scale)"),
         (
             "millimetres",
             |index| {
@@ -120,16 +97,8 @@ fn each_wrong_session_is_told_by_its_field() {
             },
             "the toy is behind the camera",
         ),
-        (
-            "light",
-            |index| index["lights"][0]["position"][1] = json!(-1.0),
-            "lights[0]: it is above none of the receivers",
-        ),
-        (
-            "file",
-            |index| index["frames"][1]["image"] = json!("gone.png"),
-            "gone.png",
-        ),
+        ("light", |index| index["lights"][0]["position"][1] = json!(-1.0), "lights[0]: it is above none of the receivers"),
+        ("file", |index| index["frames"][1]["image"] = json!("gone.png"), "gone.png"),
         ("pose", off, "toy.world_from_object: the outline is"),
     ];
     for (name, change, expected) in cases {
@@ -240,7 +209,7 @@ fn an_aligned_session_has_the_lights_that_were_found() {
     let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
     aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap();
     assert_eq!(wrong(&out), Vec::<String>::new());
-    let bulb = Capture::open(Folder::open(Path::new(BUNDLED_SESSION)).unwrap()).unwrap();
+    let bulb = bundled_session();
     let found = Capture::open(Folder::open(&out).unwrap()).unwrap();
     let place = |capture: &Capture| match *capture.scene().lights {
         [

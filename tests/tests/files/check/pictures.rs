@@ -3,11 +3,12 @@
 use std::fs;
 
 use desk::files::SESSION_FILE;
+use harness::temporary::Temporary;
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{DynamicImage, ImageEncoder};
 use serde_json::json;
 
-use crate::check::{Temporary, wrong};
+use crate::check::wrong;
 
 /// Columns of matrices to XYZ under D50: sRGB's as the profile of IEC 61966-2-1 has them, and Display P3's as Apple's.
 const SRGB: [[f64; 3]; 3] = [
@@ -130,20 +131,16 @@ fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     let mut bytes = png(&photo(), None);
     for (name, data) in chunks {
         let named = [&name[..], data].concat();
-        let chunk = [&number(data.len())[..], &named, &crc(&named).to_be_bytes()].concat();
+        let chunk = [
+            &number(data.len())[..],
+            &named,
+            &crc32fast::hash(&named).to_be_bytes(),
+        ]
+        .concat();
         // Behind the header.
         bytes.splice(33..33, chunk);
     }
     bytes
-}
-
-/// Source: PNG specification (W3C, third edition), annex D.
-fn crc(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc: u32, _| {
-            (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 }
-        })
-    })
 }
 
 /// What is said of pictures in a session that has them as its frames, but for what their missing toy brings about.
@@ -173,43 +170,16 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
         .into_iter()
         .flat_map(u32::to_be_bytes)
         .collect();
+    #[rustfmt::skip] // One case a line.
     let cases: [(&str, Vec<u8>, &[&str]); 8] = [
-        (
-            "turned.jpg",
-            jpeg(None, Some(TURNED)),
-            &["orientation is 6", "turn its pixels"],
-        ),
-        (
-            "deep.png",
-            png(&DynamicImage::new_rgb16(2, 2), None),
-            &["16 bits a channel", "8 bits"],
-        ),
-        (
-            "wide.jpg",
-            jpeg(Some(wide.clone()), None),
-            &["\"Display P3\"", "convert it to sRGB"],
-        ),
+        ("turned.jpg", jpeg(None, Some(TURNED)), &["orientation is 6", "turn its pixels"]),
+        ("deep.png", png(&DynamicImage::new_rgb16(2, 2), None), &["16 bits a channel", "8 bits"]),
+        ("wide.jpg", jpeg(Some(wide.clone()), None), &["\"Display P3\"", "convert it to sRGB"]),
         ("wide.png", png(&photo(), Some(wide)), &["\"Display P3\""]),
-        (
-            "power.png",
-            png(&photo(), Some(icc("old", &SRGB, parametric(&[1.8])))),
-            &["\"old\""],
-        ),
-        (
-            "cicp.png",
-            with_chunks(&[(b"cICP", &[12, 13, 0, 1])]),
-            &["Display P3"],
-        ),
-        (
-            "gama.png",
-            with_chunks(&[(b"gAMA", &100_000_u32.to_be_bytes())]),
-            &["gAMA [100000]"],
-        ),
-        (
-            "chrm.png",
-            with_chunks(&[(b"cHRM", &chrm)]),
-            &["cHRM [31270, 32900, 68000"],
-        ),
+        ("power.png", png(&photo(), Some(icc("old", &SRGB, parametric(&[1.8])))), &["\"old\""]),
+        ("cicp.png", with_chunks(&[(b"cICP", &[12, 13, 0, 1])]), &["Display P3"]),
+        ("gama.png", with_chunks(&[(b"gAMA", &100_000_u32.to_be_bytes())]), &["gAMA [100000]"]),
+        ("chrm.png", with_chunks(&[(b"cHRM", &chrm)]), &["cHRM [31270, 32900, 68000"]),
     ];
     let pictures: Vec<(&str, Vec<u8>)> = cases
         .iter()
@@ -229,32 +199,18 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
 #[test]
 fn what_is_srgb_in_other_words_is_not() {
     let gama = |value: u32| value.to_be_bytes();
+    #[rustfmt::skip] // One picture a line.
     let pictures = [
         ("plain.png", png(&photo(), None)),
         ("plain.jpg", jpeg(None, None)),
-        (
-            "upright.jpg",
-            jpeg(None, Some(&[&TURNED[..19], &[1], &TURNED[20..]].concat())),
-        ),
-        (
-            "parametric.jpg",
-            jpeg(Some(icc("mine", &SRGB, parametric(&CURVE))), None),
-        ),
+        ("upright.jpg", jpeg(None, Some(&[&TURNED[..19], &[1], &TURNED[20..]].concat()))),
+        ("parametric.jpg", jpeg(Some(icc("mine", &SRGB, parametric(&CURVE))), None)),
         ("sampled.png", png(&photo(), Some(icc("mine", &SRGB, sampled())))),
-        (
-            "power.png",
-            png(&photo(), Some(icc("mine", &SRGB, parametric(&[2.2])))),
-        ),
+        ("power.png", png(&photo(), Some(icc("mine", &SRGB, parametric(&[2.2]))))),
         ("gama.png", with_chunks(&[(b"gAMA", &gama(45_455))])),
         // What comes first in the order of the specification counts.
-        (
-            "srgb.png",
-            with_chunks(&[(b"gAMA", &gama(100_000)), (b"sRGB", &[0])]),
-        ),
-        (
-            "cicp.png",
-            with_chunks(&[(b"cICP", &[1, 13, 0, 1]), (b"gAMA", &gama(100_000))]),
-        ),
+        ("srgb.png", with_chunks(&[(b"gAMA", &gama(100_000)), (b"sRGB", &[0])])),
+        ("cicp.png", with_chunks(&[(b"cICP", &[1, 13, 0, 1]), (b"gAMA", &gama(100_000))])),
     ];
     assert_eq!(said(&pictures), Vec::<String>::new());
 }

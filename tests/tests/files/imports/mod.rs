@@ -73,33 +73,18 @@ fn no_crate_imports_in_a_circle() {
 #[test]
 fn a_planted_import_is_found() {
     // A module, a line that is planted in it, and words of the problem.
+    #[rustfmt::skip] // One fault a line.
     let faults = [
-        (
-            "gpu::texture",
-            "use crate::core::Core;",
-            "gpu::texture imports core",
-        ),
-        (
-            "model::capture::fit",
-            "use crate::model::frame::composite;",
-            "model::capture::fit imports model::frame::composite",
-        ),
-        (
-            "baseline::warp",
-            "fn planted() { crate::model::plan::planted(); }",
-            "baseline::warp imports model::plan",
-        ),
+        ("gpu::texture", "use crate::core::Core;", "gpu::texture imports core"),
+        ("model::capture::fit", "use crate::model::frame::composite;", "model::capture::fit imports model::frame::composite"),
+        ("baseline::warp", "fn planted() { crate::model::plan::planted(); }", "baseline::warp imports model::plan"),
         (
             "model::state::grids",
             "use crate::model::plan;
 use crate::model::state::tints::Tints;\nuse super::super::state::SceneState;",
             "circle: ",
         ),
-        (
-            "geometry::extent",
-            "planted! { crate::geometry::view::planted }",
-            "circle: ",
-        ),
+        ("geometry::extent", "planted! { crate::geometry::view::planted }", "circle: "),
         ("planted", "use crate::scene::Scene;", "planted is in no room"),
     ];
     for (path, line, words) in faults {

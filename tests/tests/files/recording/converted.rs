@@ -8,10 +8,12 @@ use app_core::session::{Capture, Files, GroundTruth, Session};
 use desk::convert::write;
 use desk::files::{BUNDLED_SESSION, Folder};
 use desk::stored::Stored;
+use harness::bundled_session;
 use harness::session_format::example;
+use harness::temporary::Temporary;
 use serde_json::Value;
 
-use crate::recording::small::{Temporary, small};
+use crate::recording::small::small;
 
 /// All files by their paths.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -41,10 +43,10 @@ fn round(session: &Path, folder: &Temporary) -> [Vec<u8>; 2] {
 
 #[test]
 fn the_bundled_session_comes_back_byte_for_byte() {
-    let folder = Temporary::new();
+    let folder = Temporary::new("recording");
     round(Path::new(BUNDLED_SESSION), &folder);
     // What is read of either is the same, truths included.
-    let given = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let given = bundled_session();
     let recorded = Capture::open(Stored::open(folder.0.join("first.mcap")).unwrap()).unwrap();
     assert_eq!(given.n_frames(), recorded.n_frames());
     for index in 0..given.n_frames() {
@@ -62,7 +64,7 @@ fn the_bundled_session_comes_back_byte_for_byte() {
 /// Every key, frames that share pictures, files in folders, files that no key names, numbers with more digits than a double.
 #[test]
 fn every_key_and_every_file_comes_back() {
-    let folder = Temporary::new();
+    let folder = Temporary::new("recording");
     let session = folder.0.join("session");
     fs::create_dir_all(session.join("in/it")).unwrap();
     let mut index: Value = serde_json::from_str(example().unwrap()).unwrap();
@@ -92,7 +94,7 @@ fn every_key_and_every_file_comes_back() {
 
 #[test]
 fn nothing_is_written_over_or_out_of_the_folder() {
-    let folder = Temporary::new();
+    let folder = Temporary::new("recording");
     let session = Stored::open(BUNDLED_SESSION).unwrap();
     let out = folder.0.join("there");
     fs::write(&out, "").unwrap();

@@ -5,15 +5,16 @@ use std::path::Path;
 use std::time::Duration;
 
 use harness::endless::{kill, read};
+use harness::temporary::Temporary;
 use measure::random::Random;
 
-use crate::recording::small::{Temporary, small};
+use crate::recording::small::small;
 
 const RECORDER: &str = env!("CARGO_BIN_EXE_recorder");
 
 /// Kills so many writers, and returns how many frames they had acknowledged.
 fn kill_all(n_tries: u32) -> u32 {
-    let folder = Temporary::new();
+    let folder = Temporary::new("recording");
     let mut random = Random::new(u64::from(n_tries));
     let (mut n_acknowledged, mut n_read, mut n_lost, mut n_errors) = (0, 0, 0, 0);
     for _ in 0..n_tries {
@@ -53,7 +54,7 @@ fn what_was_acknowledged_outlives_a_thousand_writers() {
 /// The comparison itself: a frame of the middle that is not there is missed, and so is a file that is another.
 #[test]
 fn what_is_missing_is_found() {
-    let folder = Temporary::new();
+    let folder = Temporary::new("recording");
     let out = folder.0.join("small.mcap");
     fs::write(&out, small(10).bytes).unwrap();
     assert_eq!(read(&out).unwrap_err().to_string(), "the attached file");

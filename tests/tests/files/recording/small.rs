@@ -2,9 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::{env, fs, process};
 
 use app_core::recording::{Flushed, Limits, Recording, RecordingError, Writer};
 use harness::endless;
@@ -55,25 +52,4 @@ pub(crate) fn records(bytes: &[u8]) -> Vec<(u8, Range<usize>)> {
     }
     assert_eq!(&bytes[at..], b"\x89MCAP0\r\n");
     records
-}
-
-/// A folder that goes with the test.
-pub(crate) struct Temporary(pub(crate) PathBuf);
-
-impl Temporary {
-    pub(crate) fn new() -> Self {
-        static N_MADE: AtomicU32 = AtomicU32::new(0);
-        let number = N_MADE.fetch_add(1, Ordering::Relaxed);
-        let name = format!("recording-{}-{number}", process::id());
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }

@@ -1,14 +1,16 @@
 //! A folder of the file system gives its own files, and nothing else.
 
-use std::path::{Path, PathBuf};
-use std::{fs, process};
+use std::fs;
+use std::path::Path;
 
 use app_core::session::{FileError, Files, PathError};
 use desk::files::Folder;
+use harness::temporary::Temporary;
 
 #[test]
 fn a_folder_gives_its_own_files_and_no_others() {
-    let outside = temporary_folder();
+    let folder = Temporary::new("session");
+    let outside = &folder.0;
     let inside = outside.join("inside");
     fs::create_dir_all(inside.join("sub")).unwrap();
     fs::write(outside.join("secret"), "secret").unwrap();
@@ -34,11 +36,6 @@ fn a_folder_gives_its_own_files_and_no_others() {
     }
     let error = Folder::open(inside.join("none")).unwrap_err();
     assert!(error.to_string().contains("none"), "{error}");
-    fs::remove_dir_all(outside).unwrap();
-}
-
-fn temporary_folder() -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("session-{}", process::id()))
 }
 
 #[cfg(unix)]

@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use app_core::session::{Capture, FileError, Files, GroundTruth, Session, SessionError, check_path};
 use image::{DynamicImage, ImageFormat};
-use measure::glb::container;
 use serde_json::{Value, json};
+
+use crate::toy::builder::triangle;
 
 /// A capture in memory, whose parts the tests spoil.
 pub(crate) struct Parts {
@@ -140,44 +141,15 @@ pub(crate) fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
 
 /// One triangle that moves up during the clip `Wave`, one second long.
 pub(crate) fn toy_glb(has_mesh: bool) -> Vec<u8> {
-    let triangle = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
-    let times = [0., 1.];
-    let moves = [0., 0., 0., 0., 1., 0.];
-    let bin = [triangle.as_slice(), &times, &moves].concat();
-    let bin = bin
-        .iter()
-        .flat_map(|value: &f32| value.to_le_bytes())
-        .collect::<Vec<_>>();
-    let mut gltf = json!({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "buffers": [{"byteLength": bin.len()}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
-            {"buffer": 0, "byteOffset": 36, "byteLength": 8}, {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
-            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
-            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
-        "animations": [{"name": "Wave", "samplers": [{"input": 1, "output": 2}],
-            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]
-    });
+    let mut glb = triangle();
+    let keys = [
+        glb.floats("SCALAR", &[0.0, 1.0]),
+        glb.floats("VEC3", &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+    ];
+    glb.animate("Wave", "translation", "LINEAR", keys);
     if !has_mesh {
-        gltf["nodes"] = json!([{}]);
-        gltf.as_object_mut().unwrap().remove("meshes");
+        glb.json["nodes"] = json!([{}]);
+        glb.json.as_object_mut().unwrap().remove("meshes");
     }
-    container(gltf.to_string().as_bytes(), &bin)
-}
-
-/// Checksum of a PNG chunk. Source: PNG specification (W3C, third edition), annex D.
-pub(crate) fn png_crc(bytes: &[u8]) -> u32 {
-    let step = |crc: u32| {
-        if crc & 1 == 1 {
-            0xedb8_8320 ^ (crc >> 1)
-        } else {
-            crc >> 1
-        }
-    };
-    !bytes.iter().fold(!0, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc))
-    })
+    glb.bytes()
 }

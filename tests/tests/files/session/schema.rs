@@ -29,29 +29,15 @@ fn good_sessions_follow_the_schema() {
     }
 }
 
+/// What is wrong otherwise than what is planted below.
 #[test]
 fn wrong_sessions_do_not() {
-    #[rustfmt::skip] // One case a line.
+    let plate = &good_index()["backgrounds"][0];
     let cases = [
         ("/format", json!("shadow-movie")),
-        ("/version", json!(2)),
-        ("/width", json!("640")),
         ("/width", json!(2.5)),
-        ("/height", json!(0)),
-        ("/encoding", json!("linear")),
-        ("/intrinsics/fx", json!(null)),
-        ("/toy/file", json!("")),
-        ("/toy/world_from_object", json!([1, 0, 0])),
-        ("/receivers", json!([])),
-        ("/receivers/0/surface", json!("shiny")),
-        ("/lights/0/kind", json!("laser")),
         ("/lights/0/kind", json!("directional")),
-        ("/lights/0/radius", json!(-0.1)),
-        ("/lights/1/angular_radius_deg", json!(90)),
-        ("/backgrounds", json!(vec![good_index()["backgrounds"][0].clone(); 513])),
-        ("/frames/0/animation", json!("Wave")),
-        ("/frames/1/world_from_camera/12", json!(1e7)),
-        ("/probe/kind", json!("ball")),
+        ("/backgrounds", json!(vec![plate; 513])),
     ];
     for (pointer, wrong) in cases {
         let mut index = good_index();

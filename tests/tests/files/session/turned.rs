@@ -5,24 +5,18 @@ use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{DynamicImage, ImageEncoder};
 use serde_json::json;
 
-use crate::session::parts::{Parts, png_crc};
+use crate::session::parts::Parts;
 
 /// EXIF of one entry, the orientation, in either order of bytes.
 fn exif(orientation: u8, is_big: bool) -> Vec<u8> {
-    let number = |number: u16| {
-        if is_big {
-            number.to_be_bytes()
-        } else {
-            number.to_le_bytes()
+    let ordered = |mut bytes: Vec<u8>| {
+        if !is_big {
+            bytes.reverse();
         }
+        bytes
     };
-    let long = |number: u32| {
-        if is_big {
-            number.to_be_bytes()
-        } else {
-            number.to_le_bytes()
-        }
-    };
+    let number = |number: u16| ordered(number.to_be_bytes().to_vec());
+    let long = |number: u32| ordered(number.to_be_bytes().to_vec());
     let magic = if is_big { b"MM" } else { b"II" };
     let value = number(u16::from(orientation));
     [
@@ -62,7 +56,7 @@ fn png(orientation: u8, is_behind: bool) -> Vec<u8> {
         photo().write_with_encoder(encoder).unwrap();
         let named = [&b"eXIf"[..], &exif].concat();
         let length = u32::try_from(exif.len()).unwrap().to_be_bytes();
-        let chunk = [&length[..], &named, &png_crc(&named).to_be_bytes()].concat();
+        let chunk = [&length[..], &named, &crc32fast::hash(&named).to_be_bytes()].concat();
         // Before the end, which is a chunk of 12 bytes.
         let end = bytes.len() - 12;
         bytes.splice(end..end, chunk);

@@ -55,10 +55,7 @@ fn torus_and(n_squares: u32) -> Toy {
     let mut glb = Glb::new();
     let position = glb.floats("VEC3", &positions);
     let indices = glb.u32s(&corners);
-    let mesh = glb.push(
-        "meshes",
-        json!({ "primitives": [{ "attributes": { "POSITION": position }, "indices": indices }] }),
-    );
+    let mesh = glb.mesh(json!({ "attributes": { "POSITION": position }, "indices": indices }));
     glb.push("nodes", json!({ "mesh": mesh }));
     Toy::from_glb(FILE, &glb.bytes()).unwrap()
 }
@@ -191,10 +188,7 @@ fn a_fan_keeps_its_middle() {
     let mut glb = Glb::new();
     let position = glb.floats("VEC3", &positions);
     let indices = glb.u32s(&indices.collect::<Vec<_>>());
-    let mesh = glb.push(
-        "meshes",
-        json!({ "primitives": [{ "attributes": { "POSITION": position }, "indices": indices }] }),
-    );
+    let mesh = glb.mesh(json!({ "attributes": { "POSITION": position }, "indices": indices }));
     glb.push("nodes", json!({ "mesh": mesh }));
     let toy = Toy::from_glb(FILE, &glb.bytes()).unwrap();
     assert!(toy.casters().len() > 3, "{}", toy.casters().len());

@@ -26,18 +26,7 @@ fn mesh(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Toy {
     if !normals.is_empty() {
         attributes["NORMAL"] = glb.floats("VEC3", &flat(normals)).into();
     }
-    let view = glb.view(
-        &triangles
-            .as_flattened()
-            .iter()
-            .flat_map(|corner| corner.to_le_bytes())
-            .collect::<Vec<u8>>(),
-    );
-    let indices = glb.push(
-        "accessors",
-        json!({ "bufferView": view, "componentType": 5125, "type": "SCALAR",
-        "count": 3 * triangles.len() }),
-    );
+    let indices = glb.u32s(triangles.as_flattened());
     glb.mesh(json!({ "attributes": attributes, "indices": indices }));
     glb.push("nodes", json!({ "mesh": 0 }));
     Toy::from_glb(FILE, &glb.bytes()).unwrap()

@@ -1,6 +1,6 @@
 //! Toys against closed forms: where vertices stand, how the toy looks, and which files are refused.
 
-mod builder;
+pub(crate) mod builder;
 mod casters;
 mod hard;
 mod out_of_range;

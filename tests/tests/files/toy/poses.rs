@@ -57,6 +57,7 @@ pub(crate) fn cases() -> Vec<Case> {
         .collect()
 }
 
+#[rustfmt::skip] // One case a line.
 fn tracks() -> Vec<Case> {
     let line = |interpolation| {
         animated(
@@ -83,36 +84,17 @@ fn tracks() -> Vec<Case> {
     let turned = [[0.0; 3], [cos, sin, 0.0], [-sin, cos, 0.0]];
     let single = animated("translation", "LINEAR", "VEC3", &[0.5], &[7.0, 0.0, 0.0]);
     vec![
-        one(
-            "linear",
-            line("LINEAR"),
-            Some(("move", 2.0)),
-            moved([1.0, 2.0, 3.0]),
-        ),
-        one(
-            "before the first key",
-            line("LINEAR"),
-            Some(("#0", 0.5)),
-            moved([0.0; 3]),
-        ),
-        one(
-            "after the last key",
-            line("LINEAR"),
-            Some(("move", 9.0)),
-            moved([2.0, 4.0, 6.0]),
-        ),
+        one("linear", line("LINEAR"), Some(("move", 2.0)), moved([1.0, 2.0, 3.0])),
+        one("before the first key", line("LINEAR"), Some(("#0", 0.5)), moved([0.0; 3])),
+        one("after the last key", line("LINEAR"), Some(("move", 9.0)), moved([2.0, 4.0, 6.0])),
         one("step", line("STEP"), Some(("move", 2.999)), moved([0.0; 3])),
-        one(
-            "cubic spline",
-            spline,
-            Some(("move", 1.0)),
-            moved([4.0, 0.0, 0.0]),
-        ),
+        one("cubic spline", spline, Some(("move", 1.0)), moved([4.0, 0.0, 0.0])),
         one("slerp, a third of 90 degrees", turn, Some(("move", 1.0)), turned),
         one("single key", single, Some(("move", 0.0)), moved([7.0, 0.0, 0.0])),
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn transforms() -> Vec<Case> {
     let node = |fields: serde_json::Value| {
         let mut glb = triangle();
@@ -146,23 +128,14 @@ fn transforms() -> Vec<Case> {
         .for_each(|(_, normal)| *normal = [1.0 / length, 0.0, 4.0 / length]);
     vec![
         mirrored,
-        one(
-            "chain",
-            chain,
-            None,
-            [[2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 0.0]],
-        ),
-        one(
-            "matrix",
-            node(json!({ "matrix": matrix })),
-            None,
-            moved([5.0, 6.0, 7.0]),
-        ),
+        one("chain", chain, None, [[2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 0.0]]),
+        one("matrix", node(json!({ "matrix": matrix })), None, moved([5.0, 6.0, 7.0])),
         one("flattened", flattened, None, moved([0.0; 3])),
         stretched,
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn skins_and_morphs() -> Vec<Case> {
     let joints = |glb: &mut Glb| glb.u16s("VEC4", &[0, 1, 0, 0].repeat(3));
     let quarters = |glb: &mut Glb| glb.floats("VEC4", &[0.25, 0.75, 0.0, 0.0].repeat(3));
@@ -187,32 +160,12 @@ fn skins_and_morphs() -> Vec<Case> {
     vec![
         one("skin", skinned(joints, quarters), None, blend),
         one("weights that sum to two", skinned(joints, doubled), None, blend),
-        one(
-            "no weight at all",
-            skinned(joints, nothing),
-            None,
-            moved([0.0; 3]),
-        ),
-        one(
-            "byte weights",
-            skinned(byte_joints, bytes),
-            None,
-            moved([0.0, -0.8, 3.2]),
-        ),
+        one("no weight at all", skinned(joints, nothing), None, moved([0.0; 3])),
+        one("byte weights", skinned(byte_joints, bytes), None, moved([0.0, -0.8, 3.2])),
         one("two sets of joints", two_sets, None, blend),
         one("morph as authored", morphed(), None, moved([2.0, 0.0, 0.0])),
-        one(
-            "morph animated",
-            morphed(),
-            Some(("move", 0.25)),
-            moved([0.25, 0.75, 0.0]),
-        ),
-        one(
-            "morph by fractions",
-            by_fractions,
-            Some(("move", 0.0)),
-            moved([-1.0, 1.0, 0.0]),
-        ),
+        one("morph animated", morphed(), Some(("move", 0.25)), moved([0.25, 0.75, 0.0])),
+        one("morph by fractions", by_fractions, Some(("move", 0.0)), moved([-1.0, 1.0, 0.0])),
     ]
 }
 

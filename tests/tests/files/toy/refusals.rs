@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::builder::{CORNERS, Glb, skinned, triangle};
 
@@ -28,8 +28,41 @@ fn changed(name: &'static str, words: &[&'static str], change: impl Fn(&mut Glb)
     broken(name, words, glb)
 }
 
+/// A triangle, with another value at a place of its tree, which is a field's.
+fn set(name: &'static str, words: &[&'static str], place: &str, value: Value) -> Refusal {
+    changed(name, words, |glb| {
+        let (parent, key) = place.rsplit_once('/').unwrap();
+        glb.json.pointer_mut(parent).unwrap()[key] = value.clone();
+    })
+}
+
+/// A triangle by these indices.
+fn indexed(name: &'static str, words: &[&'static str], corners: &[u16]) -> Refusal {
+    changed(name, words, |glb| {
+        let indices = glb.u16s("SCALAR", corners);
+        glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+    })
+}
+
+/// A triangle with an attribute of these numbers.
+fn attribute(name: &'static str, words: &[&'static str], key: &str, shape: &str, values: &[f32]) -> Refusal {
+    changed(name, words, |glb| {
+        let accessor = glb.floats(shape, values);
+        glb.json["meshes"][0]["primitives"][0]["attributes"][key] = accessor.into();
+    })
+}
+
+/// A triangle, and nodes with these children.
+fn parents(name: &'static str, words: &[&'static str], children: [usize; 2]) -> Refusal {
+    changed(name, words, |glb| {
+        for child in children {
+            glb.push("nodes", json!({ "children": [child] }));
+        }
+    })
+}
+
 pub(crate) fn refusals() -> Vec<Refusal> {
-    [
+    let all = [
         containers(),
         references(),
         counts(),
@@ -38,262 +71,116 @@ pub(crate) fn refusals() -> Vec<Refusal> {
         skins(),
         animations(),
         pictures(),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    all.into_iter().flatten().collect()
 }
 
+#[rustfmt::skip] // One case a line.
 fn containers() -> Vec<Refusal> {
     let whole = triangle().bytes();
     let mut short_header = whole.clone();
     short_header[8..12].copy_from_slice(&3_u32.to_le_bytes());
-    let raw = |name, bytes: Vec<u8>, words: &[&'static str]| Refusal {
-        name,
-        bytes,
-        words: words.to_vec(),
-    };
+    let raw = |name, words: &[&'static str], bytes: &[u8]| Refusal { name, bytes: bytes.to_vec(), words: words.to_vec() };
     vec![
-        raw("empty", Vec::new(), &["file", "not binary glTF"]),
-        raw(
-            "truncated",
-            whole[..whole.len() / 2].to_vec(),
-            &["file", "not binary glTF"],
-        ),
-        raw("header of 3 bytes", short_header, &["file", "3 bytes"]),
-        changed("no number", &["JSON chunk", "three", "column"], |glb| {
-            glb.json["accessors"][0]["count"] = json!("three");
-        }),
-        changed(
-            "compressed",
-            &["extensionsRequired[0]", "KHR_draco_mesh_compression"],
-            |glb| {
-                glb.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-            },
-        ),
-        changed("external buffer", &["buffers[0]", "outside the file"], |glb| {
-            glb.json["buffers"] = json!([{ "byteLength": 72, "uri": "../../etc/passwd" }]);
-        }),
+        raw("empty", &["file", "not binary glTF"], &[]),
+        raw("truncated", &["file", "not binary glTF"], &whole[..whole.len() / 2]),
+        raw("header of 3 bytes", &["file", "3 bytes"], &short_header),
+        set("no number", &["JSON chunk", "three", "column"], "/accessors/0/count", json!("three")),
+        set("compressed", &["extensionsRequired[0]", "KHR_draco_mesh_compression"], "/extensionsRequired", json!(["KHR_draco_mesh_compression"])),
+        set("external buffer", &["buffers[0]", "outside the file"], "/buffers", json!([{ "byteLength": 72, "uri": "../../etc/passwd" }])),
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn references() -> Vec<Refusal> {
     let position = "meshes[0].primitives[0].attributes.POSITION";
+    let giant = json!({ "componentType": 5126, "type": "VEC3", "count": 1_u64 << 62 });
     vec![
-        changed("no such accessor", &[position, "refers to accessor 99"], |glb| {
-            glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99.into();
-        }),
-        changed("no positions", &[position, "missing"], |glb| {
-            let attributes = &mut glb.json["meshes"][0]["primitives"][0]["attributes"];
-            attributes.as_object_mut().unwrap().remove("POSITION");
-        }),
-        changed(
-            "no such vertex",
-            &["primitives[0].indices", "refers to vertex 3"],
-            |glb| {
-                let indices = glb.u16s("SCALAR", &[0, 1, 3]);
-                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-            },
-        ),
-        changed("no triangles", &["meshes", "no triangles"], |glb| {
-            let indices = glb.u16s("SCALAR", &[0, 1, 1]);
-            glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-        }),
-        changed("no area", &["meshes", "no triangles"], |glb| {
-            let positions = glb.floats("VEC3", &[1.0; 9]);
-            glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions.into();
-        }),
-        changed("cycle", &["nodes[1].children", "cycle"], |glb| {
-            glb.push("nodes", json!({ "children": [2] }));
-            glb.push("nodes", json!({ "children": [1] }));
-        }),
-        changed(
-            "two parents",
-            &["nodes[2].children", "node 0 has two parents"],
-            |glb| {
-                glb.push("nodes", json!({ "children": [0] }));
-                glb.push("nodes", json!({ "children": [0] }));
-            },
-        ),
-        changed(
-            "beyond the view",
-            &[position, "reaches to byte 48", "36"],
-            |glb| {
-                glb.json["accessors"][0]["count"] = 4.into();
-            },
-        ),
-        changed(
-            "beyond the buffer",
-            &["bufferViews[0]", "reaches to byte 100000"],
-            |glb| {
-                glb.json["bufferViews"][0]["byteLength"] = 100_000.into();
-            },
-        ),
-        changed(
-            "offset near 2^64",
-            &[position, "reaches to byte 18446744073709551615"],
-            |glb| {
-                glb.json["accessors"][0]["byteOffset"] = json!(u64::MAX - 3);
-            },
-        ),
-        changed("giant count", &[position, "more than"], |glb| {
-            glb.json["accessors"][0] = json!({ "componentType": 5126, "type": "VEC3", "count": 1_u64 << 62 });
-        }),
-        changed("overlapping elements", &[position, "stride of 8"], |glb| {
-            glb.json["bufferViews"][0]["byteStride"] = 8.into();
-        }),
+        set("no such accessor", &[position, "refers to accessor 99"], "/meshes/0/primitives/0/attributes/POSITION", json!(99)),
+        set("no positions", &[position, "missing"], "/meshes/0/primitives/0/attributes", json!({ "NORMAL": 1 })),
+        indexed("no such vertex", &["primitives[0].indices", "refers to vertex 3"], &[0, 1, 3]),
+        indexed("no triangles", &["meshes", "no triangles"], &[0, 1, 1]),
+        attribute("no area", &["meshes", "no triangles"], "POSITION", "VEC3", &[1.0; 9]),
+        parents("cycle", &["nodes[1].children", "cycle"], [2, 1]),
+        parents("two parents", &["nodes[2].children", "node 0 has two parents"], [0, 0]),
+        set("beyond the view", &[position, "reaches to byte 48", "36"], "/accessors/0/count", json!(4)),
+        set("beyond the buffer", &["bufferViews[0]", "reaches to byte 100000"], "/bufferViews/0/byteLength", json!(100_000)),
+        set("offset near 2^64", &[position, "reaches to byte 18446744073709551615"], "/accessors/0/byteOffset", json!(u64::MAX - 3)),
+        changed("giant count", &[position, "more than"], |glb| glb.json["accessors"][0] = giant.clone()),
+        set("overlapping elements", &[position, "stride of 8"], "/bufferViews/0/byteStride", json!(8)),
     ]
 }
 
 fn counts() -> Vec<Refusal> {
+    let materials = vec![json!({}); 4097].into();
+    let place = "meshes[0].primitives[0]";
+    let many = [place, "250001 triangles are more than the 250000 allowed"];
+    let together = [place, "250002 triangles are more than the 250000 allowed"];
     vec![
-        changed(
+        set(
             "many materials",
             &["materials", "4097 materials are more than the 4096 allowed"],
-            |glb| {
-                glb.json["materials"] = vec![json!({}); 4097].into();
-            },
+            "/materials",
+            materials,
         ),
-        changed(
-            "many triangles",
-            &[
-                "meshes[0].primitives[0]",
-                "250001 triangles are more than the 250000 allowed",
-            ],
-            |glb| {
-                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(250_001));
-                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-            },
-        ),
-        changed(
-            "many triangles together",
-            &[
-                "meshes[0].primitives[0]",
-                "250002 triangles are more than the 250000 allowed",
-            ],
-            |glb| {
-                let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
-                glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
-                glb.push("nodes", json!({ "mesh": 0 }));
-                glb.json["scenes"][0]["nodes"] = json!([0, 1]);
-            },
-        ),
+        indexed("many triangles", &many, &[0, 1, 2].repeat(250_001)),
+        changed("many triangles together", &together, |glb| {
+            let indices = glb.u16s("SCALAR", &[0, 1, 2].repeat(125_001));
+            glb.json["meshes"][0]["primitives"][0]["indices"] = indices.into();
+            glb.push("nodes", json!({ "mesh": 0 }));
+            glb.json["scenes"][0]["nodes"] = json!([0, 1]);
+        }),
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn numbers() -> Vec<Refusal> {
-    let mut nan_position = triangle();
     let mut corners = CORNERS;
     corners[4] = f32::NAN;
-    let corners = nan_position.floats("VEC3", &corners);
-    nan_position.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = corners.into();
+    let position = "meshes[0].primitives[0].attributes.POSITION (accessor 2)";
     vec![
-        broken(
-            "NaN position",
-            &[
-                "meshes[0].primitives[0].attributes.POSITION (accessor 2)",
-                "1 of 9 numbers",
-                "element 1",
-            ],
-            nan_position,
-        ),
-        changed("infinite scale", &["nodes[0].scale", "not finite"], |glb| {
-            glb.json["nodes"][0]["scale"] = json!([1.0, 1e39, 1.0]);
-        }),
-        changed(
-            "rotation of length zero",
-            &["nodes[0].rotation", "length zero"],
-            |glb| {
-                glb.json["nodes"][0]["rotation"] = json!([0.0, 0.0, 0.0, 0.0]);
-            },
-        ),
-        changed("projection", &["nodes[0].matrix", "not affine"], |glb| {
-            glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-        }),
+        attribute("NaN position", &[position, "1 of 9 numbers", "element 1"], "POSITION", "VEC3", &corners),
+        set("infinite scale", &["nodes[0].scale", "not finite"], "/nodes/0/scale", json!([1.0, 1e39, 1.0])),
+        set("rotation of length zero", &["nodes[0].rotation", "length zero"], "/nodes/0/rotation", json!([0.0, 0.0, 0.0, 0.0])),
+        set("projection", &["nodes[0].matrix", "not affine"], "/nodes/0/matrix", json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])),
+        set("morph weights", &["nodes[0].weights", "has 2 weights, but 0"], "/nodes/0/weights", json!([0.0, 0.0])),
         changed("sparse out of order", &["sparse", "index 1"], |glb| {
             let (indices, values) = (glb.view(&[1, 1]), glb.view(&[0; 24]));
             glb.json["accessors"][0]["sparse"] = json!({ "count": 2,
                 "indices": { "bufferView": indices, "componentType": 5121 },
                 "values": { "bufferView": values } });
         }),
-        changed(
-            "morph weights",
-            &["nodes[0].weights", "has 2 weights, but 0"],
-            |glb| {
-                glb.json["nodes"][0]["weights"] = json!([0.0, 0.0]);
-            },
-        ),
     ]
 }
 
 /// Finite numbers whose squares or products leave what 32 bits hold, or that glTF does not allow.
+#[rustfmt::skip] // One case a line.
 fn ranges() -> Vec<Refusal> {
-    let attribute = |name, shape: &'static str, values: &'static [f32]| {
-        changed(
-            name,
-            &["primitives[0].attributes", name, "is not from"],
-            move |glb| {
-                let n_numbers = if shape == "VEC2" { 2 } else { 3 };
-                let mut all = vec![0.0; 3 * n_numbers];
-                all[..values.len()].copy_from_slice(values);
-                let accessor = glb.floats(shape, &all);
-                glb.json["meshes"][0]["primitives"][0]["attributes"][name] = accessor.into();
-            },
-        )
-    };
     let factor = |name, factor: [f32; 4]| {
-        changed(
-            name,
-            &["materials[0].pbrMetallicRoughness.baseColorFactor", "from 0 to 1"],
-            move |glb| {
-                glb.json["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorFactor": factor } }]);
-            },
-        )
+        let words = ["materials[0].pbrMetallicRoughness.baseColorFactor", "from 0 to 1"];
+        set(name, &words, "/materials", json!([{ "pbrMetallicRoughness": { "baseColorFactor": factor } }]))
     };
-    let node = |field: &'static str, value: serde_json::Value| {
-        changed(field, &["nodes[0].", field, "is not from"], move |glb| {
-            glb.json["nodes"][0][field] = value.clone()
-        })
+    let far = |key, shape: &str, values: &[f32]| {
+        let mut all = vec![0.0; if shape == "VEC2" { 6 } else { 9 }];
+        all[..values.len()].copy_from_slice(values);
+        attribute(key, &["primitives[0].attributes", key, "is not from"], key, shape, &all)
     };
     vec![
-        attribute("POSITION", "VEC3", &[0.0, 3e38]),
-        attribute("NORMAL", "VEC3", &[-3e38]),
-        attribute("COLOR_0", "VEC3", &[1e30]),
-        attribute("TEXCOORD_0", "VEC2", &[1e30]),
+        far("POSITION", "VEC3", &[0.0, 3e38]),
+        far("NORMAL", "VEC3", &[-3e38]),
+        far("COLOR_0", "VEC3", &[1e30]),
+        far("TEXCOORD_0", "VEC2", &[1e30]),
         factor("bright factor", [1e30, 0.0, 0.0, 1.0]),
         factor("negative factor", [0.0, -1.0, 0.0, 1.0]),
         factor("alpha factor", [0.0, 0.0, 0.0, 1.5]),
-        node("translation", json!([0.0, 1e20, 0.0])),
-        node("scale", json!([1e20, 1.0, 1.0])),
-        node(
-            "matrix",
-            json!([1, 0, 0, 0, 0, 1e20, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
-        ),
-        morphed(
-            "morph offset",
-            &["POSITION of targets[0]", "element 1", "is not from"],
-            1e30,
-            0.0,
-        ),
+        set("translation", &["nodes[0].translation", "is not from"], "/nodes/0/translation", json!([0.0, 1e20, 0.0])),
+        set("scale", &["nodes[0].scale", "is not from"], "/nodes/0/scale", json!([1e20, 1.0, 1.0])),
+        set("matrix", &["nodes[0].matrix", "is not from"], "/nodes/0/matrix", json!([1, 0, 0, 0, 0, 1e20, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])),
+        morphed("morph offset", &["POSITION of targets[0]", "element 1", "is not from"], 1e30, 0.0),
         morphed("morph weight", &["nodes[0].weights", "is not from"], 1.0, 1e30),
-        moved(
-            "animated value",
-            &["samplers[0].output", "is not from"],
-            "translation",
-            [1.0, 1e30],
-        ),
-        moved(
-            "animated scale",
-            &["samplers[0].output", "is not from"],
-            "scale",
-            [1.0, -1e30],
-        ),
-        moved(
-            "late key",
-            &["samplers[0].input", "is not from"],
-            "translation",
-            [1e30, 0.0],
-        ),
+        moved("animated value", &["samplers[0].output", "is not from"], "translation", [1.0, 1e30]),
+        moved("animated scale", &["samplers[0].output", "is not from"], "scale", [1.0, -1e30]),
+        moved("late key", &["samplers[0].input", "is not from"], "translation", [1e30, 0.0]),
         bound_far(),
     ]
 }
@@ -334,6 +221,7 @@ fn bound_far() -> Refusal {
     )
 }
 
+#[rustfmt::skip] // One case a line.
 fn skins() -> Vec<Refusal> {
     let joints = |glb: &mut Glb| glb.u16s("VEC4", &[0, 7, 0, 0].repeat(3));
     let weights = |glb: &mut Glb| glb.floats("VEC4", &[0.5, 0.5, 0.0, 0.0].repeat(3));
@@ -341,63 +229,32 @@ fn skins() -> Vec<Refusal> {
     let mut few_matrices = skinned(|glb| glb.u16s("VEC4", &[0; 12]), weights);
     few_matrices.json["skins"][0]["joints"] = json!([1, 2, 0]);
     vec![
-        broken(
-            "no such joint",
-            &["JOINTS with skins[0]", "refers to joint 7"],
-            skinned(joints, weights),
-        ),
-        broken(
-            "NaN weight",
-            &["WEIGHTS_0", "3 of 12 numbers"],
-            skinned(joints, nan),
-        ),
-        broken(
-            "few matrices",
-            &["skins[0].inverseBindMatrices", "has 2 matrices, but 3"],
-            few_matrices,
-        ),
+        broken("no such joint", &["JOINTS with skins[0]", "refers to joint 7"], skinned(joints, weights)),
+        broken("NaN weight", &["WEIGHTS_0", "3 of 12 numbers"], skinned(joints, nan)),
+        broken("few matrices", &["skins[0].inverseBindMatrices", "has 2 matrices, but 3"], few_matrices),
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn animations() -> Vec<Refusal> {
-    let animated = |name, words: &[&'static str], times: &[f32], values: &[f32]| {
-        changed(name, words, |glb| {
-            let keys = [glb.floats("SCALAR", times), glb.floats("VEC3", values)];
-            glb.animate("move", "translation", "LINEAR", keys);
-        })
+    let animate = |glb: &mut Glb, times: &[f32], values: &[f32]| {
+        let keys = [glb.floats("SCALAR", times), glb.floats("VEC3", values)];
+        glb.animate("move", "translation", "LINEAR", keys);
     };
+    let animated = |name, words: &[&'static str], times: &[f32], values: &[f32]| changed(name, words, |glb| animate(glb, times, values));
     let output = "animations[0].samplers[0].output";
     vec![
-        animated(
-            "keys that stand still",
-            &["samplers[0].input", "key 1"],
-            &[1.0, 1.0],
-            &[0.0; 6],
-        ),
-        animated(
-            "too few values",
-            &[output, "has 3 numbers, but 6"],
-            &[0.0, 1.0],
-            &[0.0; 3],
-        ),
-        animated(
-            "infinite value",
-            &[output, "not finite"],
-            &[0.0],
-            &[f32::INFINITY, 0.0, 0.0],
-        ),
-        changed(
-            "animated matrix",
-            &["animations[0].channels[0]", "by a matrix"],
-            |glb| {
-                glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-                let keys = [glb.floats("SCALAR", &[0.0]), glb.floats("VEC3", &[0.0; 3])];
-                glb.animate("move", "translation", "LINEAR", keys);
-            },
-        ),
+        animated("keys that stand still", &["samplers[0].input", "key 1"], &[1.0, 1.0], &[0.0; 6]),
+        animated("too few values", &[output, "has 3 numbers, but 6"], &[0.0, 1.0], &[0.0; 3]),
+        animated("infinite value", &[output, "not finite"], &[0.0], &[f32::INFINITY, 0.0, 0.0]),
+        changed("animated matrix", &["animations[0].channels[0]", "by a matrix"], |glb| {
+            glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+            animate(glb, &[0.0], &[0.0; 3]);
+        }),
     ]
 }
 
+#[rustfmt::skip] // One case a line.
 fn pictures() -> Vec<Refusal> {
     let wide = png(9000);
     let textured = |name, words: &[&'static str], picture: &[u8]| {
@@ -412,11 +269,7 @@ fn pictures() -> Vec<Refusal> {
     };
     vec![
         textured("wide picture", &["images[0]", "9000 pixels on one side"], &wide),
-        textured(
-            "cut picture",
-            &["images[0]", "cannot be decoded"],
-            &png(100)[..60],
-        ),
+        textured("cut picture", &["images[0]", "cannot be decoded"], &png(100)[..60]),
     ]
 }
 

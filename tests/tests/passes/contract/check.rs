@@ -231,42 +231,16 @@ fn counts(module: &Module, entry: &naga::EntryPoint, uses: &FunctionInfo) -> Vec
         .filter_map(|global| global.binding.as_ref())
         .map(|binding| binding.group + 1)
         .max();
-    vec![
+    #[rustfmt::skip] // One count a line.
+    let counts = vec![
         ("bind groups", n_groups.unwrap_or(0), limits.max_bind_groups),
-        (
-            "storage buffers",
-            count(&|global| matches!(global.space, AddressSpace::Storage { .. })),
-            limits.max_storage_buffers_per_shader_stage,
-        ),
-        (
-            "uniform buffers",
-            count(&|global| global.space == AddressSpace::Uniform),
-            limits.max_uniform_buffers_per_shader_stage,
-        ),
-        (
-            "storage textures",
-            count(&|global| is_image(global, true)),
-            limits.max_storage_textures_per_shader_stage,
-        ),
-        (
-            "sampled textures",
-            count(&|global| is_image(global, false)),
-            limits.max_sampled_textures_per_shader_stage,
-        ),
-        (
-            "samplers",
-            count(&|global| matches!(inner(global), TypeInner::Sampler { .. })),
-            limits.max_samplers_per_shader_stage,
-        ),
-        (
-            "invocations",
-            entry.workgroup_size.iter().product(),
-            limits.max_compute_invocations_per_workgroup,
-        ),
-        (
-            "bytes of workgroup memory",
-            workgroup_bytes,
-            limits.max_compute_workgroup_storage_size,
-        ),
-    ]
+        ("storage buffers", count(&|global| matches!(global.space, AddressSpace::Storage { .. })), limits.max_storage_buffers_per_shader_stage),
+        ("uniform buffers", count(&|global| global.space == AddressSpace::Uniform), limits.max_uniform_buffers_per_shader_stage),
+        ("storage textures", count(&|global| is_image(global, true)), limits.max_storage_textures_per_shader_stage),
+        ("sampled textures", count(&|global| is_image(global, false)), limits.max_sampled_textures_per_shader_stage),
+        ("samplers", count(&|global| matches!(inner(global), TypeInner::Sampler { .. })), limits.max_samplers_per_shader_stage),
+        ("invocations", entry.workgroup_size.iter().product(), limits.max_compute_invocations_per_workgroup),
+        ("bytes of workgroup memory", workgroup_bytes, limits.max_compute_workgroup_storage_size),
+    ];
+    counts
 }

@@ -166,66 +166,22 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
 #[test]
 fn faults_in_a_shader_are_found() {
     // Shader, text in it, text in its place, words of the problem.
+    #[rustfmt::skip] // One case a line.
     let faults = [
         ("composite", "bounce", "rebound", ["Fit", "rebound"]),
-        (
-            "residual",
-            "size: vec2u,\n  _pad: vec2u,",
-            "_pad: vec2u,\n  size: vec2u,",
-            ["Grid", "size"],
-        ),
-        (
-            "residual",
-            "_pad: vec2u",
-            "normal_offset: vec2u",
-            ["Grid", "normal_offset"],
-        ),
+        ("residual", "size: vec2u,\n  _pad: vec2u,", "_pad: vec2u,\n  size: vec2u,", ["Grid", "size"]),
+        ("residual", "_pad: vec2u", "normal_offset: vec2u", ["Grid", "normal_offset"]),
         ("residual", "_pad: vec2u", "_pad: vec2f", ["Grid", "_pad"]),
-        (
-            "present",
-            "origin_px: vec2u,",
-            "origin_px: vec2u,\n  more: u32,",
-            ["Placement", "bytes"],
-        ),
-        (
-            "occlusion",
-            "array<vec4f, 256>",
-            "array<vec4f, 128>",
-            ["LightPoints", "bytes"],
-        ),
-        (
-            "composite",
-            "MAX_LIGHTS: u32 = 4u",
-            "MAX_LIGHTS: u32 = 5u",
-            ["MAX_LIGHTS", "5"],
-        ),
-        (
-            "fit_solve",
-            "PRIOR_BOUNCE: f32 = 0.27",
-            "PRIOR_BOUNCE: f32 = 0.28",
-            ["PRIOR_BOUNCE", "0.28"],
-        ),
+        ("present", "origin_px: vec2u,", "origin_px: vec2u,\n  more: u32,", ["Placement", "bytes"]),
+        ("occlusion", "array<vec4f, 256>", "array<vec4f, 128>", ["LightPoints", "bytes"]),
+        ("composite", "MAX_LIGHTS: u32 = 4u", "MAX_LIGHTS: u32 = 5u", ["MAX_LIGHTS", "5"]),
+        ("fit_solve", "PRIOR_BOUNCE: f32 = 0.27", "PRIOR_BOUNCE: f32 = 0.28", ["PRIOR_BOUNCE", "0.28"]),
         ("residual", "Grids", "AllGrids", ["Grids", "the shader has none"]),
         ("residual", "fn cs_pool", "fn pool", ["pool", "cs_…"]),
-        (
-            "residual",
-            "@workgroup_size(8, 8)",
-            "@workgroup_size(16, 17)",
-            ["272", "invocations"],
-        ),
-        (
-            "fit",
-            "N_PARTIAL: u32 = 1792u",
-            "N_PARTIAL: u32 = 5000u",
-            ["20448", "workgroup memory"],
-        ),
+        ("residual", "@workgroup_size(8, 8)", "@workgroup_size(16, 17)", ["272", "invocations"]),
+        ("fit", "N_PARTIAL: u32 = 1792u", "N_PARTIAL: u32 = 5000u", ["20448", "workgroup memory"]),
         ("present", "@group(1)", "@group(4)", ["5", "bind groups"]),
-        (
-            "residual",
-            "var sums = Sums",
-            "var sums: vec2f = Sums",
-            ["does not parse", "sums"],
-        ),
+        ("residual", "var sums = Sums", "var sums: vec2f = Sums", ["does not parse", "sums"]),
     ];
     for (name, from, to, words) in faults {
         let shader = shader(name);

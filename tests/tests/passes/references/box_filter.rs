@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::box_filter::{box_sums, mean};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 const SIZE: UVec2 = UVec2::new(61, 37);
 const RADIUS_PX: u32 = 5;
@@ -13,8 +13,8 @@ fn constant_stays_and_what_has_no_term_does_not_count() {
     // A ragged shadow: two thirds of the left half.
     let terms = Raster::from_fn(SIZE, |at| ((at.x + at.y) % 3 > 0 && at.x < 30).then_some(value));
     let sums = box_sums(&terms, RADIUS_PX);
-    for texel in Raster::from_fn(SIZE, |at| at).texels() {
-        let mean = mean(sums.at(*texel));
+    for texel in texels_of(SIZE) {
+        let mean = mean(sums.at(texel));
         // A square reaches its radius beyond the shadow's edge.
         assert_eq!(mean.is_some(), texel.x < 30 + RADIUS_PX, "{texel}");
         assert!(
@@ -30,10 +30,10 @@ fn single_term_is_spread_over_its_square() {
         let value = DVec3::new(0.2, 0.4, 0.8);
         let terms = Raster::from_fn(SIZE, |at| (at == place).then_some(value));
         let sums = box_sums(&terms, RADIUS_PX);
-        for texel in Raster::from_fn(SIZE, |at| at).texels() {
+        for texel in texels_of(SIZE) {
             let is_near = texel.as_ivec2().chebyshev_distance(place.as_ivec2()) <= RADIUS_PX;
             let expected = if is_near { value.extend(1.0) } else { DVec4::ZERO };
-            assert_eq!(sums.at(*texel), expected, "{place} {texel}");
+            assert_eq!(sums.at(texel), expected, "{place} {texel}");
         }
     }
 }

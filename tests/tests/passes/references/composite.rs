@@ -7,7 +7,7 @@ use reference::raster::Raster;
 
 use crate::references::flat::{grid, region, scatter, truth, two_bulbs};
 
-pub(crate) const SIZE: UVec2 = UVec2::new(61, 37);
+const SIZE: UVec2 = UVec2::new(61, 37);
 
 fn noise(seed: u32) -> Raster<f64> {
     Raster::from_fn(SIZE, |at| scatter(at.x + SIZE.x * at.y, seed))
@@ -18,7 +18,7 @@ fn colors(seed: u32) -> Raster<DVec3> {
 }
 
 /// A frame that no model explains, with nothing moved yet.
-pub(crate) fn scene() -> (Region, Pictures, Shown) {
+fn scene() -> (Region, Pictures, Shown) {
     let visibility = noise(2).map(|value| DVec4::new(value, 1.0 - value, 0.0, 0.0));
     let ambient = Raster::from_fn(UVec2::new(9, 6), |at| scatter(at.x + at.y, 3));
     let pictures = Pictures {
@@ -40,9 +40,7 @@ pub(crate) fn scene() -> (Region, Pictures, Shown) {
 }
 
 fn picture(region: &Region, pictures: &Pictures, shown: &Shown) -> Raster<DVec3> {
-    Raster::from_fn(SIZE, |texel| {
-        receiver_color::<f64>(region, pictures, shown, texel)[0]
-    })
+    Raster::from_fn(SIZE, |texel| receiver_color(region, pictures, shown, texel)[0])
 }
 
 #[test]
@@ -110,7 +108,7 @@ fn border_fades_into_the_frame_at_inner_edges_alone() {
             assert!((faded.at(at) - expected).abs().max_element() < 1e-12, "{at}");
         }
     }
-    assert!((inside_border::<f64>(&region, UVec2::ZERO) - 1.0).abs() < 1e-12);
+    assert!((inside_border(&region, UVec2::ZERO) - 1.0).abs() < 1e-12);
 
     // What hides the receiver goes even there.
     pictures.seen = Raster::from_fn(SIZE, |_| 0.0);

@@ -7,7 +7,7 @@ use reference::fill::fill;
 use reference::grid::{Cell, Taken, accumulate};
 use reference::lit::pool;
 use reference::model::{Pictures, Region, Solution};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 use crate::references::flat::{grid, region, scatter, truth, two_bulbs};
 
@@ -32,8 +32,8 @@ fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (
     let (region, solution) = (region(SIZE, two_bulbs()), truth(2));
     let ambient = 0.95;
     let frame = Raster::from_fn(SIZE, |at| {
-        let point = region.receiver_point::<f64>(at.as_dvec2() + 0.5).unwrap();
-        let model = solution.receiver_model::<f64>(&region, point, ambient, visibility(at));
+        let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
+        let model = solution.receiver_model(&region, point, ambient, visibility(at));
         let color = solution.gain * plate(at) * (model + residual(at));
         if is_hidden(at) { DVec3::X } else { color }
     });
@@ -48,7 +48,7 @@ fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (
 }
 
 fn texels() -> impl Iterator<Item = UVec2> {
-    (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| UVec2::new(x, y)))
+    texels_of(SIZE)
 }
 
 /// A uniform place is found as it is, in the light and in shadow, and under the toy.

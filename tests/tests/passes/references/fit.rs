@@ -10,7 +10,7 @@ use crate::references::flat::{point, region, scatter, start, truth, two_bulbs};
 
 const N_SAMPLES: u32 = 2000;
 
-pub(crate) fn without_priors() -> FitConstants {
+fn without_priors() -> FitConstants {
     FitConstants {
         prior_weight: 0.0,
         white_weight: 0.0,
@@ -19,12 +19,12 @@ pub(crate) fn without_priors() -> FitConstants {
     }
 }
 
-pub(crate) fn layout(n_lights: usize) -> Region {
+fn layout(n_lights: usize) -> Region {
     region(UVec2::splat(80), two_bulbs()[..n_lights].to_vec())
 }
 
 /// Receiver points all over the place, lit and in all kinds of shade, over a plate of many colours.
-pub(crate) fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
+fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
     let sample = |seed: u32| {
         let unit = |dimension| scatter(seed, dimension);
         let in_plane = DVec2::new(unit(0) - 0.5, unit(1) - 0.5);
@@ -33,7 +33,7 @@ pub(crate) fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSampl
         // Half of the points are out of each shadow.
         let visibility = DVec4::new(unit(6), unit(7), 0.0, 0.0) * 2.0;
         let visibility = visibility.min(DVec4::ONE);
-        let model = solution.receiver_model::<f64>(region, point(in_plane), ambient, visibility);
+        let model = solution.receiver_model(region, point(in_plane), ambient, visibility);
         ReceiverSample {
             frame: solution.gain * plate * model,
             plate,
@@ -69,7 +69,7 @@ fn known_light_is_recovered() {
         let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
         // The falloff of the plate is linearised, so this takes steps; each one halves the error and more.
-        let fitted = fit_receiver::<f64>(&region, (0, &samples), &start(n_lights), &without_priors(), 40);
+        let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &without_priors(), 40);
         let error = difference(&fitted, &truth(n_lights), 1.0);
         assert!(error < 1e-6, "{n_lights} lights: off by {error:e}, {fitted:?}");
     }
@@ -81,7 +81,7 @@ fn priors_and_few_steps_cost_little() {
     for n_lights in [1, 2] {
         let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
-        let fitted = fit_receiver::<f64>(&region, (0, &samples), &start(n_lights), &constants, 5);
+        let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &constants, 5);
         let error = difference(&fitted, &truth(n_lights), MOST_BOUNCED);
         // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 3.5e-4.
         assert!(error < 1e-3, "{n_lights} lights: off by {error:e}");
@@ -98,12 +98,12 @@ fn hand_in_the_picture_counts_little() {
             .iter_mut()
             .step_by(20)
             .for_each(|sample| sample.frame = DVec3::new(0.55, 0.33, 0.24));
-        let fitted = fit_receiver::<f64>(&region, (0, &samples), &start(n_lights), &without_priors(), 20);
+        let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &without_priors(), 20);
         let plain = FitConstants {
             cauchy_scale: 1e6,
             ..without_priors()
         };
-        let fooled = fit_receiver::<f64>(&region, (0, &samples), &start(n_lights), &plain, 20);
+        let fooled = fit_receiver(&region, (0, &samples), &start(n_lights), &plain, 20);
         let direct_fractions = |solution: &Solution| {
             let of_truth = &truth(n_lights).receivers[0].direct_fractions;
             let off = solution.receivers[0]
@@ -130,11 +130,11 @@ fn without_evidence_the_start_stays() {
     dark.iter_mut().for_each(|sample| sample.frame = DVec3::ZERO);
     for samples in [Vec::new(), dark] {
         assert_eq!(
-            fit_receiver::<f64>(&region, (0, &samples), &start(2), &constants, 5),
+            fit_receiver(&region, (0, &samples), &start(2), &constants, 5),
             start(2)
         );
     }
-    assert_eq!(fit_toy::<f64>(&region, &[], &start(2), &constants, 5), start(2));
+    assert_eq!(fit_toy(&region, &[], &start(2), &constants, 5), start(2));
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn unseen_shadow_leaves_the_expected_share() {
         (sample.ambient, sample.visibility) = (1.0, DVec4::ONE);
         sample.frame = sample.plate * 0.9;
     }
-    let fitted = fit_receiver::<f64>(&region, (0, &lit), &start(2), &constants, 5);
+    let fitted = fit_receiver(&region, (0, &lit), &start(2), &constants, 5);
     // Like bulbs: cosine over squared distance of each, from the reference point at the origin.
     let of_bulb = |bulb: DVec4| bulb.y / bulb.truncate().length().powi(3);
     let bulbs = two_bulbs();
@@ -164,7 +164,7 @@ fn unseen_shadow_leaves_the_expected_share() {
 }
 
 /// How a toy is lit, what else is known of it, and pixels of it.
-pub(crate) fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
+fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
     let lit = [
         DVec3::new(0.3, 0.32, 0.4),
         DVec3::new(0.1, 0.12, 0.15),
@@ -182,9 +182,9 @@ pub(crate) fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
         let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
         // Any light that rises and falls otherwise than the normal will do.
         let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
-        let columns = toy_columns::<f64>(normal, received, &known.intensities);
+        let columns = toy_columns(normal, received, &known.intensities);
         let lights = columns.into_iter().zip(lit);
-        let light: DVec3 = lights.map(|(column, lit)| DVec3::from(column) * lit).sum();
+        let light: DVec3 = lights.map(|(column, lit)| column * lit).sum();
         ToySample {
             frame: base * light,
             base,
@@ -199,7 +199,7 @@ pub(crate) fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
 fn light_on_the_toy_is_recovered() {
     let region = layout(2);
     let (lit, known, samples) = lit_toy();
-    let fitted = fit_toy::<f64>(&region, &samples, &known, &without_priors(), 10);
+    let fitted = fit_toy(&region, &samples, &known, &without_priors(), 10);
     for (fitted, lit) in fitted.toy.iter().zip(lit) {
         assert!((fitted - lit).abs().max_element() < 1e-6, "{fitted}, not {lit}");
     }

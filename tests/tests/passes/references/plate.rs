@@ -42,9 +42,7 @@ pub(crate) fn slope(in_plane: DVec2) -> DVec3 {
 
 pub(crate) fn photo(camera: &Viewpoint, gain: f64, color: impl Fn(DVec2) -> DVec3) -> PlatePhoto {
     let plane = &camera.region.receivers[0];
-    let picture = Raster::from_fn(SIZE, |at| {
-        color(plane.plane_point::<f64>(at.as_dvec2() + 0.5).unwrap())
-    });
+    let picture = Raster::from_fn(SIZE, |at| color(plane.plane_point(at.as_dvec2() + 0.5).unwrap()));
     PlatePhoto {
         camera: camera.clone(),
         picture: picture.map(|color| color / gain),
@@ -64,7 +62,7 @@ fn a_slope_is_the_same_from_wherever_it_is_photographed() {
         let mut n_shown = 0;
         for texel in [UVec2::new(35, 25), UVec2::new(40, 30), UVec2::new(47, 33)] {
             let in_plane = view.region.receivers[0]
-                .plane_point::<f64>(texel.as_dvec2() + 0.5)
+                .plane_point(texel.as_dvec2() + 0.5)
                 .unwrap();
             let found = choose(&view, std::slice::from_ref(&plate), texel);
             // A cubic through a line is the line.

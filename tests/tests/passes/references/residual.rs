@@ -40,8 +40,8 @@ fn constant_residual_is_pooled_as_it_is() {
         ambient: Raster::from_fn(UVec2::new(7, 5), |_| 0.9),
     };
     pictures.frame = Raster::from_fn(SIZE, |at| {
-        let point = region.receiver_point::<f64>(at.as_dvec2() + 0.5).unwrap();
-        let model = solution.receiver_model::<f64>(&region, point, 0.9, visibility);
+        let point = region.receiver_point(at.as_dvec2() + 0.5).unwrap();
+        let model = solution.receiver_model(&region, point, 0.9, visibility);
         if is_hidden(at) {
             DVec3::ONE
         } else {

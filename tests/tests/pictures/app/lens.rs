@@ -4,8 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
 use app_core::app::{
-    App, GraphicsState, LensFailure, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent, Step,
-    UserAction, WorkCommand,
+    App, LensFailure, Notice, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction, WorkCommand,
 };
 use app_core::camera_frame::CameraFrame;
 use app_core::card::{card_from_lens, lens_shape};
@@ -16,6 +15,8 @@ use glam::{DMat4, DVec2, DVec3};
 use measure::photographer::world::{camera, toward};
 use measure::photographer::{Exposure, Lamp, Mirror, Quality, Shot, World, folder};
 use view::feed::Feed;
+
+use crate::app::world;
 
 const SIZE_PX: [u32; 2] = [512, 288];
 /// Where the lens lies, beside the toy.
@@ -83,14 +84,7 @@ impl Person {
             can_darken: true,
         };
         person.feed.hides_planes = true;
-        for event in [
-            ShellEvent::Foreground(true),
-            ShellEvent::Graphics(GraphicsState::Ready),
-            ShellEvent::Permission(Permission::Granted),
-            ShellEvent::User(UserAction::Begin),
-        ] {
-            person.tell(event);
-        }
+        world::opening().into_iter().for_each(|event| person.tell(event));
         person.frames(2);
         person.tell(ShellEvent::User(UserAction::Tap(BESIDE_TOY_PX)));
         person.tell(ShellEvent::User(UserAction::SkipPlate));

@@ -173,48 +173,19 @@ impl Platform {
             Show::Toy { input, .. } => (input.effect, true),
             _ => (0.0, false),
         };
+        #[rustfmt::skip] // One rule a line.
         let rules = [
-            (
-                self.runs && !(self.is_foreground && self.permission == Permission::Granted),
-                "the camera runs where it may not",
-            ),
-            (
-                self.runs && step == Step::Welcome,
-                "the camera runs before it is needed",
-            ),
-            (
-                self.runs && self.is_locked != (step >= Step::PlaceToy),
-                "exposure is held or free at the wrong time",
-            ),
-            (
-                self.runs && self.is_dark != app.is_taking_lens(),
-                "the camera is dark at the wrong time",
-            ),
-            (
-                self.is_awake && step == Step::Welcome,
-                "the screen is kept on for nothing",
-            ),
-            (
-                self.makes_video && !(self.runs && step == Step::Play),
-                "a video of nothing",
-            ),
-            (
-                self.records && !(self.runs && step == Step::Play),
-                "a recording of nothing",
-            ),
-            (
-                self.records != app.is_recording(),
-                "the app is wrong about its recording",
-            ),
-            (
-                is_toy && step != Step::Play,
-                "the effect is shown before the toy was found",
-            ),
+            (self.runs && !(self.is_foreground && self.permission == Permission::Granted), "the camera runs where it may not"),
+            (self.runs && step == Step::Welcome, "the camera runs before it is needed"),
+            (self.runs && self.is_locked != (step >= Step::PlaceToy), "exposure is held or free at the wrong time"),
+            (self.runs && self.is_dark != app.is_taking_lens(), "the camera is dark at the wrong time"),
+            (self.is_awake && step == Step::Welcome, "the screen is kept on for nothing"),
+            (self.makes_video && !(self.runs && step == Step::Play), "a video of nothing"),
+            (self.records && !(self.runs && step == Step::Play), "a recording of nothing"),
+            (self.records != app.is_recording(), "the app is wrong about its recording"),
+            (is_toy && step != Step::Play, "the effect is shown before the toy was found"),
             (!(0.0..=1.0).contains(&effect), "an effect that cannot be"),
-            (
-                self.makes_video != app.is_making_video(),
-                "the app is wrong about its video",
-            ),
+            (self.makes_video != app.is_making_video(), "the app is wrong about its video"),
         ];
         let broken = rules.into_iter().find(|(is_broken, _)| *is_broken);
         broken.map_or(Ok(()), |(_, rule)| Err(format!("{rule}, in {step:?}")))

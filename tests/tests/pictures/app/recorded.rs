@@ -9,7 +9,6 @@ use std::thread;
 use app_core::Core;
 use app_core::app::{Notice, Recorded, ShellCommand, ShellEvent, Show, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
-use app_core::gpu::AdapterChoice;
 use app_core::recording::{
     Ending, Limits, PictureCodec, Recording, RecordingJob, RecordingOptions, RecordingOutcome, Topic,
 };
@@ -17,14 +16,14 @@ use app_core::scene::{Pose, Scene};
 use app_core::session::{
     Capture, Files, GroundTruth, Session, SessionError, SessionFrame, SessionWarning, Truth,
 };
-use app_core::wgpu;
 use desk::convert;
-use desk::files::{BUNDLED_SESSION, Folder};
 use desk::metrics::Scores;
 use desk::progress::Quiet;
 use desk::replay::{Options, picture_file, replay};
 use desk::report::Report;
 use desk::stored::Stored;
+use harness::temporary::Temporary;
+use harness::{bundled_session, open_core};
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
@@ -74,7 +73,7 @@ struct Fed {
 
 /// A person records three frames, each with a pose of the bundled session's.
 fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
-    let source = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let source = bundled_session();
     let mut person = placed(OFF_M);
     let toy = person.feed.toy_file();
     person.frames(1);
@@ -154,27 +153,8 @@ impl GroundTruth for Truths {
     }
 }
 
-/// A folder that goes with the test.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new(name: &str) -> Self {
-        let name = format!("{name}-{}", std::process::id());
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn replayed(session: &dyn Session, core: &mut Core, out: PathBuf) -> (Report, Vec<Vec<u8>>) {
-    let truths = Truths(Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap());
+    let truths = Truths(bundled_session());
     let options = Options {
         out: Some(out.clone()),
         ..Options::default()
@@ -231,11 +211,6 @@ fn differing(one: &serde_json::Value, other: &serde_json::Value, at: &str) -> Ve
     }
 }
 
-fn core() -> Core {
-    let instance = wgpu::Instance::default();
-    pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap()
-}
-
 fn scores(report: &Report) -> Scores {
     report.mean.scores.unwrap()
 }
@@ -243,7 +218,7 @@ fn scores(report: &Report) -> Scores {
 #[test]
 fn a_recording_is_replayed_as_what_was_fed() {
     let folder = Temporary::new("app-recorded");
-    let mut core = core();
+    let mut core = open_core();
     let (fed, bytes) = fed_and_recorded(PictureCodec::Lossless);
     let path = folder.0.join("a.mcap");
     fs::write(&path, &bytes).unwrap();

@@ -1,15 +1,12 @@
 //! Starts that come to no end lead to the simplest preset, and back from there.
 
-use app_core::Core;
 use app_core::app::{
     App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent,
     Simplified, UserAction, WorkCommand,
 };
-use app_core::gpu::AdapterChoice;
-use app_core::interface::{Insets, Screen};
+use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::preset::Preset;
-use app_core::wgpu;
 
 use crate::app::world;
 
@@ -169,26 +166,10 @@ fn whatever_is_kept_is_read() {
     assert_eq!(starts.text(), "unfinished 1\nsimple\n");
 }
 
-const SCREEN: Screen = Screen {
-    size_px: [320, 480],
-    pixels_per_point: 1.0,
-    insets: Insets {
-        left_px: 0.0,
-        top_px: 0.0,
-        right_px: 0.0,
-        bottom_px: 0.0,
-    },
-    text_scale: 1.0,
-};
+const SCREEN: Screen = world::screen(320, 480);
 
 fn open_live() -> Live {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    Live::new(
-        pollster::block_on(opened).unwrap(),
-        world::toy(),
-        Preset::Balanced,
-    )
+    Live::new(harness::open_core(), world::toy(), Preset::Balanced)
 }
 
 /// What is kept once an app has compiled its preset.

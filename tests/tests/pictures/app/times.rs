@@ -3,31 +3,18 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use app_core::Core;
-use app_core::app::{GraphicsState, Permission, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
+use app_core::app::{ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
 use app_core::camera_frame::Tracking;
 use app_core::frame::Clock;
-use app_core::gpu::AdapterChoice;
-use app_core::interface::{Insets, Screen};
+use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::profile::{FRAME, PROCESSOR};
-use app_core::wgpu;
 use glam::DVec2;
 
 use crate::app::world;
 
-const SCREEN: Screen = Screen {
-    size_px: [160, 120],
-    pixels_per_point: 1.0,
-    insets: Insets {
-        left_px: 0.0,
-        top_px: 0.0,
-        right_px: 0.0,
-        bottom_px: 0.0,
-    },
-    text_scale: 1.0,
-};
+const SCREEN: Screen = world::screen(160, 120);
 
 fn tell(live: &mut Live, event: ShellEvent) {
     for command in live.event(event) {
@@ -48,21 +35,13 @@ fn deliver(live: &mut Live, id: u64, age_ms: Option<f64>) {
 
 /// An app whose toy moves, and the clock that it is timed by, in milliseconds.
 fn playing() -> (Live, Arc<AtomicU64>) {
-    let instance = wgpu::Instance::default();
-    let opened = Core::headless(&instance, &AdapterChoice::Fastest);
-    let core = pollster::block_on(opened).unwrap();
-    let mut live = Live::new(core, world::toy(), Preset::Flat);
+    let mut live = Live::new(harness::open_core(), world::toy(), Preset::Flat);
     let now_ms = Arc::new(AtomicU64::new(0));
     let clock = Arc::clone(&now_ms);
     live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
-    for event in [
-        ShellEvent::Foreground(true),
-        ShellEvent::Graphics(GraphicsState::Ready),
-        ShellEvent::Permission(Permission::Granted),
-        ShellEvent::User(UserAction::Begin),
-    ] {
-        tell(&mut live, event);
-    }
+    world::opening()
+        .into_iter()
+        .for_each(|event| tell(&mut live, event));
     place(&mut live, 1);
     (live, now_ms)
 }

@@ -1,22 +1,12 @@
 //! Another toy: the list of those that there are, one of which is read.
 
 use app_core::app::{ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
-use app_core::interface::{Insets, Interface, Screen};
+use app_core::interface::{Interface, Screen};
 use glam::DVec2;
 
 use crate::app::world;
 
-const SCREEN: Screen = Screen {
-    size_px: [844, 390],
-    pixels_per_point: 1.0,
-    insets: Insets {
-        left_px: 0.0,
-        top_px: 0.0,
-        right_px: 0.0,
-        bottom_px: 0.0,
-    },
-    text_scale: 1.0,
-};
+const SCREEN: Screen = world::screen(844, 390);
 
 fn labels(app: &app_core::app::App) -> Vec<String> {
     let mut interface = Interface::default();

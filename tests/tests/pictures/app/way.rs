@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
-use app_core::app::{GraphicsState, Permission};
 use app_core::recording::RecordingJob;
 use app_core::scene::Camera;
 use desk::files::BUNDLED_SESSION;
 use desk::stored::Stored;
 use glam::{DMat4, DVec2, DVec3};
 use view::feed::Feed;
+
+use crate::app::world;
 
 /// How far off the ghost is left.
 pub(crate) const OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
@@ -72,14 +73,7 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
         feed,
         recordings: Vec::new(),
     };
-    for event in [
-        ShellEvent::Foreground(true),
-        ShellEvent::Graphics(GraphicsState::Ready),
-        ShellEvent::Permission(Permission::Granted),
-    ] {
-        person.tell(event);
-    }
-    person.act(UserAction::Begin);
+    world::opening().into_iter().for_each(|event| person.tell(event));
     person.frames(2);
     let at = person.pixel_of(DVec3::ZERO);
     person.act(UserAction::Tap(at));

@@ -7,6 +7,7 @@ use app_core::alignment::{Alignment, PoseAlignment, PoseDeviation};
 use app_core::app::{App, GraphicsState, Permission, Recorded, ShellEvent, UserAction};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::FrameInput;
+use app_core::interface::{Insets, Screen};
 use app_core::recording::RecordingJob;
 use app_core::scene::{Image, Intrinsics};
 use app_core::toy::Toy;
@@ -30,19 +31,41 @@ pub(crate) fn app() -> App {
     App::new(toy())
 }
 
-/// An app whose ghost stands on the table, without a plate.
-pub(crate) fn at_ghost() -> App {
-    let mut app = app();
-    for event in [
+/// A screen that nothing covers, a pixel a point.
+pub(crate) const fn screen(width_px: u32, height_px: u32) -> Screen {
+    Screen {
+        size_px: [width_px, height_px],
+        pixels_per_point: 1.0,
+        insets: Insets {
+            left_px: 0.0,
+            top_px: 0.0,
+            right_px: 0.0,
+            bottom_px: 0.0,
+        },
+        text_scale: 1.0,
+    }
+}
+
+/// What leads to a camera that looks for a table.
+pub(crate) fn opening() -> [ShellEvent; 4] {
+    [
         ShellEvent::Foreground(true),
         ShellEvent::Graphics(GraphicsState::Ready),
         ShellEvent::Permission(Permission::Granted),
         ShellEvent::User(UserAction::Begin),
+    ]
+}
+
+/// An app whose ghost stands on the table, without a plate.
+pub(crate) fn at_ghost() -> App {
+    let mut app = app();
+    let placing = [
         ShellEvent::Frame(Box::new(frame(1, 0, 0, Tracking::Normal))),
         ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
         ShellEvent::User(UserAction::SkipPlate),
         ShellEvent::Frame(Box::new(frame(2, 33_000_000, 0, Tracking::Normal))),
-    ] {
+    ];
+    for event in opening().into_iter().chain(placing) {
         let _ = app.event(event);
     }
     app

@@ -4,11 +4,9 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
 use app_core::Core;
 use app_core::frame::FrameInput;
-use app_core::gpu::AdapterChoice;
 use app_core::scene::{Camera, Image, Intrinsics, Plate, Scene};
-use app_core::session::{Capture, Session};
-use app_core::wgpu::{Instance, InstanceDescriptor};
-use desk::files::{BUNDLED_SESSION, Folder};
+use app_core::session::Session;
+use harness::{bundled_session, open_core};
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
@@ -20,12 +18,6 @@ static CORE: LazyLock<Mutex<Core>> = LazyLock::new(|| Mutex::new(open_core()));
 /// The core, which no other test uses meanwhile. What a test before left there goes with its own scene.
 pub(crate) fn core() -> MutexGuard<'static, Core> {
     CORE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A core without any scene.
-pub(crate) fn open_core() -> Core {
-    let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-    pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest)).unwrap()
 }
 
 /// What the session says of the place.
@@ -40,7 +32,7 @@ pub(crate) fn first_input() -> FrameInput {
 
 /// Both in full size.
 pub(crate) fn whole() -> (Scene, FrameInput) {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     (
         session.scene().clone(),
         FrameInput::from(&session.frame(0).unwrap()),

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use app_core::preset::Preset;
-use app_core::session::{Capture, GroundTruth};
+use app_core::session::GroundTruth;
 use app_core::toy::{Toy, ToyWarning};
-use desk::files::{BUNDLED_SESSION, Folder};
+use harness::bundled_session;
 
 use crate::core::bundled::{SHRINK, core, first_input, picture_of, scene};
 use crate::core::file::File;
@@ -26,7 +26,7 @@ pub(crate) fn picture(toy: Toy, preset: Preset) -> Vec<u8> {
 
 /// Whether each pixel lies in the shown toy.
 pub(crate) fn is_toy() -> Vec<bool> {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     let mask = session.truth(0).unwrap().unwrap().mask;
     let step = SHRINK as usize;
     let rows = mask.rgba8.chunks_exact(4 * mask.width_px as usize).step_by(step);
@@ -57,28 +57,13 @@ pub(crate) fn rmse_where(actual: &[u8], expected: &[u8], is_counted: impl Fn(usi
 fn broken_normals_look_as_good_ones_do() {
     let zero = |_| [0.0; 3];
     let all = usize::MAX;
+    #[rustfmt::skip] // One case a line.
     let cases = [
         ("zero", File::open().change_normals(all, zero), "no length"),
-        (
-            "zero in one part",
-            File::open().change_normals(1, zero),
-            "no length",
-        ),
-        (
-            "inverted",
-            File::open().change_normals(all, inverted),
-            "pointed into",
-        ),
-        (
-            "inverted in one part",
-            File::open().change_normals(1, inverted),
-            "pointed into",
-        ),
-        (
-            "inside out",
-            File::open().change_normals(all, inverted).turn_faces(),
-            "faced inwards",
-        ),
+        ("zero in one part", File::open().change_normals(1, zero), "no length"),
+        ("inverted", File::open().change_normals(all, inverted), "pointed into"),
+        ("inverted in one part", File::open().change_normals(1, inverted), "pointed into"),
+        ("inside out", File::open().change_normals(all, inverted).turn_faces(), "faced inwards"),
         ("faces turned around", File::open().turn_faces(), "faced inwards"),
     ];
     for preset in [Preset::Balanced, Preset::Best] {

@@ -6,13 +6,16 @@ use app_core::preset::Preset;
 use app_core::scene::{Light, Pose};
 use glam::{DMat4, DVec3};
 
-use crate::core::bundled::{core, first_input, open_core, picture_of, scene};
+use crate::core::bundled::{core, first_input, picture_of, scene};
 
 #[test]
 fn pictures_that_do_not_fit_are_refused() {
     let mut core = core();
     let input = first_input();
-    assert!(matches!(open_core().frame(&input), Err(CoreError::NoScene)));
+    assert!(matches!(
+        harness::open_core().frame(&input),
+        Err(CoreError::NoScene)
+    ));
 
     let wide = scene().with_size_px([9000, 100]).with_plates(Vec::new());
     let refused = core.set_scene(wide, Preset::Balanced);

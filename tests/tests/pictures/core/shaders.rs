@@ -7,8 +7,9 @@ use app_core::gpu::ShaderTexts;
 use app_core::preset::Preset;
 use app_core::{Core, CoreError};
 use desk::shaders::{ShaderFolder, read_shaders};
+use harness::open_core;
 
-use crate::core::bundled::{first_input, open_core, picture_of, scene};
+use crate::core::bundled::{first_input, picture_of, scene};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaders");
 

@@ -10,9 +10,9 @@ use app_core::Core;
 use app_core::camera_frame::{CameraImage, Display};
 use app_core::frame::{self, FrameInput, FrameReport, PassRun};
 use app_core::preset::Preset;
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use app_pipeline::core::inspect::Inspect;
-use desk::files::{BUNDLED_SESSION, Folder};
+use harness::bundled_session;
 use measure::bench::{FRAME_KINDS, with_new};
 use measure::planar::{BT601_FULL, planar};
 
@@ -44,13 +44,9 @@ fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Pass>) -> BTreeMap<Str
     passes
 }
 
-fn session() -> Capture {
-    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
-}
-
 #[test]
 fn the_ledger_without_a_device_is_what_a_device_is_given() {
-    let session = session();
+    let session = bundled_session();
     let first = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger");
     for preset in [Preset::Paper, Preset::Balanced, Preset::Best] {
@@ -89,7 +85,7 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
 /// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all; pixels and planes.
 #[test]
 fn a_screen_costs_what_a_device_is_given() {
-    let session = session();
+    let session = bundled_session();
     let mut input = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger-screen");
     traced
@@ -134,7 +130,7 @@ fn a_screen_costs_what_a_device_is_given() {
 /// A draw, a store or a texel that the ledger does not know of is found.
 #[test]
 fn what_is_planted_in_a_trace_is_found() {
-    let session = session();
+    let session = bundled_session();
     let first = FrameInput::from(&session.frame(0).unwrap());
     let mut traced = Traced::new("ledger-planted");
     traced

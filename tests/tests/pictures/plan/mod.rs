@@ -2,7 +2,6 @@
 
 mod anchored;
 mod conditioning;
-mod facing;
 mod light_points;
 mod outliers;
 mod outline;

@@ -3,13 +3,13 @@
 use app_core::Core;
 use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::{BALANCED, Preset};
-use app_core::session::{Capture, Session};
+use app_core::session::Session;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::plan::Plan;
 use app_pipeline::plan::{Change, SceneFacts};
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::UVec2;
+use harness::bundled_session;
 use measure::bench::{FrameKind, with_new};
 
 /// Sizes of regions, from a pixel to more than any camera.
@@ -74,7 +74,7 @@ fn ran(core: &mut Core, input: &FrameInput) -> Ran {
 
 /// A core that counts frames of the bundled session, and the first of them.
 fn counting(preset: Preset, has_plates: bool) -> (Core, FrameInput) {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let session = bundled_session();
     let mut scene = session.scene().clone();
     if !has_plates {
         scene.plates.clear();
@@ -167,15 +167,22 @@ fn the_published_method_runs_its_passes_in_this_order() {
 /// A new picture changes the colours alone; if that is the same, too, nothing runs.
 #[test]
 fn a_paused_toy_is_not_drawn_again() {
-    for (preset, colours) in [
-        (Preset::Balanced, "fit fit_solve tint tint_fill toy composite"),
-        (Preset::Paper, "plate search box_filter retarget"),
+    let of_paper = "warp pcss search box_filter retarget";
+    for (preset, colours, all) in [
+        (
+            Preset::Balanced,
+            "fit fit_solve tint tint_fill toy composite",
+            DRAWN,
+        ),
+        (Preset::Paper, "plate search box_filter retarget", of_paper),
     ] {
         let (mut core, input) = counting(preset, true);
         ran(&mut core, &input);
         assert_eq!(ran(&mut core, &input), expected(Change::Pose, "", ""));
         let next = with_new(&input, FrameKind::Picture);
         assert_eq!(ran(&mut core, &next), expected(Change::Picture, "", colours));
+        let aside = with_new(&next, FrameKind::View);
+        assert_eq!(ran(&mut core, &aside).1[1], all);
     }
 }
 

@@ -265,6 +265,12 @@ fn what_is_missing_is_found() {
 }
 
 #[test]
+fn points_and_directions_at_once_see_no_side_alone() {
+    assert_eq!(Viewers::around(&[]), None);
+    assert_eq!(Viewers::around(&[Vec4::W, Vec4::Y]), None);
+}
+
+#[test]
 fn a_shadow_without_bounds_has_no_outline() {
     let mesh = ball(Vec3::new(0.0, 3.6, 0.0), 0.5, 8, true);
     let light = lamp(0.05);

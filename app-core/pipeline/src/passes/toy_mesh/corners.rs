@@ -7,9 +7,7 @@ use wgpu::BufferUsages;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::silhouette::{Projection, Silhouette};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::context::Gpu;
-use crate::gpu::recorder::Render;
+use crate::gpu::{Buffer, Gpu, Render};
 use crate::passes::toy_mesh::PoseBuffers;
 
 /// What the processor lists of a shape in a pose, for whom looks at it.

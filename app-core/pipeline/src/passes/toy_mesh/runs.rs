@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::gpu::pipeline::Draw;
-use crate::gpu::recorder::Group;
+use crate::gpu::{Draw, Group};
 use crate::passes::materials::Materials;
 use crate::passes::toy_mesh::corners::n;
 use app_scene::toy::Toy;
