@@ -4,6 +4,9 @@
 // above is to a light as the ambient part of the receiver's radiance is to that light's part, and what comes from below
 // is what the receiver throws back. Light is not negative, so an unknown that would be is 0, and the others make up.
 //
+// Where no light is known, how much of the light comes from all around is not known either: the toy casts a shadow of it only if
+// that explains a part of what the frame shows beside the plate, else none.
+//
 // Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
 // Writes: the solution, and in the last step the accumulated sums.
 // CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
@@ -42,10 +45,17 @@ const PRIOR_DIRECT_FRACTION: f32 = 0.5;
 // Direct fractions sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
+// Part of what the frame shows beside the plate that a shadow of the ambient light explains, where it is all that is known, below
+// which there is none.
+const LEAST_EXPLAINED: f32 = 0.1;
 
 var<workgroup> sums: array<f32, N_ROW>;
 var<private> matrix: array<f32, 36>;
 var<private> unknowns: array<f32, N_COLUMNS>;
+
+fn has_no_light() -> bool {
+  return globals.n_lights == 0u;
+}
 
 // Irradiance of a light on a receiver's reference point, up to a factor that is the light's own.
 fn irradiance(receiver: u32, i: u32) -> f32 {
@@ -74,7 +84,8 @@ fn first_share(light: u32) -> f32 {
 // light.
 fn receiver_prior(column: u32, channel: u32) -> f32 {
   if column == 0u { return 1.0; }
-  if column == 1u { return select(solution.receivers[0].bounce[channel], PRIOR_BOUNCE, step.receiver == 0u); }
+  if column == 1u && step.receiver > 0u { return solution.receivers[0].bounce[channel]; }
+  if column == 1u { return select(PRIOR_BOUNCE, MAX_BOUNCE, has_no_light()); }
   if step.receiver == 0u { return first_share(column - 2u); }
   var total = 1.0;
   for (var i = 0u; i < step.n_columns - 2u; i++) {
@@ -144,6 +155,40 @@ fn store_receiver(channel: u32, clipped: f32) {
 
 fn store_toy(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
+}
+
+// Whether a shadow of the ambient light explains enough of what the frame shows beside the plate: in squares, over all channels, and
+// once the gain is fitted. A frame that is brighter below the toy tells of none.
+fn is_ambient_shadow_told() -> bool {
+  var left = 0.0;
+  var explained = 0.0;
+  for (var channel = 0u; channel < 3u; channel++) {
+    load_equations(channel, 1u);
+    // Over the plate, and over what an ambient shadow of full strength takes of it.
+    let first = UNSHADED_COLUMN * N_COLUMNS;
+    let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
+    if plate_plate <= 0.0 { continue; }
+    let plate_taken = matrix[1] + matrix[N_COLUMNS + 1u];
+    let plate_beside = matrix[first] + matrix[first + 1u];
+    let taken_taken = matrix[N_COLUMNS + 1u] - plate_taken * plate_taken / plate_plate;
+    let taken_beside = matrix[first + 1u] - plate_taken * plate_beside / plate_plate;
+    left += matrix[first + UNSHADED_COLUMN] - plate_beside * plate_beside / plate_plate;
+    let darker = min(taken_beside, 0.0);
+    if taken_taken > 0.0 { explained += darker * darker / taken_taken; }
+  }
+  return explained > LEAST_EXPLAINED * left;
+}
+
+// As bright below the toy as in the open.
+fn solve_unshadowed(channel: u32) {
+  load_equations(channel, 1u);
+  let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
+  let clipped = sums[channel * N_SUMS + CLIPPED_SUM] / matrix[0];
+  let gain_weight = select(PRIOR_WEIGHT, SAME_GAIN_WEIGHT, step.receiver > 0u) * plate_plate;
+  let correction = (unknowns[0] + unknowns[1] + gain_weight) / (plate_plate + gain_weight);
+  unknowns[0] = correction;
+  unknowns[1] = MAX_BOUNCE * correction;
+  if correction > 0.0 { store_receiver(channel, clipped); }
 }
 
 fn solve_receiver(channel: u32) {
@@ -243,12 +288,18 @@ fn solve_toy(channel: u32) {
 }
 
 // Without any valid pixel the starting values stay.
-fn solve_channel(channel: u32, energy: f32) {
+fn solve_channel(channel: u32, energy: f32, is_shadow_told: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {
     if energy > 0.0 { solve_toy(channel); }
   } else if sums[channel * N_SUMS] > 0.0 {
-    if step.subject == SUBJECT_INTENSITIES { solve_intensities(channel); } else { solve_receiver(channel); }
+    if step.subject == SUBJECT_INTENSITIES {
+      solve_intensities(channel);
+    } else if has_no_light() && !is_shadow_told {
+      solve_unshadowed(channel);
+    } else {
+      solve_receiver(channel);
+    }
   } else if step.subject == SUBJECT_RECEIVER && step.receiver > 0u {
     assume_receiver(channel);
   }
@@ -280,5 +331,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   }
   // One invocation for all channels: a store to a component of a vector in memory may touch the others.
   if lane > 0u { return; }
-  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy); }
+  // Judged at last: weights follow the shadow until then.
+  let is_shadow_told = !has_no_light() || step.is_last == 0u || is_ambient_shadow_told();
+  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_told); }
 }
