@@ -7,6 +7,8 @@ use super::real::Real;
 pub struct NormalEquations<R> {
     matrix: Vec<Vec<R>>,
     right: Vec<R>,
+    /// Sum of the weighted squares of the values.
+    squares: R,
 }
 
 impl<R: Real> NormalEquations<R> {
@@ -16,6 +18,7 @@ impl<R: Real> NormalEquations<R> {
         Self {
             matrix: vec![vec![R::ZERO; n_columns]; n_columns],
             right: vec![R::ZERO; n_columns],
+            squares: R::ZERO,
         }
     }
 
@@ -27,12 +30,14 @@ impl<R: Real> NormalEquations<R> {
             }
             self.right[i] += weight * *column * value;
         }
+        self.squares += weight * value * value;
     }
 
     /// Adds the observation that unknown `column` is `value`.
     pub fn expect(&mut self, column: usize, value: R, weight: R) {
         self.matrix[column][column] += weight;
         self.right[column] += weight * value;
+        self.squares += weight * value * value;
     }
 
     /// Adds all observations of `other`.
@@ -43,6 +48,23 @@ impl<R: Real> NormalEquations<R> {
             .zip(&other.matrix)
             .for_each(|(row, more)| pairs(row, more));
         pairs(&mut self.right, &other.right);
+        self.squares += other.squares;
+    }
+
+    /// The same observations of unknowns that are all equal.
+    #[must_use]
+    pub fn of_equal_unknowns(&self) -> Self {
+        Self {
+            matrix: vec![vec![self.matrix.iter().flatten().copied().sum()]],
+            right: vec![self.right.iter().copied().sum()],
+            squares: self.squares,
+        }
+    }
+
+    /// Weighted squares that some unknowns leave.
+    #[must_use]
+    pub fn squares_left(&self, unknowns: &[R]) -> R {
+        self.squares + self.cost(unknowns)
     }
 
     /// Sum of the weighted squares of a column.

@@ -204,7 +204,8 @@ impl Solution {
 
     /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
     ///
-    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V.
+    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V; without any light
+    /// A + bounce (1 - A).
     #[must_use]
     pub fn receiver_model<R: Real>(
         &self,
@@ -215,7 +216,7 @@ impl Solution {
     ) -> DVec3 {
         let bounce = Vector::from(self.receivers[point.receiver].bounce);
         let ambient = R::from_f64(ambient);
-        let mut ratio = Vector::splat(ambient) + bounce * ambient * (R::ONE - ambient);
+        let mut ratio = Vector::splat(ambient) + bounce * bounced(ambient, self.intensities.len());
         for (i, intensity) in self.intensities.iter().enumerate() {
             let lit = Vector::from(*intensity) * R::from_f64(visibility[i]);
             let fraction = Vector::from(self.light_fraction::<R>(region, i, point));
@@ -223,6 +224,13 @@ impl Solution {
         }
         ratio.into()
     }
+}
+
+/// How much of the toy's bounce a point sees that gets so much of the ambient light.
+#[must_use]
+pub fn bounced<R: Real>(ambient: R, n_lights: usize) -> R {
+    let hidden = R::ONE - ambient;
+    if n_lights == 0 { hidden } else { ambient * hidden }
 }
 
 /// What the passes see of a frame, over the region. Colours are linear.
