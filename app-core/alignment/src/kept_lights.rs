@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::lights::Watched;
 use super::photograph::{Discovered, FoundLights};
-use super::report::LightAlignment;
+use super::report::{GuessedLight, LightAlignment};
 use crate::probe::TrackedLight;
 use app_scene::scene::Light;
 
@@ -17,6 +17,13 @@ const LEAST_SHADOWS: f64 = 0.2;
 /// A light that is a degree off exceeds it where its shadow is hard, one that is two degrees off where it is soft.
 const TIMES_UNEXPLAINED: f64 = 2.0;
 const MORE_UNEXPLAINED: f64 = 0.02;
+/// Lights that leave more of the shadows unexplained stand in for no list.
+///
+/// Measured: right ones leave .003 to .049, through a phone's pipeline and on varnish too; a shadow on a step, a ramp or a mug .13 to .66,
+/// whatever light is found for it.
+const MOST_UNEXPLAINED: f64 = 0.1;
+/// Others that are found far from a list leave no more than this part of what the list leaves.
+const OF_LIST: f64 = 0.5;
 /// What was looked for in vain is looked for again where the picture differs by that part.
 const DIFFERS: f64 = 0.25;
 
@@ -31,6 +38,8 @@ pub(super) struct KeptLights {
     pub(super) errors: Option<[f64; 2]>,
     /// None where lights were given.
     pub(super) discovered: Option<Discovered>,
+    /// One that is assumed where none was found.
+    pub(super) guessed: Option<GuessedLight>,
     /// What they left unexplained where they were found.
     explained: Option<Watched>,
     /// The latest view that shows their shadows.
@@ -52,6 +61,7 @@ impl KeptLights {
             report,
             errors,
             discovered: None,
+            guessed: None,
             explained: None,
             latest: None,
             in_vain: None,
@@ -68,6 +78,45 @@ impl KeptLights {
             applied: (found.is_ok() || !told.is_empty()).then_some(lights),
             discovered: Some(found),
             ..Self::listed(given, None)
+        }
+    }
+
+    /// Whether so much of shadows that are seen is left that these are not the lights that cast them.
+    pub(super) fn leaves_too_much(watched: Watched) -> bool {
+        watched.shadows >= LEAST_SHADOWS && watched.unexplained > MOST_UNEXPLAINED
+    }
+
+    /// Whether lights that were found elsewhere explain what a list, which leaves `by_list`, does not.
+    pub(super) fn stand_in_for_list(&self, watched: Watched, by_list: Watched) -> bool {
+        matches!(self.discovered, Some(Ok(_)))
+            && watched.unexplained <= MOST_UNEXPLAINED.min(OF_LIST * by_list.unexplained)
+    }
+
+    /// With the list in place of what was found near it.
+    pub(super) fn as_given(mut self) -> Self {
+        self.applied = None;
+        for light in &mut self.report {
+            light.is_applied = false;
+        }
+        self
+    }
+
+    /// The part of the latest shadows that a list leaves unexplained, where that is too much.
+    pub(super) fn misfit(&self) -> Option<f64> {
+        let latest = self.latest.filter(|_| self.discovered.is_none())?;
+        Self::leaves_too_much(latest).then_some(latest.unexplained)
+    }
+
+    /// With a light that is assumed, where there is none else.
+    pub(super) fn or_guessed(self, guessed: Option<GuessedLight>) -> Self {
+        if self.applied.is_some() {
+            return self;
+        }
+        let light = guessed.map(|guessed| Arc::from([guessed.light]));
+        Self {
+            applied: light,
+            guessed,
+            ..self
         }
     }
 

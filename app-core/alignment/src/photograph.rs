@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
-use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
+use super::report::{DiscoveredLight, GuessedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::no_light::NoLight;
@@ -298,6 +298,20 @@ impl Photograph {
                 Err(NoLight::NoneDominant)
             }
         }))
+    }
+}
+
+impl Photograph {
+    /// A wide light where none is found, by the toy in its place; none where light from all around explains the picture about as well.
+    pub(super) fn guess_wide(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+    ) -> Result<Option<GuessedLight>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let guessed = lights::guess_wide(&shape, &self.receivers, &self.pyramid, world_from_camera);
+        Ok(guessed.filter(|guessed| guessed.light.check("lights").is_ok()))
     }
 }
 

@@ -23,13 +23,14 @@ mod shadows;
 mod step;
 mod uncertainty;
 mod watch;
+mod wide;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
-use super::report::{DiscoveredLight, LightDeviation, PoseDeviation};
+use super::report::{DiscoveredLight, GuessedLight, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
@@ -219,6 +220,21 @@ fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
     around.map(move |step| {
         let [x, y] = (step.as_dvec2() * apart_rad).to_array();
         [x, y, 0.0, 0.0]
+    })
+}
+
+/// Guesses one wide light where none is found; none where no guess explains enough more than light from all around does.
+pub(super) fn guess_wide(
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+) -> Option<GuessedLight> {
+    let found = wide::guess(shape, receivers, pyramid)?;
+    Some(GuessedLight {
+        light: found.lamp.light(world_from_camera, shape.centre),
+        share: found.share,
+        explained: found.explained,
     })
 }
 
