@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::lights::Watched;
 use super::photograph::{Discovered, FoundLights};
-use super::report::{GuessedLight, LightAlignment};
+use super::report::{AssumedLight, LightAlignment};
 use crate::probe::TrackedLight;
 use app_scene::scene::Light;
 
@@ -22,8 +22,8 @@ const MORE_UNEXPLAINED: f64 = 0.02;
 /// Measured: right ones leave .003 to .049, through a phone's pipeline and on varnish too; a shadow on a step, a ramp or a mug .13 to .66,
 /// whatever light is found for it.
 const MOST_UNEXPLAINED: f64 = 0.1;
-/// Others that are found far from a list leave no more than this part of what the list leaves.
-const OF_LIST: f64 = 0.5;
+/// Others that stand in for some that leave too much leave no more than this part of it.
+const OF_OTHERS: f64 = 0.5;
 /// What was looked for in vain is looked for again where the picture differs by that part.
 const DIFFERS: f64 = 0.25;
 
@@ -39,7 +39,9 @@ pub(super) struct KeptLights {
     /// None where lights were given.
     pub(super) discovered: Option<Discovered>,
     /// One that is assumed where none was found.
-    pub(super) guessed: Option<GuessedLight>,
+    pub(super) assumed: Option<AssumedLight>,
+    /// Whether one light is applied as a line of round ones.
+    pub(super) is_long: bool,
     /// What they left unexplained where they were found.
     explained: Option<Watched>,
     /// The latest view that shows their shadows.
@@ -61,7 +63,8 @@ impl KeptLights {
             report,
             errors,
             discovered: None,
-            guessed: None,
+            assumed: None,
+            is_long: false,
             explained: None,
             latest: None,
             in_vain: None,
@@ -86,10 +89,25 @@ impl KeptLights {
         watched.shadows >= LEAST_SHADOWS && watched.unexplained > MOST_UNEXPLAINED
     }
 
-    /// Whether lights that were found elsewhere explain what a list, which leaves `by_list`, does not.
-    pub(super) fn stand_in_for_list(&self, watched: Watched, by_list: Watched) -> bool {
-        matches!(self.discovered, Some(Ok(_)))
-            && watched.unexplained <= MOST_UNEXPLAINED.min(OF_LIST * by_list.unexplained)
+    /// Whether these were found, and explain what others, which leave `by_others`, do not.
+    pub(super) fn stand_in_for(&self, watched: Watched, by_others: Watched) -> bool {
+        self.are_found() && watched.unexplained <= MOST_UNEXPLAINED.min(OF_OTHERS * by_others.unexplained)
+    }
+
+    /// With a line of lights in place of the one.
+    pub(super) fn as_line(&self, line: Arc<[Light]>) -> Self {
+        let mut report = self.report.clone();
+        for light in &mut report {
+            light.is_applied = true;
+        }
+        Self {
+            applied: Some(line),
+            report,
+            is_long: true,
+            errors: self.errors,
+            discovered: self.discovered.clone(),
+            ..Self::listed(Arc::clone(&self.given), None)
+        }
     }
 
     /// With the list in place of what was found near it.
@@ -108,14 +126,14 @@ impl KeptLights {
     }
 
     /// With a light that is assumed, where there is none else.
-    pub(super) fn or_guessed(self, guessed: Option<GuessedLight>) -> Self {
+    pub(super) fn or_assumed(self, assumed: Option<AssumedLight>) -> Self {
         if self.applied.is_some() {
             return self;
         }
-        let light = guessed.map(|guessed| Arc::from([guessed.light]));
+        let light = assumed.map(|assumed| Arc::from([assumed.light]));
         Self {
             applied: light,
-            guessed,
+            assumed,
             ..self
         }
     }

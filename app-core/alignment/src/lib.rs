@@ -68,7 +68,7 @@ pub use error::AlignError;
 pub use no_light::NoLight;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, GuessedLight, LensAlignment, LightAlignment,
+    AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
     LightDeviation, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome,
 };
 pub use warning::AlignmentWarning;
@@ -369,7 +369,8 @@ impl Aligner {
                 .and_then(|found| found.clone().ok())
                 .unwrap_or_default(),
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
-            guessed: lights.and_then(|lights| lights.guessed),
+            assumed: lights.and_then(|lights| lights.assumed),
+            is_long: lights.is_some_and(|lights| lights.is_long),
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
             is_relit: self.is_relit,
@@ -383,13 +384,13 @@ impl Aligner {
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
-        let guessed = report.guessed.map(|guessed| AlignmentWarning::LightGuessed {
-            explained: guessed.explained,
+        let assumed = report.assumed.map(|assumed| AlignmentWarning::LightAssumed {
+            explained: assumed.explained,
         });
         let misfit = lights.and_then(KeptLights::misfit).filter(|_| doubt.is_none());
         let misfit = misfit.map(|unexplained| AlignmentWarning::ListUnexplained { unexplained });
         let ratio = self.ratio.warning().into_iter();
-        let about_lights = none.into_iter().chain(guessed).chain(changed).chain(misfit);
+        let about_lights = none.into_iter().chain(assumed).chain(changed).chain(misfit);
         let warnings = ratio.chain(warnings).chain(about_lights);
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),

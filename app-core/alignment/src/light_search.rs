@@ -29,32 +29,53 @@ impl Aligner {
             None
         };
         let is_found = found.is_some();
-        let lights = KeptLights::listed(Arc::clone(&given), found);
+        let lights = KeptLights::listed(given, found);
         match self.watch(&lights, seen)? {
             Some(watched) if is_found && KeptLights::leaves_too_much(watched) => {
-                self.search_beyond_list(given, (lights.as_given(), watched), seen)
+                self.search_beyond_list((lights, watched), seen)
             }
             watched => Ok(lights.seen(watched)),
         }
     }
 
-    /// Lights anywhere, where those near a list do not explain a view; the list, where others do not either. A list that says how well its
-    /// directions are known is not searched beyond that.
+    /// Lights anywhere, or long ones, where those near a list do not explain a view; the list, where others do not either. A list that says
+    /// how well its directions are known is not searched beyond that.
     fn search_beyond_list(
         &self,
-        given: Arc<[Light]>,
-        (list, near_list): (KeptLights, Watched),
+        (near, left): (KeptLights, Watched),
         seen: &Seen,
     ) -> Result<KeptLights, ToyError> {
         if self.scene.uncertainty.lights.direction_rad.is_none() {
-            let others = self.find_anywhere(given, seen)?;
+            let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
             let watched = self.watch(&others, seen)?;
-            if watched.is_some_and(|watched| others.stand_in_for_list(watched, near_list)) {
+            if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
                 return Ok(others.seen(watched));
             }
         }
+        if let Some(line) = self.line_for((&near, left), seen)? {
+            return Ok(line);
+        }
+        let list = near.as_given();
         let watched = self.watch(&list, seen)?;
         Ok(list.seen(watched))
+    }
+
+    /// A line of lights in place of one that leaves too much of a view; none where it does not explain that.
+    fn line_for(
+        &self,
+        (round, left): (&KeptLights, Watched),
+        seen: &Seen,
+    ) -> Result<Option<KeptLights>, ToyError> {
+        let [light] = round.in_use() else {
+            return Ok(None);
+        };
+        let Some(line) = seen.photograph.line_of(&self.scene, &seen.input, light)? else {
+            return Ok(None);
+        };
+        let line = round.as_line(line);
+        let watched = self.watch(&line, seen)?;
+        let stands_in = watched.is_some_and(|watched| line.stand_in_for(watched, left));
+        Ok(stands_in.then(|| line.seen(watched)))
     }
 
     /// Lights in a view that nobody lists, or that are not where they are listed.
@@ -62,11 +83,17 @@ impl Aligner {
         let lights = self.find_anywhere(given, seen)?;
         let has_none = matches!(lights.discovered, Some(Err(NoLight::NoneDominant)));
         let lights = if has_none && lights.in_use().is_empty() {
-            lights.or_guessed(seen.photograph.guess_wide(&self.scene, &seen.input)?)
+            lights.or_assumed(seen.photograph.assume_wide(&self.scene, &seen.input)?)
         } else {
             lights
         };
         let watched = self.watch(&lights, seen)?;
+        if let Some(left) =
+            watched.filter(|watched| lights.are_found() && KeptLights::leaves_too_much(*watched))
+            && let Some(line) = self.line_for((&lights, left), seen)?
+        {
+            return Ok(line);
+        }
         Ok(lights.seen(watched))
     }
 

@@ -37,7 +37,9 @@ pub struct AlignmentReport {
     pub no_light: Option<NoLight>,
     /// One wide light that is assumed where none is listed, told or found: a coarse guess, and none where light from all around explains
     /// the picture about as well.
-    pub guessed: Option<GuessedLight>,
+    pub assumed: Option<AssumedLight>,
+    /// Whether the one light is long, and shown as a line of round ones.
+    pub is_long: bool,
     /// The part of the shadows in the picture that the lights in use leave unexplained; none where too little of them is seen, and
     /// where there are no lights.
     pub unexplained: Option<f64>,
@@ -141,7 +143,7 @@ pub struct DiscoveredLight {
 
 /// A wide light that is assumed, since it explains the picture better than light from all around alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct GuessedLight {
+pub struct AssumedLight {
     /// As a scene lists it.
     pub light: Light,
     /// Its part of the light on the receiver that is nearest to the toy, at the toy's foot: 0 to 1.

@@ -21,7 +21,7 @@ pub enum AlignmentWarning {
         reason: NoLight,
     },
     /// No light was found by the toy's shadow, and a wide one is assumed.
-    LightGuessed {
+    LightAssumed {
         /// The part that it explains of what light from all around leaves of the picture, from 0 to 1.
         explained: f64,
     },
@@ -45,7 +45,7 @@ impl fmt::Display for AlignmentWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
-            Self::LightGuessed { explained } => write!(
+            Self::LightAssumed { explained } => write!(
                 f,
                 "no light is found by the toy's shadow: a wide one is assumed, which explains {:.0} % of what light from all around leaves; list the lights, or photograph a lens",
                 100.0 * explained

@@ -102,6 +102,24 @@ fn no_lamp_is_found_where_there_is_none() {
     );
 }
 
+/// Nor is it a lamp that lights a third of the sky: it is assumed, coarsely, and said.
+#[test]
+fn a_window_is_assumed() {
+    let window = toward(40.0, 60.0);
+    let (_, found) = discover(vec![Lamp::sun(window, 35.0f64.to_radians(), 0.35)]);
+    assert_eq!(found.report.discovered, [], "{:#?}", found.report);
+    let assumed = found.report.assumed.unwrap();
+    let direction = SeenLight::from(DVec3::ZERO, &assumed.light).direction_in_world;
+    let off_deg = direction.angle_between(window).to_degrees();
+    assert!(off_deg < 15.0, "{off_deg} degrees off: {assumed:?}");
+    assert_eq!(found.lights.as_deref(), Some(&[assumed.light][..]));
+    assert!(
+        matches!(found.warnings[..], [AlignmentWarning::LightAssumed { .. }]),
+        "{:?}",
+        found.warnings
+    );
+}
+
 #[test]
 fn a_bulb_is_found() {
     let bulb = Lamp::bulb(toward(50.0, 30.0), 0.01, 0.75);

@@ -15,6 +15,7 @@ mod guess;
 mod hemisphere;
 mod lamp;
 mod leftover;
+mod long;
 mod prior;
 mod refine;
 mod relight;
@@ -30,7 +31,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
-use super::report::{DiscoveredLight, GuessedLight, LightDeviation, PoseDeviation};
+use super::report::{AssumedLight, DiscoveredLight, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
@@ -223,19 +224,35 @@ fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
     })
 }
 
-/// Guesses one wide light where none is found; none where no guess explains enough more than light from all around does.
-pub(super) fn guess_wide(
+/// Assumes one wide light where none is found; none where no such light explains enough more than light from all around does.
+pub(super) fn assume_wide(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
-) -> Option<GuessedLight> {
-    let found = wide::guess(shape, receivers, pyramid)?;
-    Some(GuessedLight {
+) -> Option<AssumedLight> {
+    let found = wide::assume(shape, receivers, pyramid)?;
+    Some(AssumedLight {
         light: found.lamp.light(world_from_camera, shape.centre),
         share: found.share,
         explained: found.explained,
     })
+}
+
+/// A line of round lights in place of one, which explains clearly more of its shadow; none where no such line does.
+pub(super) fn line_of(
+    light: &Light,
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+) -> Option<Vec<Light>> {
+    let lamp = Lamp::new(light, &world_from_camera.inverse(), shape.centre)?;
+    let pieces = long::line_of(&lamp, (shape, receivers), pyramid)?;
+    Some(
+        pieces
+            .map(|piece| piece.light(world_from_camera, shape.centre))
+            .to_vec(),
+    )
 }
 
 /// Finds lights that nobody lists, strongest first; `pose` is how well the toy's is known. Where a probe tells of lights, those that cast

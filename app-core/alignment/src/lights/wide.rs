@@ -1,4 +1,4 @@
-//! One wide light, guessed where a picture shows no lamp: a window to one side, or the bright half of a room.
+//! One wide light, assumed where a picture shows no lamp: a window to one side, or the bright half of a room.
 //!
 //! A coarse grid of directions and sizes is tried. What each gives beside the light from all around is fitted as the pipeline will fit
 //! it, with nothing below 0, and judged against what light from all around explains by itself, of a strength that is fitted as well:
@@ -27,7 +27,7 @@ const ELEVATIONS_RAD: [f64; 3] = [0.436, 0.785, 1.222];
 const SPREADS: [f64; 2] = [0.36, 0.7];
 /// Points over such a light.
 const N_POINTS: usize = 24;
-/// A guess explains that part of what light from all around leaves, in squares.
+/// It explains that part of what light from all around leaves, in squares.
 const LEAST_EXPLAINED: f64 = 0.3;
 /// And gives that part of the light at the toy's foot, as no light of which more is taken for noise.
 const LEAST_SHARE: f64 = 0.1;
@@ -48,9 +48,9 @@ pub(super) struct Wide {
     pub(super) explained: f64,
 }
 
-/// Guesses a wide light; none where no guess explains enough, too little of the receivers is seen, or no plate tells what they show
+/// Assumes a wide light; none where no such light explains enough, too little of the receivers is seen, or no plate tells what they show
 /// without the toy.
-pub(super) fn guess(shape: &Shape, receivers: &[SeenReceiver], pyramid: &Pyramid) -> Option<Wide> {
+pub(super) fn assume(shape: &Shape, receivers: &[SeenReceiver], pyramid: &Pyramid) -> Option<Wide> {
     let level = pyramid.level(pyramid.smallest_for_shadows());
     level.plate.as_ref()?;
     let mut raster = Rasterizer::default();
