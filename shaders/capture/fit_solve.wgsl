@@ -46,7 +46,7 @@ const PRIOR_DIRECT_FRACTION: f32 = 0.5;
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
 // Part of what the frame shows beside the plate that a shadow of the ambient light explains, where it is all that is known, below
-// which there is none.
+// which there is none. Measured: under two overcast skies .6 and more, of an office's wide light .02 to .03, under one lamp .3 to .6.
 const LEAST_EXPLAINED: f32 = 0.1;
 
 var<workgroup> sums: array<f32, N_ROW>;

@@ -111,7 +111,7 @@ impl KeptLights {
     }
 
     /// With the list in place of what was found near it.
-    pub(super) fn as_given(mut self) -> Self {
+    pub(super) fn left_as_given(mut self) -> Self {
         self.applied = None;
         for light in &mut self.report {
             light.is_applied = false;

@@ -204,8 +204,9 @@ impl Aligner {
 
     /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
     /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
-    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and a light move by enough to
-    /// show. Where the picture shows the toy nowhere near, it is where the input says.
+    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and to less than a tenth of what is
+    /// there without lights, and a light move by enough to show. Where the picture shows the toy nowhere near, it is where the input
+    /// says.
     ///
     /// # Errors
     /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.

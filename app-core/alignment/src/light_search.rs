@@ -28,34 +28,33 @@ impl Aligner {
         } else {
             None
         };
-        let is_found = found.is_some();
         let lights = KeptLights::listed(given, found);
-        match self.watch(&lights, seen)? {
-            Some(watched) if is_found && KeptLights::leaves_too_much(watched) => {
-                self.search_beyond_list((lights, watched), seen)
+        let watched = self.watch(&lights, seen)?;
+        // Where a list says how well its directions are known, nothing is looked for beyond.
+        let is_bounded = self.scene.uncertainty.lights.direction_rad.is_some();
+        match watched {
+            Some(left) if !is_bounded && KeptLights::leaves_too_much(left) => {
+                self.search_beyond_list((lights, left), seen)
             }
-            watched => Ok(lights.seen(watched)),
+            _ => Ok(lights.seen(watched)),
         }
     }
 
-    /// Lights anywhere, or long ones, where those near a list do not explain a view; the list, where others do not either. A list that says
-    /// how well its directions are known is not searched beyond that.
+    /// Lights anywhere, or a long one, where those near a list do not explain a view; the list, where others do not either.
     fn search_beyond_list(
         &self,
         (near, left): (KeptLights, Watched),
         seen: &Seen,
     ) -> Result<KeptLights, ToyError> {
-        if self.scene.uncertainty.lights.direction_rad.is_none() {
-            let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
-            let watched = self.watch(&others, seen)?;
-            if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
-                return Ok(others.seen(watched));
-            }
+        let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
+        let watched = self.watch(&others, seen)?;
+        if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
+            return Ok(others.seen(watched));
         }
         if let Some(line) = self.line_for((&near, left), seen)? {
             return Ok(line);
         }
-        let list = near.as_given();
+        let list = near.left_as_given();
         let watched = self.watch(&list, seen)?;
         Ok(list.seen(watched))
     }

@@ -30,7 +30,8 @@ pub struct AlignmentReport {
     pub light_errors: Option<[f64; 2]>,
     /// What the scene's probe tells, where no light is listed: a first guess of those that were discovered.
     pub probe: Option<ProbeReport>,
-    /// The lights that were looked for where none are listed, strongest first; empty where they are listed, or none was found.
+    /// The lights that were looked for where none are listed, or far from a list that does not explain the shadow, strongest first; empty
+    /// where a list stands, or none was found.
     pub discovered: Vec<DiscoveredLight>,
     /// Why none was found by a shadow; none where lights are listed or were found. Those that a probe tells are then taken as they
     /// are.

@@ -25,7 +25,7 @@ pub enum AlignmentWarning {
         /// The part that it explains of what light from all around leaves of the picture, from 0 to 1.
         explained: f64,
     },
-    /// The toy's shadow is not where the listed lights cast it, nor where any cast it that were found: the list stays.
+    /// The toy's shadow is not where the listed lights cast it, nor where any cast it that were found: none stand in for the list.
     ListUnexplained {
         /// The part of the shadow that they leave unexplained, from 0 to 1.
         unexplained: f64,
@@ -52,7 +52,7 @@ impl fmt::Display for AlignmentWarning {
             ),
             Self::ListUnexplained { unexplained } => write!(
                 f,
-                "{:.0} % of the toy's shadow is not where the listed lights cast it, and none are found that cast it there: the list stays; check it, and whether something that is no listed receiver lies under the shadow",
+                "{:.0} % of the toy's shadow is not where the listed lights cast it, and none are found that do: check the list, and whether something that is no listed receiver lies under the shadow",
                 100.0 * unexplained
             ),
             Self::LightsChanged { unexplained } => write!(

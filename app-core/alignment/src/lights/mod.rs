@@ -2,8 +2,9 @@
 //!
 //! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
 //! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
-//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed they are looked for
-//! all over the hemisphere (`discover`), or around those that a probe tells of (`guess`).
+//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed, or none near a list
+//! explains the shadow, they are looked for all over the hemisphere (`discover`), or around those that a probe tells of (`guess`). One
+//! that is long is a line of round ones (`long`); where there is no lamp at all, one wide light may be assumed (`wide`).
 
 mod backdrop;
 mod cast;

@@ -22,14 +22,17 @@ use crate::shape::Shape;
 /// is not told any better.
 const N_AROUND: usize = 12;
 const ELEVATIONS_RAD: [f64; 3] = [0.436, 0.785, 1.222];
-/// Tangents of the angular radii that are tried: 20 and 35 degrees. What is narrower is a lamp, which `discover` finds, and what is wider
-/// is light from all around.
+/// Tangents of the angular radii that are tried: of 20 and 35 degrees. What is narrower `discover` finds as a lamp, and what is wider is
+/// hardly told from light from all around.
 const SPREADS: [f64; 2] = [0.36, 0.7];
 /// Points over such a light.
 const N_POINTS: usize = 24;
 /// It explains that part of what light from all around leaves, in squares.
+///
+/// Measured: .43 in an office, .45 and .68 under overcast skies, which are brighter above. With it what was drawn became better by a
+/// twentieth to an eighth, the low-passed error under the skies by a fifth to a third.
 const LEAST_EXPLAINED: f64 = 0.3;
-/// And gives that part of the light at the toy's foot, as no light of which more is taken for noise.
+/// And gives that part of the light at the toy's foot: less is in the noise of a plate. Measured .14, .15 and .79 there.
 const LEAST_SHARE: f64 = 0.1;
 /// No light gives more of it: some is always ambient. As in `fit`.
 const MOST_SHARE: f64 = 0.98;

@@ -163,14 +163,7 @@ impl fmt::Display for Warning {
                 "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
                 lights_in_words(lights)
             ),
-            Self::AmbientAlone { strength } if *strength <= 0.0 => f.write_str(
-                "the real picture shows no shadow of light from all around: none is drawn where no light is known",
-            ),
-            Self::AmbientAlone { strength } => write!(
-                f,
-                "where no light is known the new shadow is that of light from all around: {:.0} % of the light is taken for such, by the real shadow",
-                100.0 * strength
-            ),
+            Self::AmbientAlone { strength } => ambient_alone(f, *strength),
             Self::FaintShadow { assumed } => write!(
                 f,
                 "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
@@ -225,6 +218,19 @@ impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
+}
+
+fn ambient_alone(f: &mut fmt::Formatter<'_>, strength: f32) -> fmt::Result {
+    if strength <= 0.0 {
+        return f.write_str(
+            "the real picture shows no shadow of light from all around: none is drawn where no light is known",
+        );
+    }
+    write!(
+        f,
+        "where no light is known the new shadow is that of light from all around: {:.0} % of the light is taken for such, by the real shadow",
+        100.0 * strength
+    )
 }
 
 fn too_much(

@@ -188,7 +188,7 @@ fn without_a_light_every_preset_moves_the_toy() {
     scene.lights.clear();
     let input = first_input();
     let photographed = input.image.rgba().rgba8.clone();
-    for preset in Preset::ALL {
+    for &preset in Preset::ALL {
         core.set_scene(scene.clone(), preset).unwrap();
         let report = core.frame(&input).unwrap();
         let has_ambient = !matches!(preset, Preset::Flat | Preset::Paper);
