@@ -15,6 +15,7 @@
 //#import common/fit
 //#import common/fit_step
 //#import common/receiver_light
+//#import common/no_light
 
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
@@ -45,17 +46,10 @@ const PRIOR_DIRECT_FRACTION: f32 = 0.5;
 // Direct fractions sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
-// Part of what the frame shows beside the plate that a shadow of the ambient light explains, where it is all that is known, below
-// which there is none. Measured: under two overcast skies .6 and more, of an office's wide light .02 to .03, under one lamp .3 to .6.
-const LEAST_EXPLAINED: f32 = 0.1;
 
 var<workgroup> sums: array<f32, N_ROW>;
 var<private> matrix: array<f32, 36>;
 var<private> unknowns: array<f32, N_COLUMNS>;
-
-fn has_no_light() -> bool {
-  return globals.n_lights == 0u;
-}
 
 // Irradiance of a light on a receiver's reference point, up to a factor that is the light's own.
 fn irradiance(receiver: u32, i: u32) -> f32 {
@@ -155,40 +149,6 @@ fn store_receiver(channel: u32, clipped: f32) {
 
 fn store_toy(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
-}
-
-// Whether a shadow of the ambient light explains enough of what the frame shows beside the plate: in squares, over all channels, and
-// once the gain is fitted. A frame that is brighter below the toy tells of none.
-fn is_ambient_shadow_told() -> bool {
-  var left = 0.0;
-  var explained = 0.0;
-  for (var channel = 0u; channel < 3u; channel++) {
-    load_equations(channel, 1u);
-    // Over the plate, and over what an ambient shadow of full strength takes of it.
-    let first = UNSHADED_COLUMN * N_COLUMNS;
-    let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
-    if plate_plate <= 0.0 { continue; }
-    let plate_taken = matrix[1] + matrix[N_COLUMNS + 1u];
-    let plate_beside = matrix[first] + matrix[first + 1u];
-    let taken_taken = matrix[N_COLUMNS + 1u] - plate_taken * plate_taken / plate_plate;
-    let taken_beside = matrix[first + 1u] - plate_taken * plate_beside / plate_plate;
-    left += matrix[first + UNSHADED_COLUMN] - plate_beside * plate_beside / plate_plate;
-    let darker = min(taken_beside, 0.0);
-    if taken_taken > 0.0 { explained += darker * darker / taken_taken; }
-  }
-  return explained > LEAST_EXPLAINED * left;
-}
-
-// As bright below the toy as in the open.
-fn solve_unshadowed(channel: u32) {
-  load_equations(channel, 1u);
-  let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
-  let clipped = sums[channel * N_SUMS + CLIPPED_SUM] / matrix[0];
-  let gain_weight = select(PRIOR_WEIGHT, SAME_GAIN_WEIGHT, step.receiver > 0u) * plate_plate;
-  let correction = (unknowns[0] + unknowns[1] + gain_weight) / (plate_plate + gain_weight);
-  unknowns[0] = correction;
-  unknowns[1] = MAX_BOUNCE * correction;
-  if correction > 0.0 { store_receiver(channel, clipped); }
 }
 
 fn solve_receiver(channel: u32) {
