@@ -3,6 +3,7 @@
 // Receiver: frame / gain = plate c (A + bounce A (1 - A)
 //   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
 // is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
+// Without any light the first two columns add up to the plate, and a third holds what the frame shows beside it.
 // Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
 // with self-shadowing.
 // Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
@@ -112,6 +113,7 @@ fn receiver_equation(seen: Observation) -> Equation {
     eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
     predicted += fit.receivers[step.receiver].direct_fraction[i].rgb * eq.columns[2u + i];
   }
+  if globals.n_lights == 0u { eq.columns[UNSHADED_COLUMN] = eq.value - b; }
   eq.weight = seen.weight;
   eq.clipped = seen.clipped;
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }

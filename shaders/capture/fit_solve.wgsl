@@ -4,6 +4,9 @@
 // above is to a light as the ambient part of the receiver's radiance is to that light's part, and what comes from below
 // is what the receiver throws back. Light is not negative, so an unknown that would be is 0, and the others make up.
 //
+// Where no light is known, how much of the light comes from all around is not known either: the toy casts a shadow of it only if
+// that explains a part of what the frame shows beside the plate, else none.
+//
 // Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
 // Writes: the solution, and in the last step the accumulated sums.
 // CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
@@ -12,6 +15,7 @@
 //#import common/fit
 //#import common/fit_step
 //#import common/receiver_light
+//#import common/no_light
 
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
@@ -74,7 +78,8 @@ fn first_share(light: u32) -> f32 {
 // light.
 fn receiver_prior(column: u32, channel: u32) -> f32 {
   if column == 0u { return 1.0; }
-  if column == 1u { return select(solution.receivers[0].bounce[channel], PRIOR_BOUNCE, step.receiver == 0u); }
+  if column == 1u && step.receiver > 0u { return solution.receivers[0].bounce[channel]; }
+  if column == 1u { return select(PRIOR_BOUNCE, MAX_BOUNCE, has_no_light()); }
   if step.receiver == 0u { return first_share(column - 2u); }
   var total = 1.0;
   for (var i = 0u; i < step.n_columns - 2u; i++) {
@@ -243,12 +248,18 @@ fn solve_toy(channel: u32) {
 }
 
 // Without any valid pixel the starting values stay.
-fn solve_channel(channel: u32, energy: f32) {
+fn solve_channel(channel: u32, energy: f32, is_shadow_told: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {
     if energy > 0.0 { solve_toy(channel); }
   } else if sums[channel * N_SUMS] > 0.0 {
-    if step.subject == SUBJECT_INTENSITIES { solve_intensities(channel); } else { solve_receiver(channel); }
+    if step.subject == SUBJECT_INTENSITIES {
+      solve_intensities(channel);
+    } else if has_no_light() && !is_shadow_told {
+      solve_unshadowed(channel);
+    } else {
+      solve_receiver(channel);
+    }
   } else if step.subject == SUBJECT_RECEIVER && step.receiver > 0u {
     assume_receiver(channel);
   }
@@ -280,5 +291,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   }
   // One invocation for all channels: a store to a component of a vector in memory may touch the others.
   if lane > 0u { return; }
-  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy); }
+  // Judged at last: weights follow the shadow until then.
+  let is_shadow_told = !has_no_light() || step.is_last == 0u || is_ambient_shadow_told();
+  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_told); }
 }

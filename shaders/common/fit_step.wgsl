@@ -4,6 +4,9 @@ const SUBJECT_RECEIVER: u32 = 0u;
 const SUBJECT_TOY: u32 = 1u;
 const SUBJECT_INTENSITIES: u32 = 2u;
 
+// Where no light is known, what the frame shows beside the plate: no unknown of it is fitted.
+const UNSHADED_COLUMN: u32 = 2u;
+
 struct FitStep {
   // 0 in the first step: there is no solution yet, all weights are 1.
   is_reweighted: u32,

@@ -9,6 +9,8 @@
 // What hides 1 - A of the sky throws back light that came in through what is open, A: in a crevice it is dark itself.
 // Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one fraction per
 // light, so that no sample with the same overlap is needed (compare Chuang et al. 2003, shadow matting).
+// Without any light it is M = A + bounce (1 - A): how much of the light comes from all around is not known, and the bounce is the
+// part that the toy takes from no place, of 1 all of it.
 
 //#import common/fit
 
@@ -22,9 +24,9 @@ fn plate_falloff(point: ReceiverPoint) -> vec3f {
   return total;
 }
 
-// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it.
+// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it, but that no light is known.
 fn bounced(ambient: f32) -> f32 {
-  return ambient * (1.0 - ambient);
+  return select(ambient, 1.0, globals.n_lights == 0u) * (1.0 - ambient);
 }
 
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.

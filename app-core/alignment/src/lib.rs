@@ -29,6 +29,7 @@ mod camera;
 mod directions;
 mod error;
 mod kept_lights;
+mod light_search;
 mod lights;
 mod no_light;
 mod outlines;
@@ -54,10 +55,9 @@ use glam::DMat4;
 
 use crate::probe::ProbeReport;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Camera, Light, LightUncertainty, MAX_LIGHTS, Plate, Scene};
+use app_scene::scene::{Camera, Light, Plate, Scene};
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
-use lights::Watched;
 use photograph::{MOST_OUTLINE_PX, Photograph};
 use picture::Mask;
 use ratio::{Ratio, Unknown};
@@ -68,17 +68,13 @@ pub use error::AlignError;
 pub use no_light::NoLight;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment, LightDeviation,
-    PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
+    AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
+    LightDeviation, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
 };
 pub use warning::AlignmentWarning;
 
 /// Each plate takes as long as a frame; more than so many stay as they are given.
 const MOST_ALIGNED_PLATES: usize = 32;
-/// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
-///
-/// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
-const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
 /// A toy stands on its receiver where no foot is farther from it, and it leans no more: half a millimetre and half a degree are told.
 const MOST_HEIGHT_M: f64 = 1e-3;
@@ -211,8 +207,9 @@ impl Aligner {
 
     /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
     /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
-    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and a light move by enough to
-    /// show. Where the picture shows the toy nowhere near, it is where the input says.
+    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and to less than a tenth of what is
+    /// there without lights, and a light move by enough to show. Where the picture shows the toy nowhere near, it is where the input
+    /// says.
     ///
     /// # Errors
     /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
@@ -341,91 +338,6 @@ impl Aligner {
         withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
     }
 
-    /// The lights in a view, as far as it can tell.
-    fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
-        if given.is_empty() {
-            return self.discover_lights(given, seen);
-        }
-        let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
-            seen.photograph
-                .lights(&self.scene, &seen.input, (&given, &self.scene.uncertainty.lights))?
-        } else {
-            None
-        };
-        let lights = KeptLights::listed(given, found);
-        let watched = self.watch(&lights, seen)?;
-        Ok(lights.seen(watched))
-    }
-
-    /// Lights in a view that nobody lists, or that are not where they are listed.
-    fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
-        let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
-        let found = match &seen.view.report {
-            Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
-                seen.photograph
-                    .discover(&self.scene, &seen.input, &pose.deviation, told)?
-            }
-            _ => Err(NoLight::PoseUnknown),
-        };
-        let lights = KeptLights::discovered(given, found, told);
-        let watched = self.watch(&lights, seen)?;
-        Ok(lights.seen(watched))
-    }
-
-    /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
-    fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
-        let now = self.watch(&kept, seen)?;
-        if !kept.are_found() && now.is_none_or(|now| kept.watch(now)) {
-            return self.find_lights(kept.given, seen);
-        }
-        let Some(now) = now.filter(|now| kept.watch(*now)) else {
-            return Ok(kept);
-        };
-        if kept.discovered.is_none() {
-            // One that was moved may be anywhere.
-            let lights = (kept.in_use(), &LightUncertainty::default());
-            let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
-            let moved = KeptLights::listed(Arc::clone(&kept.given), found);
-            if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
-                return Ok(moved.in_place_of(&kept, now));
-            }
-        }
-        if let Some((lights, scene)) = self.relight(&kept, seen)? {
-            (self.scene, self.is_relit) = (scene, true);
-            return Ok(lights);
-        }
-        kept.searched_in_vain(now);
-        Ok(kept)
-    }
-
-    /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
-    /// light; none where they do not explain it as well.
-    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
-        let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
-            return Ok(None);
-        };
-        let relit = Self::new(Scene::clone(&self.scene).with_plates(plates));
-        let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
-        let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
-        let now = relit
-            .watch(&others, &seen)?
-            .filter(|now| kept.are_replaced_by(*now));
-        Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
-    }
-
-    /// What lights leave unexplained of a view; none where it does not tell.
-    fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
-        if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
-            return Ok(None);
-        }
-        seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
-    }
-
-    /// Whether pictures can tell where so many lights are; without a plate those that nobody lists alone.
-    fn can_tell_lights(&self, lights: &[Light]) -> bool {
-        lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
-    }
-
     /// Corrects the cameras of the first plates, each against those before it, once.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
@@ -461,6 +373,8 @@ impl Aligner {
                 .and_then(|found| found.clone().ok())
                 .unwrap_or_default(),
             no_light: discovered.and_then(|found| found.as_ref().err().copied()),
+            assumed: lights.and_then(|lights| lights.assumed),
+            is_long: lights.is_some_and(|lights| lights.is_long),
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
             is_relit: self.is_relit,
@@ -485,13 +399,15 @@ impl Aligner {
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });
         let doubt = lights.and_then(KeptLights::doubt);
         let changed = doubt.map(|unexplained| AlignmentWarning::LightsChanged { unexplained });
+        let assumed = report.assumed.map(|assumed| AlignmentWarning::LightAssumed {
+            explained: assumed.explained,
+        });
+        let misfit = lights.and_then(KeptLights::misfit).filter(|_| doubt.is_none());
+        let misfit = misfit.map(|unexplained| AlignmentWarning::ListUnexplained { unexplained });
         let ratio = self.ratio.warning().into_iter();
-        let warnings = ratio
-            .chain(warnings)
-            .chain(off_receiver)
-            .chain(differs)
-            .chain(none)
-            .chain(changed);
+        let about_lights = none.into_iter().chain(assumed).chain(changed).chain(misfit);
+        let about_toy = warnings.into_iter().chain(off_receiver).chain(differs);
+        let warnings = ratio.chain(about_toy).chain(about_lights);
         Alignment {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),

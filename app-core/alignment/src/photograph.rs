@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
-use super::report::{DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
+use super::report::{AssumedLight, DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::no_light::NoLight;
@@ -324,6 +324,36 @@ impl Photograph {
                 Err(NoLight::NoneDominant)
             }
         }))
+    }
+}
+
+impl Photograph {
+    /// A wide light where none is found, by the toy in its place; none where light from all around explains the picture about as well.
+    pub(super) fn assume_wide(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+    ) -> Result<Option<AssumedLight>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let assumed = lights::assume_wide(&shape, &self.receivers, &self.pyramid, world_from_camera);
+        Ok(assumed.filter(|assumed| assumed.light.check("lights").is_ok()))
+    }
+}
+
+impl Photograph {
+    /// A line of lights in place of one, by the toy in its place; none where that explains no more.
+    pub(super) fn line_of(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        light: &Light,
+    ) -> Result<Option<Arc<[Light]>>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        let line = lights::line_of(light, (&shape, &self.receivers), &self.pyramid, world_from_camera);
+        let can_be = |line: &Vec<Light>| line.iter().all(|light| light.check("lights").is_ok());
+        Ok(line.filter(can_be).map(Arc::from))
     }
 }
 

@@ -30,11 +30,17 @@ pub struct AlignmentReport {
     pub light_errors: Option<[f64; 2]>,
     /// What the scene's probe tells, where no light is listed: a first guess of those that were discovered.
     pub probe: Option<ProbeReport>,
-    /// The lights that were looked for where none are listed, strongest first; empty where they are listed, or none was found.
+    /// The lights that were looked for where none are listed, or far from a list that does not explain the shadow, strongest first; empty
+    /// where a list stands, or none was found.
     pub discovered: Vec<DiscoveredLight>,
     /// Why none was found by a shadow; none where lights are listed or were found. Those that a probe tells are then taken as they
     /// are.
     pub no_light: Option<NoLight>,
+    /// One wide light that is assumed where none is listed, told or found: a coarse guess, and none where light from all around explains
+    /// the picture about as well.
+    pub assumed: Option<AssumedLight>,
+    /// Whether the one light is long, and shown as a line of round ones.
+    pub is_long: bool,
     /// The part of the shadows in the picture that the lights in use leave unexplained; none where too little of them is seen, and
     /// where there are no lights.
     pub unexplained: Option<f64>,
@@ -158,6 +164,17 @@ pub struct DiscoveredLight {
     pub share: f64,
     /// How well it is known.
     pub deviation: LightDeviation,
+}
+
+/// A wide light that is assumed, since it explains the picture better than light from all around alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AssumedLight {
+    /// As a scene lists it.
+    pub light: Light,
+    /// Its part of the light on the receiver that is nearest to the toy, at the toy's foot: 0 to 1.
+    pub share: f64,
+    /// The part that it explains of what light from all around leaves of the picture, in squares.
+    pub explained: f64,
 }
 
 /// One deviation of a light that was found: what residuals and the pose's deviation leave open, and a receiver that is not flat.

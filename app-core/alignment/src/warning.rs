@@ -32,6 +32,16 @@ pub enum AlignmentWarning {
         /// Why.
         reason: NoLight,
     },
+    /// No light was found by the toy's shadow, and a wide one is assumed.
+    LightAssumed {
+        /// The part that it explains of what light from all around leaves of the picture, from 0 to 1.
+        explained: f64,
+    },
+    /// The toy's shadow is not where the listed lights cast it, nor where any cast it that were found: none stand in for the list.
+    ListUnexplained {
+        /// The part of the shadow that they leave unexplained, from 0 to 1.
+        unexplained: f64,
+    },
     /// The shadows are no longer where the lights cast them, and no lights were found that do.
     LightsChanged {
         /// The part of the shadows that no light explains, from 0 to 1.
@@ -47,6 +57,16 @@ impl fmt::Display for AlignmentWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
+            Self::LightAssumed { explained } => write!(
+                f,
+                "no light is found by the toy's shadow: a wide one is assumed, which explains {:.0} % of what light from all around leaves; list the lights, or photograph a lens",
+                100.0 * explained
+            ),
+            Self::ListUnexplained { unexplained } => write!(
+                f,
+                "{:.0} % of the toy's shadow is not where the listed lights cast it, and none are found that do: check the list, and whether something that is no listed receiver lies under the shadow",
+                100.0 * unexplained
+            ),
             Self::LightsChanged { unexplained } => write!(
                 f,
                 "{:.0} % of the toy's shadow is not where the lights cast it: one was moved or switched on, or something else casts a shadow there",

@@ -57,7 +57,13 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let after = model(&shown.ambient, &shown.visibility);
-    let change = (after - before).abs().max_element();
+    let change = if shown.solution.intensities.is_empty() {
+        // How strong the shadow is stays open.
+        let ambient = [&pictures.ambient, &shown.ambient].map(|map| coarse_at(map, region, at));
+        (ambient[1] - ambient[0]).abs()
+    } else {
+        (after - before).abs().max_element()
+    };
 
     let grid = &shown.grids[point.receiver];
     let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);

@@ -7,7 +7,8 @@ use glam::{DVec3, DVec4, UVec2};
 
 use super::least_squares::NormalEquations;
 use super::model::{
-    Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, centre_px, coarse_at, evidence, is_clipped,
+    Pictures, ReceiverPlane, ReceiverPoint, Region, Solution, bounced, centre_px, coarse_at, evidence,
+    is_clipped,
 };
 use super::raster::Raster;
 
@@ -33,8 +34,11 @@ pub const PRIOR_BOUNCE: f64 = 0.27;
 pub const PRIOR_DIRECT_FRACTION: f64 = 0.5;
 /// Most of the plate's radiance that all lights together may have: some of it is always ambient.
 const MAX_DIRECT_FRACTION: f64 = 0.98;
-/// Most bounce, as a fraction of the ambient light that the toy takes.
-const MAX_BOUNCE: f64 = 1.0;
+/// Most bounce, as a fraction of the ambient light that the toy takes; what is expected of it where no light is known.
+pub const MAX_BOUNCE: f64 = 1.0;
+/// Part of what the frame shows beside the plate that a shadow of the ambient light explains, where no light is known, below
+/// which there is none.
+const LEAST_EXPLAINED: f64 = 0.1;
 
 /// Those constants that a test may choose otherwise, to see what they do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,17 +113,27 @@ pub fn fit_receiver(
     let mut solution = start.clone();
     for step in 0..n_steps {
         let before = solution.clone();
-        for channel in 0..3 {
-            let of_receiver: Vec<&ReceiverSample> = samples
-                .iter()
-                .filter(|sample| sample.point.receiver == receiver)
-                .collect();
-            let (equations, clipped) =
-                receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel));
-            let priors = receiver_priors(region, receiver, &before, channel);
-            take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
+        let of_receiver: Vec<&ReceiverSample> = samples
+            .iter()
+            .filter(|sample| sample.point.receiver == receiver)
+            .collect();
+        let of_channels = [0, 1, 2]
+            .map(|channel| receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel)));
+        // Judged at last.
+        let is_last = step + 1 == n_steps;
+        let has_no_shadow = region.lights.is_empty()
+            && is_last
+            && !is_ambient_shadow_told(&of_channels.each_ref().map(|(e, _)| e));
+        for (channel, (equations, clipped)) in of_channels.into_iter().enumerate() {
+            if has_no_shadow {
+                take_unshadowed(&equations, receiver, constants, channel, &mut solution);
+            } else {
+                let priors = receiver_priors(region, receiver, &before, channel);
+                take_receiver(&equations, (receiver, &priors), constants, channel, &mut solution);
+            }
             if equations.energy(0) > 0.0 {
-                solution.receivers[receiver].clipped[channel] = clipped / equations.energy(0);
+                let clipped = clipped / equations.energy(0);
+                solution.receivers[receiver].clipped[channel] = clipped;
             }
         }
     }
@@ -147,7 +161,7 @@ fn receiver_equations(
             true => DVec4::ZERO,
             false => sample.visibility,
         };
-        let mut columns = vec![plate * ambient, plate * ambient * (1.0 - ambient)];
+        let mut columns = vec![plate * ambient, plate * bounced(ambient, region.lights.len())];
         columns.extend((0..region.lights.len()).map(|i| {
             let intensity = before.intensities[i][channel];
             let visible = intensity * visibility[i] - ambient;
@@ -186,7 +200,8 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
         let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));
         let total: f64 = each.clone().sum();
         let direct_fractions = each.map(|one| PRIOR_DIRECT_FRACTION * one / total);
-        return iter::once(PRIOR_BOUNCE).chain(direct_fractions).collect();
+        let bounce = if n_lights == 0 { MAX_BOUNCE } else { PRIOR_BOUNCE };
+        return iter::once(bounce).chain(direct_fractions).collect();
     }
     // The same lights amid as much ambient light.
     let first = &before.receivers[0];
@@ -206,6 +221,47 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
     iter::once(first.bounce[channel])
         .chain(direct_fractions)
         .collect()
+}
+
+/// Whether a shadow of the ambient light explains enough of what a frame shows beside the plate, without lights.
+fn is_ambient_shadow_told(channels: &[&NormalEquations; 3]) -> bool {
+    let (mut beside, mut explained) = (0.0, 0.0);
+    for equations in channels.iter().filter(|equations| equations.energy(0) > 0.0) {
+        // What is left of the ambient light and what is taken of it add up to the plate.
+        let plate = equations.of_equal_unknowns();
+        let without = plate.squares_left(&plate.solve());
+        let shadowed = equations.solve();
+        beside += without;
+        if shadowed[1] < shadowed[0] {
+            explained += without - equations.squares_left(&shadowed);
+        }
+    }
+    explained > LEAST_EXPLAINED * beside
+}
+
+/// Takes a receiver for as bright below the toy as in the open.
+fn take_unshadowed(
+    observed: &NormalEquations,
+    receiver: usize,
+    constants: &FitConstants,
+    channel: usize,
+    solution: &mut Solution,
+) {
+    let mut plate = observed.of_equal_unknowns();
+    let prior_weight = if receiver > 0 {
+        SAME_GAIN_WEIGHT
+    } else {
+        constants.prior_weight
+    };
+    plate.expect(0, 1.0, prior_weight * plate.energy(0));
+    let correction = plate.solve()[0];
+    if observed.energy(0) <= 0.0 || correction <= 0.0 {
+        return;
+    }
+    if receiver == 0 {
+        solution.gain[channel] *= correction;
+    }
+    solution.receivers[receiver].bounce[channel] = MAX_BOUNCE;
 }
 
 fn take_receiver(

@@ -7,6 +7,8 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 pub struct NormalEquations {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
+    /// Sum of the weighted squares of the values.
+    squares: f64,
 }
 
 impl NormalEquations {
@@ -16,6 +18,7 @@ impl NormalEquations {
         Self {
             matrix: DMatrix::zeros(n_columns, n_columns),
             right: DVector::zeros(n_columns),
+            squares: 0.0,
         }
     }
 
@@ -24,18 +27,37 @@ impl NormalEquations {
         let columns = DVectorView::from_slice(columns, columns.len());
         self.matrix.ger(weight, &columns, &columns, 1.0);
         self.right.axpy(weight * value, &columns, 1.0);
+        self.squares += weight * value * value;
     }
 
     /// Adds the observation that unknown `column` is `value`.
     pub fn expect(&mut self, column: usize, value: f64, weight: f64) {
         self.matrix[(column, column)] += weight;
         self.right[column] += weight * value;
+        self.squares += weight * value * value;
     }
 
     /// Adds all observations of `other`.
     pub fn join(&mut self, other: &Self) {
         self.matrix += &other.matrix;
         self.right += &other.right;
+        self.squares += other.squares;
+    }
+
+    /// The same observations of unknowns that are all equal.
+    #[must_use]
+    pub fn of_equal_unknowns(&self) -> Self {
+        Self {
+            matrix: DMatrix::from_element(1, 1, self.matrix.sum()),
+            right: DVector::from_element(1, self.right.sum()),
+            squares: self.squares,
+        }
+    }
+
+    /// Weighted squares that some unknowns leave.
+    #[must_use]
+    pub fn squares_left(&self, unknowns: &DVector<f64>) -> f64 {
+        self.squares + self.cost(unknowns)
     }
 
     /// Sum of the weighted squares of a column.

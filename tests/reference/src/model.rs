@@ -196,7 +196,8 @@ impl Solution {
 
     /// A frame as a fraction of plate and gain, from the ambient visibility and that of each light.
     ///
-    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V.
+    /// Written with the shares `f` at the point itself: A (1 - sum f) + bounce A (1 - A) + sum f level V; without any light
+    /// A + bounce (1 - A).
     #[must_use]
     pub fn receiver_model(
         &self,
@@ -206,13 +207,20 @@ impl Solution {
         visibility: DVec4,
     ) -> DVec3 {
         let bounce = self.receivers[point.receiver].bounce;
-        let mut ratio = DVec3::splat(ambient) + bounce * ambient * (1.0 - ambient);
+        let mut ratio = DVec3::splat(ambient) + bounce * bounced(ambient, self.intensities.len());
         for (i, intensity) in self.intensities.iter().enumerate() {
             let lit = *intensity * visibility[i];
             ratio += self.light_fraction(region, i, point) * (lit - ambient);
         }
         ratio
     }
+}
+
+/// How much of the toy's bounce a point sees that gets so much of the ambient light.
+#[must_use]
+pub fn bounced(ambient: f64, n_lights: usize) -> f64 {
+    let hidden = 1.0 - ambient;
+    if n_lights == 0 { hidden } else { ambient * hidden }
 }
 
 /// What the passes see of a frame, over the region. Colours are linear.

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::alignment::{Aligner, Alignment, AlignmentWarning, DiscoveredLight, NoLight};
 use app_core::frame::FrameInput;
-use app_core::scene::{LightEstimate, N_HARMONICS, Scene};
+use app_core::scene::{Light, LightEstimate, N_HARMONICS, Scene};
 use app_core::session::{Capture, Session};
 use desk::alignment::SeenLight;
 use desk::files::{BUNDLED_SESSION, Folder};
@@ -100,6 +100,48 @@ fn no_lamp_is_found_where_there_is_none() {
         "{:?}",
         found.warnings
     );
+}
+
+/// Nor is it a lamp that lights a third of the sky: it is assumed, coarsely, and said.
+#[test]
+fn a_window_is_assumed() {
+    let window = toward(40.0, 60.0);
+    let (_, found) = discover(vec![Lamp::sun(window, 35.0f64.to_radians(), 0.35)]);
+    assert_eq!(found.report.discovered, [], "{:#?}", found.report);
+    let assumed = found.report.assumed.unwrap();
+    let direction = SeenLight::from(DVec3::ZERO, &assumed.light).direction_in_world;
+    let off_deg = direction.angle_between(window).to_degrees();
+    assert!(off_deg < 15.0, "{off_deg} degrees off: {assumed:?}");
+    assert_eq!(found.lights.as_deref(), Some(&[assumed.light][..]));
+    assert!(
+        matches!(found.warnings[..], [AlignmentWarning::LightAssumed { .. }]),
+        "{:?}",
+        found.warnings
+    );
+}
+
+/// A light that is no disc is several, whether it is listed as one or not.
+#[test]
+fn a_tube_is_several_lights() {
+    const N_BULBS: i32 = 13;
+    let along = 0.6 / f64::from(N_BULBS - 1) * DVec3::new(0.8, 0.0, -0.6);
+    let middle = toward(55.0, 60.0);
+    let bulbs = (-N_BULBS / 2..=N_BULBS / 2).map(|index| {
+        let at = middle + f64::from(index) * along;
+        Lamp::bulb(at, 0.03, 0.7 / f64::from(N_BULBS))
+    });
+    let shot = photographed(bulbs.collect());
+    for listed in [vec![], vec![Light::sphere(middle, 0.2)]] {
+        let scene = shot.scene.clone().with_lights(listed);
+        let found = Aligner::new(scene).align(&shot.input).unwrap();
+        assert!(
+            found.lights.is_some_and(|lights| lights.len() > 1),
+            "{:#?}",
+            found.report
+        );
+        assert!(found.report.unexplained.unwrap() < 0.06, "{:#?}", found.report);
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    }
 }
 
 #[test]

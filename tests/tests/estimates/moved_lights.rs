@@ -109,6 +109,34 @@ fn a_dimmed_light_is_kept() {
     assert_eq!(before.lights, after.lights, "{:?}", after.report);
 }
 
+/// A list that is far off is put right where the shadow tells of a light elsewhere.
+#[test]
+fn a_light_that_is_listed_60_degrees_off_is_found() {
+    let mut shot = shot(vec![bulb(50.0, 30.0)]);
+    let lamps = std::mem::replace(&mut shot.scene.lights, vec![bulb(50.0, 150.0).light]);
+    let found = Aligner::new(shot.scene).align(&shot.input).unwrap();
+    assert!(off_deg(&lamps, &found) < 0.15, "{:?}", found.report);
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+}
+
+/// What is no light's shadow moves no list, which is the best that is known.
+#[test]
+fn a_list_stays_where_no_light_explains_the_shadow() {
+    let shot = shot(vec![bulb(50.0, 30.0)]);
+    let input = shot
+        .input
+        .clone()
+        .with_image(with_dark_bars(shot.input.image.rgba()));
+    let found = Aligner::new(shot.scene).align(&input).unwrap();
+    assert_eq!(found.lights, None, "{:?}", found.report);
+    assert!(
+        matches!(found.warnings[..], [AlignmentWarning::ListUnexplained { .. }]),
+        "{:?} {:?}",
+        found.warnings,
+        found.report
+    );
+}
+
 /// What is no light's shadow is said, and moves none.
 #[test]
 fn a_shadow_that_no_light_casts_is_said() {

@@ -3,8 +3,8 @@
 use app_core::scene::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
 use reference::fit::{
-    FitConstants, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, ToySample, fit_receiver, fit_toy, receiver_samples,
-    toy_radiance,
+    FitConstants, MAX_BOUNCE, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, ToySample, fit_receiver, fit_toy,
+    receiver_samples, toy_radiance,
 };
 use reference::model::{ReceiverSolution, Solution, centre_px};
 use reference::raster::Raster;
@@ -14,14 +14,15 @@ use crate::device::Device;
 use crate::errors::{Errors, channels};
 use crate::photo::{Photo, truth};
 use crate::run::{Run, runs};
-use crate::setups::SETUPS;
+use crate::setups::{NO_LIGHT, SETUPS};
 use crate::stand::Stand;
 
 /// What the core starts from.
 fn start(n_lights: usize) -> Solution {
     let direct_fraction = PRIOR_DIRECT_FRACTION / f64::from(u32::try_from(n_lights).unwrap());
+    let bounce = if n_lights == 0 { MAX_BOUNCE } else { PRIOR_BOUNCE };
     let receiver = ReceiverSolution {
-        bounce: DVec3::splat(PRIOR_BOUNCE),
+        bounce: DVec3::splat(bounce),
         direct_fractions: vec![DVec3::splat(direct_fraction); n_lights],
         clipped: DVec3::ZERO,
     };
@@ -87,6 +88,24 @@ fn clipped_pictures_tell_of_no_shadow() {
     // The pixels' own light is not known either: what they show stays.
     assert_eq!(run.solution.receivers[0].clipped, DVec3::ONE);
     check_receiver(&run);
+}
+
+/// Where no light is known, how much of it comes from all around is told by the shadow below the toy; it has none where the picture
+/// shows none.
+#[test]
+fn without_a_light_the_shadow_is_as_strong_as_it_is_seen() {
+    for bounce in [DVec3::new(0.35, 0.2, 0.1), DVec3::ONE] {
+        let stand = Stand::new(NO_LIGHT);
+        let mut photo = Photo::plain(0);
+        photo.solution.receivers[0].bounce = bounce;
+        let pictures = [photo.plate(&stand), photo.frame(&stand, &stand.physical)];
+        let run = Run::new(stand, pictures, &Device::shared().decoded()).unwrap();
+        check_receivers(&run);
+        check_receiver(&run);
+        let found = run.solution.receivers[0].bounce;
+        // 8 bits, and a coarse ambient map near the contact. Measured: .06.
+        assert!(found.abs_diff_eq(bounce, 0.08), "{bounce} is taken for {found}");
+    }
 }
 
 /// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.

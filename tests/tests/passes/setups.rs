@@ -79,6 +79,12 @@ pub(crate) const WALL: Setup = Setup {
     has_wall: true,
     ..NEAR
 };
+/// Light from all around alone.
+pub(crate) const NO_LIGHT: Setup = Setup {
+    name: "no light",
+    lights: &[],
+    ..NEAR
+};
 /// As many lights as there can be.
 pub(crate) const FOUR_LIGHTS: Setup = Setup {
     name: "four lights",

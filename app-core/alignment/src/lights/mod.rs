@@ -2,8 +2,9 @@
 //!
 //! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
 //! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
-//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed they are looked for
-//! all over the hemisphere (`discover`), or around those that a probe tells of (`guess`).
+//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed, or none near a list
+//! explains the shadow, they are looked for all over the hemisphere (`discover`), or around those that a probe tells of (`guess`). One
+//! that is long is a line of round ones (`long`); where there is no lamp at all, one wide light may be assumed (`wide`).
 
 mod backdrop;
 mod cast;
@@ -15,6 +16,7 @@ mod guess;
 mod hemisphere;
 mod lamp;
 mod leftover;
+mod long;
 mod prior;
 mod refine;
 mod relight;
@@ -23,13 +25,14 @@ mod shadows;
 mod step;
 mod uncertainty;
 mod watch;
+mod wide;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
-use super::report::{DiscoveredLight, LightDeviation, PoseDeviation};
+use super::report::{AssumedLight, DiscoveredLight, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
@@ -220,6 +223,37 @@ fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
         let [x, y] = (step.as_dvec2() * apart_rad).to_array();
         [x, y, 0.0, 0.0]
     })
+}
+
+/// Assumes one wide light where none is found; none where no such light explains enough more than light from all around does.
+pub(super) fn assume_wide(
+    shape: &Shape,
+    receivers: &[SeenReceiver],
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+) -> Option<AssumedLight> {
+    let found = wide::assume(shape, receivers, pyramid)?;
+    Some(AssumedLight {
+        light: found.lamp.light(world_from_camera, shape.centre),
+        share: found.share,
+        explained: found.explained,
+    })
+}
+
+/// A line of round lights in place of one, which explains clearly more of its shadow; none where no such line does.
+pub(super) fn line_of(
+    light: &Light,
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    pyramid: &Pyramid,
+    world_from_camera: &DMat4,
+) -> Option<Vec<Light>> {
+    let lamp = Lamp::new(light, &world_from_camera.inverse(), shape.centre)?;
+    let pieces = long::line_of(&lamp, (shape, receivers), pyramid)?;
+    Some(
+        pieces
+            .map(|piece| piece.light(world_from_camera, shape.centre))
+            .to_vec(),
+    )
 }
 
 /// Finds lights that nobody lists, strongest first; `pose` is how well the toy's is known. Where a probe tells of lights, those that cast

@@ -180,7 +180,7 @@ pub(super) fn of_verdict(verdict: &Verdict) -> String {
         Verdict::Found {
             no_light: Some(reason),
             ..
-        } => format!("The shadow stays as it is: no light was found, since {reason}."),
+        } => format!("The shadow is a guess: no light was found, since {reason}."),
         Verdict::Found {
             outline_px: Some(outline_px),
             ..

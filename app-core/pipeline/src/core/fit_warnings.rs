@@ -96,9 +96,16 @@ impl Core {
     /// What the fit does not know of the shadow's strength.
     fn about_fit(&self, fit: &Fit, evidence: &Evidence) -> Result<Option<Warning>, CoreError> {
         let conditioning = self.read_conditioning()?;
-        let (Some(stage), Some(model), false) = (&self.stage, self.model(), conditioning.is_empty()) else {
+        let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
             return Ok(None);
         };
+        if model.region.plan.n_lights == 0 {
+            let strength = ambient_strength(fit);
+            return Ok(Some(Warning::AmbientAlone { strength }));
+        }
+        if conditioning.is_empty() {
+            return Ok(None);
+        }
         let known: f64 = conditioning.iter().map(|(_, known)| known).sum();
         if known < LEAST_CONDITIONING {
             // Where the toy is out of the picture, a warning of the frame says so.
@@ -147,6 +154,13 @@ impl Core {
         found.dedup();
         Ok(found)
     }
+}
+
+/// How much of the light counts as one from all around where no other is known, on the receiver that the toy stands on.
+fn ambient_strength(fit: &Fit) -> f32 {
+    let [r, g, b, _] = fit.receivers[0].bounce;
+    // The bounce is at most 1, but for rounding.
+    (1.0 - (r + g + b) / 3.0).max(0.0)
 }
 
 /// What all lights give of the plate's radiance, on the receiver and in the channel where it is most.

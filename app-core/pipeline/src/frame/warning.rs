@@ -10,8 +10,16 @@ use app_scene::words::Listed;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// No light is listed, and none was found: the camera frame passes through.
-    NoLight,
+    /// No light is listed, and none was found: the toy moves, and its shadow is made without one.
+    NoLight {
+        /// Whether the preset takes what the real picture shows of a shadow of light from all around; else it draws none.
+        has_ambient: bool,
+    },
+    /// No light is known, so the new shadow is that of light from all around alone.
+    AmbientAlone {
+        /// Its strength over that where all light is such, from 0 to 1, by the real picture; 0 where that shows none.
+        strength: f32,
+    },
     /// There is no plate, and the preset cannot do without: the camera frame passes through.
     NoPlate,
     /// There is no plate: the scene without the toy is estimated from the frame.
@@ -97,7 +105,12 @@ impl Warning {
     /// What it says, where there is no number in it.
     fn words(&self) -> Option<&'static str> {
         Some(match self {
-            Self::NoLight => "no light is known: the camera frame passes through",
+            Self::NoLight { has_ambient: true } => {
+                "no light is known: the shadow is made of light from all around, as far as the real one shows it; list a light, photograph a lens, or show more of the real shadow"
+            }
+            Self::NoLight { has_ambient: false } => {
+                "no light is known: no new shadow is drawn; list a light, photograph a lens, or show more of the real shadow"
+            }
             Self::NoPlate => "there is no plate, which this preset needs: the camera frame passes through",
             Self::PlateEstimated => {
                 "there is no plate: the place behind toy and shadow is estimated from the frame"
@@ -150,6 +163,7 @@ impl fmt::Display for Warning {
                 "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
                 lights_in_words(lights)
             ),
+            Self::AmbientAlone { strength } => ambient_alone(f, *strength),
             Self::FaintShadow { assumed } => write!(
                 f,
                 "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
@@ -189,7 +203,7 @@ impl fmt::Display for Warning {
                 too_much(f, (*triangles, *covered_px), format_args!("{what}"))
             }
             // Said above.
-            Self::NoLight
+            Self::NoLight { .. }
             | Self::NoPlate
             | Self::PlateEstimated
             | Self::CameraBelowReceiver
@@ -204,6 +218,19 @@ impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
+}
+
+fn ambient_alone(f: &mut fmt::Formatter<'_>, strength: f32) -> fmt::Result {
+    if strength <= 0.0 {
+        return f.write_str(
+            "the real picture shows no shadow of light from all around: none is drawn where no light is known",
+        );
+    }
+    write!(
+        f,
+        "where no light is known the new shadow is that of light from all around: {:.0} % of the light is taken for such, by the real shadow",
+        100.0 * strength
+    )
 }
 
 fn too_much(

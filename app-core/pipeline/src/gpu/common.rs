@@ -34,6 +34,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "material",
     "model",
     "moved",
+    "no_light",
     "pixel",
     "planes",
     "pool",

@@ -168,13 +168,14 @@ pub(crate) struct TextureLayers {
 }
 
 impl TextureLayers {
-    /// `n_layers` textures that passes draw to and read from.
+    /// `n_layers` textures that passes draw to and read from, and one where there is none: a binding needs it.
     pub(crate) fn targets(
         gpu: &Gpu,
         label: &str,
         (size_px, n_layers): (UVec2, u32),
         format: TextureFormat,
     ) -> Self {
+        let n_layers = n_layers.max(1);
         let usage =
             TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let shape = Shape {

@@ -87,9 +87,6 @@ impl Stage {
         if input.effect == 0.0 {
             return Ok(Err(PassThrough::NoEffect));
         }
-        if self.lights.used.is_empty() {
-            return warned(Warning::NoLight);
-        }
         let needs_plate = matches!(self.settings, Settings::Baseline(_));
         if needs_plate && self.scene.plates.is_empty() {
             return warned(Warning::NoPlate);

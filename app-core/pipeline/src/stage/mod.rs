@@ -422,6 +422,7 @@ impl Stage {
         report.region = Some(method.region());
         report.change = Some(change);
         report.warnings.extend(self.plate_warning(footprint));
+        report.warnings.extend(self.light_warning());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }

@@ -275,6 +275,15 @@ impl Stage {
         exposed(&footprint.plate_views, gain)
     }
 
+    /// That no light is known.
+    pub(super) fn light_warning(&self) -> Option<Warning> {
+        let has_ambient = matches!(self.settings, Settings::Model(_));
+        self.lights
+            .used
+            .is_empty()
+            .then_some(Warning::NoLight { has_ambient })
+    }
+
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
         let globals = globals(&footprint.view, &plan.region, &self.layout())
             .with_boxes(&plan.toy_box, &plan.physical_box);

@@ -1,9 +1,11 @@
 //! A session with corrected cameras, poses and lights.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::Context;
 use app_core::alignment::{LensAlignment, RatioOutcome};
+use app_core::scene::Light;
 use app_core::session::record::{LensRecord, LightRecord};
 use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde::Serialize;
@@ -51,8 +53,9 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             index["frames"][frame]["world_from_camera"] =
                 json!(alignment.camera.world_from_camera.to_cols_array());
         }
-        // Where none was found in place of the list, it stays.
-        if let Some(lights) = alignment.lights.as_ref().filter(|lights| !lights.is_empty()) {
+        // Where none was found in place of the list, it stays; what is assumed is no finding.
+        let is_found = |lights: &&Arc<[Light]>| !lights.is_empty() && alignment.report.assumed.is_none();
+        if let Some(lights) = alignment.lights.as_ref().filter(is_found) {
             let listed = index["lights"].as_array().cloned().unwrap_or_default();
             let mut entries = if aligned.put_aside.is_empty() {
                 listed

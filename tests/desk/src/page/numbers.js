@@ -111,7 +111,7 @@ function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { focal_length, world_scale, camera, pose, lights, probe, discovered, no_light, unexplained, is_relit, n_listed, cpu_ms,
+  const { focal_length, world_scale, camera, pose, lights, probe, discovered, assumed, is_long, no_light, unexplained, is_relit, n_listed, cpu_ms,
     probe_against_listed, discovered_against_listed } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied || found.outcome === "corrected" ? "corrected" : "left as given";
   const rows = [];
@@ -137,6 +137,9 @@ function showAlignment() {
     `${(100 * light.share).toFixed(0)} % of the light, ${light.distance_m ? `${light.distance_m.toFixed(2)} m` : "far"} away, ${degrees(2 * light.angular_radius_rad)} wide, direction \u00b1 ${degrees(light.deviation.direction_rad)}`,
     against(discovered_against_listed[i])])));
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe tells: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
+  if (assumed) rows.push(row("a light", ["assumed", `${(100 * assumed.share).toFixed(0)} % of the light, far away and wide`,
+    `explains ${(100 * assumed.explained).toFixed(0)} % of what light from all around leaves`]));
+  if (is_long) rows.push(row("the light", ["long", "shown as a line of four round ones", ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
   const hemisphere = entry(data.presets[0]).maps.find(map => map.name === "hemisphere");

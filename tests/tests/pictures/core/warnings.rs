@@ -165,6 +165,8 @@ fn broken_input_is_told_by_its_cause() {
             .lit_by(vec![bundled, bulb(toy_middle())]),
         Case::new("light where there is none", &["NoShadow", "Outlier(Shadow)"])
             .lit_by(vec![bulb(toy_middle() + DVec3::new(0.0, 0.2, 0.0))]),
+        // The bulb's own shadow is then that of nothing that is known.
+        Case::new("no light", &["NoLight", "AmbientAlone", "Outlier(Shadow)"]).lit_by(Vec::new()),
         Case::new("toy behind the camera", &["ToyOutOfPicture"]).standing_at(behind),
         Case::new("toy far behind the camera", &["OutOfPicture"]).standing_at(behind.with_y(0.0)),
         Case::new(
@@ -175,6 +177,26 @@ fn broken_input_is_told_by_its_cause() {
     ];
     for case in cases {
         case.check(&mut core);
+    }
+}
+
+/// The toy moves without a light, too, and out of its old place.
+#[test]
+fn without_a_light_every_preset_moves_the_toy() {
+    let mut core = core();
+    let mut scene = scene();
+    scene.lights.clear();
+    let input = first_input();
+    let photographed = input.image.rgba().rgba8.clone();
+    for &preset in Preset::ALL {
+        core.set_scene(scene.clone(), preset).unwrap();
+        let report = core.frame(&input).unwrap();
+        let has_ambient = !matches!(preset, Preset::Flat | Preset::Paper);
+        assert_eq!(report.warnings, [Warning::NoLight { has_ambient }], "{preset:?}");
+        let picture = core.read_picture().unwrap();
+        let n_changed = picture.rgba8.chunks(4).zip(photographed.chunks(4));
+        let n_changed = n_changed.filter(|(a, b)| a[0].abs_diff(b[0]) > 30).count();
+        assert!(n_changed > 100, "{preset:?}: {n_changed} pixels");
     }
 }
 

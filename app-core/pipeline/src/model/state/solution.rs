@@ -89,8 +89,10 @@ impl SeenScene<'_> {
 /// The solution to start from, which also stands where a frame has no valid pixel.
 pub(crate) fn start(n_lights: usize) -> Fit {
     let direct_fraction = PRIOR_DIRECT_FRACTION / n_lights.max(1) as f32;
+    // Without any light no shadow is known either.
+    let bounce = if n_lights == 0 { 1.0 } else { PRIOR_BOUNCE };
     let mut receiver = ReceiverFit {
-        bounce: [PRIOR_BOUNCE; 4],
+        bounce: [bounce; 4],
         direct_fraction: [[0.0; 4]; MAX_LIGHTS],
         clipped: [0.0; 4],
     };

@@ -1,0 +1,165 @@
+//! Which lights a view is shown with: those of a list, those found near it or anywhere, or one that is assumed.
+
+use std::sync::Arc;
+
+use super::Aligner;
+use super::kept_lights::KeptLights;
+use super::lights::Watched;
+use super::photograph::MOST_OUTLINE_PX;
+use super::view::Seen;
+use crate::no_light::NoLight;
+use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
+use app_scene::toy::ToyError;
+
+/// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
+///
+/// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
+const DISCOVERY_OUTLINE_PX: f64 = 1.5;
+
+impl Aligner {
+    /// The lights in a view, as far as it can tell.
+    pub(super) fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        if given.is_empty() {
+            return self.discover_lights(given, seen);
+        }
+        let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
+            seen.photograph
+                .lights(&self.scene, &seen.input, (&given, &self.scene.uncertainty.lights))?
+        } else {
+            None
+        };
+        let lights = KeptLights::listed(given, found);
+        let watched = self.watch(&lights, seen)?;
+        // Where a list says how well its directions are known, nothing is looked for beyond.
+        let is_bounded = self.scene.uncertainty.lights.direction_rad.is_some();
+        match watched {
+            Some(left) if !is_bounded && KeptLights::leaves_too_much(left) => {
+                self.search_beyond_list((lights, left), seen)
+            }
+            _ => Ok(lights.seen(watched)),
+        }
+    }
+
+    /// Lights anywhere, or a long one, where those near a list do not explain a view; the list, where others do not either.
+    fn search_beyond_list(
+        &self,
+        (near, left): (KeptLights, Watched),
+        seen: &Seen,
+    ) -> Result<KeptLights, ToyError> {
+        let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
+        let watched = self.watch(&others, seen)?;
+        if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
+            return Ok(others.seen(watched));
+        }
+        if let Some(line) = self.line_for((&near, left), seen)? {
+            return Ok(line);
+        }
+        let list = near.left_as_given();
+        let watched = self.watch(&list, seen)?;
+        Ok(list.seen(watched))
+    }
+
+    /// A line of lights in place of one that leaves too much of a view; none where it does not explain that.
+    fn line_for(
+        &self,
+        (round, left): (&KeptLights, Watched),
+        seen: &Seen,
+    ) -> Result<Option<KeptLights>, ToyError> {
+        let [light] = round.in_use() else {
+            return Ok(None);
+        };
+        let Some(line) = seen.photograph.line_of(&self.scene, &seen.input, light)? else {
+            return Ok(None);
+        };
+        let line = round.as_line(line);
+        let watched = self.watch(&line, seen)?;
+        let stands_in = watched.is_some_and(|watched| line.stand_in_for(watched, left));
+        Ok(stands_in.then(|| line.seen(watched)))
+    }
+
+    /// Lights in a view that nobody lists, or that are not where they are listed.
+    fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let lights = self.find_anywhere(given, seen)?;
+        let has_none = matches!(lights.discovered, Some(Err(NoLight::NoneDominant)));
+        let lights = if has_none && lights.in_use().is_empty() {
+            lights.or_assumed(seen.photograph.assume_wide(&self.scene, &seen.input)?)
+        } else {
+            lights
+        };
+        let watched = self.watch(&lights, seen)?;
+        if let Some(left) =
+            watched.filter(|watched| lights.are_found() && KeptLights::leaves_too_much(*watched))
+            && let Some(line) = self.line_for((&lights, left), seen)?
+        {
+            return Ok(line);
+        }
+        Ok(lights.seen(watched))
+    }
+
+    /// Lights all over the hemisphere, or around those that a probe tells.
+    fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
+        let found = match &seen.view.report {
+            Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
+                seen.photograph
+                    .discover(&self.scene, &seen.input, &pose.deviation, told)?
+            }
+            _ => Err(NoLight::PoseUnknown),
+        };
+        Ok(KeptLights::discovered(given, found, told))
+    }
+
+    /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
+    pub(super) fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
+        let now = self.watch(&kept, seen)?;
+        if !kept.are_found() && now.is_none_or(|now| kept.watch(now)) {
+            return self.find_lights(kept.given, seen);
+        }
+        let Some(now) = now.filter(|now| kept.watch(*now)) else {
+            return Ok(kept);
+        };
+        if kept.discovered.is_none() {
+            // One that was moved may be anywhere.
+            let lights = (kept.in_use(), &LightUncertainty::default());
+            let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
+            let moved = KeptLights::listed(Arc::clone(&kept.given), found);
+            if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
+                return Ok(moved.in_place_of(&kept, now));
+            }
+        }
+        if let Some((lights, scene)) = self.relight(&kept, seen)? {
+            (self.scene, self.is_relit) = (scene, true);
+            return Ok(lights);
+        }
+        kept.searched_in_vain(now);
+        Ok(kept)
+    }
+
+    /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
+    /// light; none where they do not explain it as well.
+    fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
+        let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
+            return Ok(None);
+        };
+        let relit = Self::new(Scene::clone(&self.scene).with_plates(plates));
+        let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
+        let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
+        let now = relit
+            .watch(&others, &seen)?
+            .filter(|now| kept.are_replaced_by(*now));
+        Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
+    }
+
+    /// What lights leave unexplained of a view; none where it does not tell.
+    fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
+        if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
+            return Ok(None);
+        }
+        seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
+    }
+
+    /// Whether pictures can tell where so many lights are; without a plate those that nobody lists alone.
+    fn can_tell_lights(&self, lights: &[Light]) -> bool {
+        lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
+    }
+}
