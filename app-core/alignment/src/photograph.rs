@@ -102,15 +102,18 @@ impl Photograph {
         }))
     }
 
-    /// The plane that a toy rests on, and whether the scene says that it does; none where it floats.
+    /// The plane that a toy rests on, and whether the scene says that it does; none if it floats. Of several planes it is the most level
+    /// one: a toy that touches a wall does not stand on it.
     fn plane_under(&self, scene: &Scene, shape: &Shape) -> Option<(pose::Plane, bool)> {
         let most_m = match scene.resting {
             Some(true) => f64::INFINITY,
             Some(false) => return None,
             None => RESTING * shape.radius_m,
         };
-        let mut receivers = self.receivers.iter();
-        let plane = receivers.find_map(|receiver| receiver.plane_under(&shape.points, most_m))?;
+        let up = self.camera_from_world.transform_vector3(DVec3::Y);
+        let planes = self.receivers.iter();
+        let planes = planes.filter_map(|receiver| receiver.plane_under(&shape.points, most_m));
+        let plane = planes.max_by(|a, b| a.normal.dot(up).total_cmp(&b.normal.dot(up)))?;
         Some((plane, scene.resting.is_some()))
     }
 

@@ -137,7 +137,11 @@ impl<'a> Balance<'a> {
             sum + one.weight * one.residual_px * one.row
         });
         let factor = self.information.cholesky()?;
-        (!self.rows.is_empty()).then(|| factor.solve(&(outline + self.of_priors().1)))
+        let mut step = factor.solve(&(outline + self.of_priors().1));
+        if !self.known.is_size_open {
+            step[SIZE] = 0.0;
+        }
+        (!self.rows.is_empty()).then_some(step)
     }
 
     /// One deviation of the placement, whose outline has a root mean square of as many pixels: by how much the residuals of one

@@ -9,7 +9,7 @@ mod sense;
 
 use std::path::{Path, PathBuf};
 
-use app_core::alignment::{Alignment, Outlines};
+use app_core::alignment::{Alignment, Outlines, PoseAlignment};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
@@ -116,6 +116,22 @@ fn against_listed(error: &LightError) -> String {
     )
 }
 
+/// How well a pose is known that was found, and in which size and how soft a picture.
+fn how_well(pose: &PoseAlignment) -> String {
+    let size = match pose.size_ratio {
+        1.0 => String::new(),
+        ratio => format!(", {ratio:.4} times the size given"),
+    };
+    format!(
+        "toy.world_from_object: where the outline is found is known to {:.2} mm along the view, {:.2} mm beside it and {:.2} degrees, one deviation each{size}; the model's outline is off by {:.2} px, and edges are spread by {:.1} px",
+        1e3 * pose.deviation.depth_m,
+        1e3 * pose.deviation.lateral_m,
+        pose.deviation.rotation_rad.to_degrees(),
+        pose.model_px,
+        pose.spread_px,
+    )
+}
+
 /// The reader's warnings, but those of files that were looked at before.
 fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
     let others = warnings
@@ -183,22 +199,7 @@ impl Findings {
             );
             self.tell(told, camera.is_applied);
         }
-        match &report.pose {
-            None => self.wrong.push(
-                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
-                    .to_owned(),
-            ),
-            Some(pose) => {
-                let told = format!(
-                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px where the toy is moved by {:.2} mm and turned by {:.2} degrees",
-                    pose.given_outline_px,
-                    pose.outline_px,
-                    1e3 * pose.moved_m,
-                    pose.turned_rad.to_degrees(),
-                );
-                self.tell(told, pose.is_applied);
-            }
-        }
+        self.pose(report.pose.as_ref());
         for (index, light) in report.lights.iter().enumerate() {
             let size = light.size_ratio.map_or(String::new(), |ratio| {
                 format!(", {ratio:.2} times its angular size")
@@ -236,6 +237,26 @@ impl Findings {
 }
 
 impl Findings {
+    fn pose(&mut self, pose: Option<&PoseAlignment>) {
+        match pose {
+            None => self.wrong.push(
+                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
+                    .to_owned(),
+            ),
+            Some(pose) => {
+                let told = format!(
+                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px where the toy is moved by {:.2} mm and turned by {:.2} degrees",
+                    pose.given_outline_px,
+                    pose.outline_px,
+                    1e3 * pose.moved_m,
+                    pose.turned_rad.to_degrees(),
+                );
+                self.tell(told, pose.is_applied);
+                self.facts.push(how_well(pose));
+            }
+        }
+    }
+
     fn probe(&mut self, probe: &ProbeReport, stands: bool) {
         for (index, light) in probe.lights.iter().enumerate() {
             let [u, v] = light.seen.at_px.to_array();
