@@ -29,6 +29,7 @@ mod camera;
 mod directions;
 mod error;
 mod kept_lights;
+mod laid;
 mod light_search;
 mod lights;
 mod no_light;
@@ -94,8 +95,8 @@ pub struct Alignment {
     pub world_from_object: DMat4,
     /// The lights; none where those that were given stay.
     pub lights: Option<Arc<[Light]>>,
-    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, or its plates are in
-    /// another light than before. None if the core keeps the scene of the frame before, which for the first frame is the one that the
+    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
+    /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the first frame is the one that the
     /// [`Aligner`] was made with.
     pub scene: Option<Arc<Scene>>,
     /// What was found.
@@ -235,6 +236,7 @@ impl Aligner {
             Some(view) => Seen::again(&self.scene, view, input),
             None => self.see(input, kept.as_ref())?,
         };
+        let seen = self.on_laid_receivers(seen, input)?;
         self.lights = Some(match kept {
             Some(kept) if self.are_shadows_withheld => kept,
             Some(kept) => self.watch_lights(kept, &seen)?,
@@ -245,6 +247,20 @@ impl Aligner {
         }
         self.view = Some(seen.view);
         Ok(self.aligned(input))
+    }
+
+    /// The view with receivers under the toy, where it is a guess where they are and the picture shows the toy.
+    fn on_laid_receivers(&mut self, seen: Seen, input: &FrameInput) -> Result<Seen, ToyError> {
+        if !self.scene.uncertainty.are_receivers_guessed || !seen.view.is_trusted(MOST_OUTLINE_PX) {
+            return Ok(seen);
+        }
+        let Some(receivers) = laid::laid(&self.scene, &seen.view.world_from_object)? else {
+            return Ok(seen);
+        };
+        let scene = Arc::make_mut(&mut self.scene);
+        scene.receivers = receivers;
+        scene.uncertainty.are_receivers_guessed = false;
+        Ok(Seen::again(&self.scene, seen.view, input))
     }
 
     /// The input with the focal length or the scale that was found; in a view that is not known it is looked for, until it was seen.

@@ -105,6 +105,9 @@ impl Photograph {
     /// The plane that a toy rests on, and whether the scene says that it does; none if it floats. Of several planes it is the most level
     /// one: a toy that touches a wall does not stand on it.
     fn plane_under(&self, scene: &Scene, shape: &Shape) -> Option<(pose::Plane, bool)> {
+        if scene.uncertainty.are_receivers_guessed {
+            return None;
+        }
         let most_m = match scene.resting {
             Some(true) => f64::INFINITY,
             Some(false) => return None,

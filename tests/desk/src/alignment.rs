@@ -10,7 +10,7 @@ use app_core::alignment::{
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
-use app_core::scene::{Camera, Light, Scene};
+use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
 use glam::{DMat4, DVec3};
 use serde::Serialize;
@@ -101,6 +101,8 @@ pub struct Alignments {
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
     moved_plates: Vec<(usize, Camera)>,
+    /// The receivers, where they were laid under the toy.
+    laid_receivers: Option<Vec<Receiver>>,
     /// Of the lens, where it was looked for.
     lens: Option<LensAlignment>,
 }
@@ -191,6 +193,7 @@ impl Alignments {
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
+            laid_receivers: None,
             lens: None,
         }
     }
@@ -271,6 +274,9 @@ impl Alignments {
             })?;
         let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.moved_plates = moved_plates(scene, aligner.scene());
+        let is_laid =
+            |now: &Scene| scene.uncertainty.are_receivers_guessed && !now.uncertainty.are_receivers_guessed;
+        self.laid_receivers = is_laid(aligner.scene()).then(|| aligner.scene().receivers.clone());
         if self.found.is_empty() {
             self.first = index;
         }
@@ -311,6 +317,12 @@ impl Alignments {
     pub fn n_lights(&self, given: &Scene, preset: Preset) -> usize {
         let found = self.found.last().and_then(|last| last.lights(preset));
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
+    }
+
+    /// The receivers, where they were a guess and were laid under the toy.
+    #[must_use]
+    pub fn laid_receivers(&self) -> Option<&[Receiver]> {
+        self.laid_receivers.as_deref()
     }
 
     /// Plates whose camera was corrected, by their index.

@@ -227,3 +227,34 @@ fn a_toy_that_is_larger_than_its_model_is_found_larger_where_it_stands() {
     );
     assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
 }
+
+#[test]
+fn receivers_that_are_a_guess_are_laid_under_the_toy() {
+    let recorded = SESSION.0.receivers[0].world_from_plane;
+    let mut scene = SESSION.0.clone();
+    let guess = DMat4::from_translation(DVec3::new(0.0, -0.012, 0.0))
+        * DMat4::from_axis_angle(DVec3::new(1.0, 0.0, 0.6).normalize(), 6f64.to_radians());
+    scene.receivers[0].world_from_plane = guess * recorded;
+    scene.uncertainty.are_receivers_guessed = true;
+    let found = align(
+        scene,
+        &disturbed(Camera::Ideal, DVec3::new(2.0, 1.0, -2.0), (DVec3::Y, 1.5)),
+    );
+    let scene = found.scene.as_ref().unwrap();
+    let laid = scene.receivers[0].world_from_plane;
+    let lean_deg = laid
+        .y_axis
+        .truncate()
+        .angle_between(recorded.y_axis.truncate())
+        .to_degrees();
+    let toy = SESSION.1.world_from_object.w_axis.truncate();
+    let height_mm =
+        1e3 * laid.inverse().transform_point3(toy).y - 1e3 * recorded.inverse().transform_point3(toy).y;
+    assert!(
+        lean_deg < 0.5 && height_mm.abs() < 0.5,
+        "{lean_deg} degrees, {height_mm} mm"
+    );
+    assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    assert!(!scene.uncertainty.are_receivers_guessed);
+}

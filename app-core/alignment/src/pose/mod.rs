@@ -37,7 +37,7 @@ use sides::Beside;
 
 pub(super) use paint::Paint;
 pub(super) use resting::find_resting;
-pub(super) use standing::Plane;
+pub(super) use standing::{Plane, feet};
 
 /// Colours are learned this far around the toy, over how far lines reach.
 const LEARNED_AROUND: i32 = 3;

@@ -11,8 +11,10 @@ use crate::shape::Shape;
 /// How far the points that bear a toy may be from their plane, in metres: one deviation. Felt pads, soft paws, and a table that is
 /// not quite flat.
 pub(super) const DEVIATION_M: f64 = 1.5e-4;
-/// A toy that leans farther from how it would stand is not meant to stand, in radians.
+/// A toy that leans farther from how it would stand on a plane is not meant to stand there, in radians.
 const MOST_LEAN_RAD: f64 = 0.12;
+/// Planes that are a guess lean less than that from the toy's feet, in radians: else it is not these feet that it stands on.
+const MOST_GUESSED_LEAN_RAD: f64 = 0.5;
 /// Rounds in which the bearing points are exchanged; each goes lower.
 const N_ROUNDS: usize = 64;
 /// How far out the points are that such a search starts from, over the toy's radius, and again how high.
@@ -47,7 +49,7 @@ pub(super) struct Standing {
 impl Standing {
     /// With all three points on the plane; none where a toy would have to lean far, or would stand on nothing that is wide.
     pub(super) fn on(shape: &Shape, plane: Plane) -> Option<Self> {
-        let points = bearing(shape, &plane)?;
+        let points = bearing(shape, &plane, MOST_LEAN_RAD)?;
         Some(Self {
             plane,
             points,
@@ -91,9 +93,14 @@ impl Standing {
     }
 }
 
+/// The feet of a toy that stands on a plane which is a guess; none if it would have to lean far.
+pub(crate) fn feet(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
+    bearing(shape, plane, MOST_GUESSED_LEAN_RAD)
+}
+
 /// The three points that a toy rests on once it is put down: of all planes that have no point below them, the one that is highest under
 /// the toy's middle.
-fn bearing(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
+fn bearing(shape: &Shape, plane: &Plane, most_lean_rad: f64) -> Option<[DVec3; 3]> {
     let (across, along) = plane.normal.any_orthonormal_pair();
     // In the plane's own frame, the height last.
     let local: Vec<DVec3> = shape
@@ -137,7 +144,7 @@ fn bearing(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
     };
     let tilt = tilt_of(&corners)?;
     let lean_rad = tilt.truncate().length().atan();
-    (lean_rad <= MOST_LEAN_RAD).then(|| [a, b, c].map(|index| shape.points[index]))
+    (lean_rad <= most_lean_rad).then(|| [a, b, c].map(|index| shape.points[index]))
 }
 
 /// Rise of the plane through three points along the first two axes; none where it is upright.

@@ -14,6 +14,9 @@ pub struct Uncertainty {
     pub camera: PoseUncertainty,
     /// Of each light that is listed; those that no list has are looked for everywhere.
     pub lights: LightUncertainty,
+    /// Whether where the receivers are is a guess, such as for photographs that were taken without a tracker. The toy is then found
+    /// against the camera alone, and all receivers are laid, as one, with the most level of them under the feet of the toy.
+    pub are_receivers_guessed: bool,
 }
 
 /// How far a pose may be off.
@@ -44,7 +47,9 @@ pub struct LightUncertainty {
 impl Uncertainty {
     /// Validates the numbers, whose fields are below `field`.
     pub(crate) fn check(&self, field: &str) -> Result<(), InputError> {
-        let Self { toy, camera, lights } = self;
+        let Self {
+            toy, camera, lights, ..
+        } = self;
         let numbers = [
             ("toy.position_m", toy.position_m, check::UNCERTAINTY_M),
             ("toy.rotation_rad", toy.rotation_rad, check::UNCERTAINTY_RAD),

@@ -57,5 +57,6 @@ pub(super) fn uncertainty(field: &str, record: &UncertaintyRecord) -> Result<Unc
         toy: pose("toy", record.toy.as_ref())?,
         camera: pose("camera", record.camera.as_ref())?,
         lights,
+        are_receivers_guessed: record.receivers_guessed.unwrap_or(false),
     })
 }

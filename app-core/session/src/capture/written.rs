@@ -212,6 +212,7 @@ impl From<&Uncertainty> for UncertaintyRecord {
                 distance_ratio: uncertainty.lights.distance_ratio,
                 size_ratio: uncertainty.lights.size_ratio,
             }),
+            receivers_guessed: uncertainty.are_receivers_guessed.then_some(true),
         }
     }
 }

@@ -37,6 +37,12 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
     for (plate, camera) in alignments.moved_plates() {
         index["backgrounds"][plate]["world_from_camera"] = json!(camera.world_from_camera.to_cols_array());
     }
+    if let Some(receivers) = alignments.laid_receivers() {
+        for (place, receiver) in receivers.iter().enumerate() {
+            index["receivers"][place]["world_from_plane"] = json!(receiver.world_from_plane.to_cols_array());
+        }
+        index["uncertainty"]["receivers_guessed"] = json!(false);
+    }
     let n_frames = index["frames"].as_array().map_or(0, Vec::len);
     for frame in 0..n_frames {
         let Some(aligned) = alignments.of(frame) else {

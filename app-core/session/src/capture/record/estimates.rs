@@ -46,6 +46,10 @@ pub struct UncertaintyRecord {
     /// Of each light that is listed; those that no list has are looked for everywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lights: Option<LightUncertaintyRecord>,
+    /// Whether where the receivers are is a guess, as for photographs that were taken without a tracker: they are laid, as one, with the
+    /// most level of them under the feet of the toy, which is found against the camera alone. False without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub receivers_guessed: Option<bool>,
 }
 
 /// How far toy or camera may be off.

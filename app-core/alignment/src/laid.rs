@@ -1,0 +1,45 @@
+//! Receivers of which nobody knows where they are, laid under a toy that stands.
+//!
+//! A photograph without a tracker tells where the toy is against the camera to a tenth of a millimetre, and next to nothing of the
+//! table. But the toy stands on it: the plane of the toy's feet is that of the table.
+
+use glam::{DMat4, DQuat, DVec3};
+
+use crate::pose::{Plane, feet};
+use crate::shape::Shape;
+use app_scene::scene::{Receiver, Scene};
+use app_scene::toy::ToyError;
+
+/// All receivers of a scene, moved as one so that the toy stands on the most level of them; none if the toy has no three feet that bear it.
+pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Vec<Receiver>>, ToyError> {
+    let shape = Shape::new(scene, world_from_object)?;
+    let planes = scene.receivers.iter().map(plane_of);
+    let Some(plane) = planes.max_by(|a, b| a.normal.y.total_cmp(&b.normal.y)) else {
+        return Ok(None);
+    };
+    Ok(feet(&shape, &plane).map(|[a, b, c]| {
+        let across = (b - a).cross(c - a);
+        let up = across.normalize_or(plane.normal);
+        let up = if up.dot(plane.normal) < 0.0 { -up } else { up };
+        let middle = (a + b + c) / 3.0;
+        // Turned about the place below the feet's middle, then lifted to it.
+        let below = middle - plane.height_m(middle) * plane.normal;
+        let turn = DQuat::from_rotation_arc(plane.normal, up);
+        let motion =
+            DMat4::from_translation(middle) * DMat4::from_quat(turn) * DMat4::from_translation(-below);
+        let receivers = scene.receivers.iter().cloned();
+        let moved = receivers.map(|receiver| Receiver {
+            world_from_plane: motion * receiver.world_from_plane,
+            ..receiver
+        });
+        moved.collect()
+    }))
+}
+
+fn plane_of(receiver: &Receiver) -> Plane {
+    let [normal, point] = [receiver.world_from_plane.y_axis, receiver.world_from_plane.w_axis];
+    Plane {
+        normal: normal.truncate().normalize_or(DVec3::Y),
+        point: point.truncate(),
+    }
+}
