@@ -140,7 +140,7 @@ impl KeptLights {
 
     /// In the view that they were found in, or looked for in vain.
     pub(super) fn seen(self, watched: Option<Watched>) -> Self {
-        let is_found = self.are_found();
+        let is_found = self.are_found() && !watched.is_some_and(Self::leaves_too_much);
         Self {
             explained: watched.filter(|_| is_found),
             in_vain: watched.filter(|_| !is_found),
@@ -164,6 +164,10 @@ impl KeptLights {
     /// The lights that frames are shown with.
     pub(super) fn in_use(&self) -> &[Light] {
         self.applied.as_deref().unwrap_or(&self.given)
+    }
+
+    pub(super) fn is_assumed(&self) -> bool {
+        self.assumed.is_some()
     }
 
     pub(super) fn are_found(&self) -> bool {

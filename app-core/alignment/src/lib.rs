@@ -2,8 +2,8 @@
 //!
 //! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
 //! the picture at once. The **table** beside the toy gives the camera (`camera`), since plates say what it looks like. Frame against
-//! plate is the best segmentation there is: the **outline** of the toy gives its pose (`pose`); the outline of its **shadow**, a
-//! second view of the toy from the light, gives the light (`lights`).
+//! plate is the best segmentation there is: the **outline** of the toy gives its pose, and its feet stand on the table (`pose`); the
+//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
 //! Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
@@ -77,9 +77,6 @@ pub use warning::AlignmentWarning;
 /// Each plate takes as long as a frame; more than so many stay as they are given.
 const MOST_ALIGNED_PLATES: usize = 32;
 
-/// A toy stands on its receiver where no foot is farther from it, and it leans no more: half a millimetre and half a degree are told.
-const MOST_HEIGHT_M: f64 = 1e-3;
-const MOST_LEAN_RAD: f64 = 0.017;
 /// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
 /// tracker is not yet corrected, and by the pose.
 const CAMERA_GROWN: f64 = 0.05;
@@ -208,7 +205,7 @@ impl Aligner {
 
     /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
     /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
-    /// moves; the loss of the outline must halve; that of the shadows must fall by a twenty-fifth and to less than a tenth of what is
+    /// moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of what is
     /// there without lights, and a light move by enough to show. Where the picture shows the toy nowhere near, it is where the input
     /// says.
     ///
@@ -400,14 +397,10 @@ impl Aligner {
         let warnings = off.map(|pose| AlignmentWarning::Misaligned {
             outline_px: pose.shown_px(),
         });
-        let stand = report.pose.and_then(|pose| pose.stand);
-        let off_receiver =
-            stand.filter(|stand| stand.height_m.abs() > MOST_HEIGHT_M || stand.lean_rad > MOST_LEAN_RAD);
+        let off_receiver = report.pose.and_then(|pose| pose.off_receiver());
         let off_receiver = off_receiver
             .map(|Stand { height_m, lean_rad }| AlignmentWarning::OffReceiver { height_m, lean_rad });
-        let differs = report
-            .pose
-            .filter(|pose| off.is_none() && pose.model_px > report::most_model_px(pose.spread_px));
+        let differs = report.pose.filter(|pose| off.is_none() && !pose.is_of_model);
         let differs = differs.map(|pose| AlignmentWarning::ModelDiffers {
             model_px: pose.model_px,
         });

@@ -112,10 +112,15 @@ impl Aligner {
     /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
     pub(super) fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
         let now = self.watch(&kept, seen)?;
-        if !kept.are_found() && now.is_none_or(|now| kept.watch(now)) {
+        // What is assumed stays in a view that does not show the shadows.
+        let is_asked_for = match now {
+            Some(now) => kept.watch(now),
+            None => !kept.is_assumed(),
+        };
+        if !kept.are_found() && is_asked_for {
             return self.find_lights(kept.given, seen);
         }
-        let Some(now) = now.filter(|now| kept.watch(*now)) else {
+        let Some(now) = now.filter(|_| is_asked_for) else {
             return Ok(kept);
         };
         if kept.discovered.is_none() {

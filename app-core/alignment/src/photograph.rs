@@ -213,8 +213,9 @@ impl Photograph {
                 given_outline_px: picture_px * found.outlines_px[0],
                 outline_px: picture_px * found.outlines_px[1],
                 deviation: found.deviation,
-                size_ratio: found.size,
+                size_ratio: corrected.x_axis.length() / input.world_from_object.x_axis.length(),
                 model_px: picture_px * found.model_px,
+                is_of_model: found.is_of_model(),
                 spread_px: picture_px * found.spread_px,
                 stand: found
                     .stands

@@ -199,12 +199,14 @@ impl Pyramid {
 }
 
 impl Level {
-    /// With the plate spread by a Gaussian of so many pixels.
-    pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Self {
-        Self {
-            plate: self.plate.as_ref().map(|plate| plate.spread(deviation_px)),
-            ..self.clone()
-        }
+    /// With the plate spread by a Gaussian, whose deviation is in pixels; none if there is no plate.
+    pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
+        let plate = self.plate.as_ref()?.spread(deviation_px);
+        Some(Self {
+            intrinsics: self.intrinsics,
+            frame: self.frame.clone(),
+            plate: Some(plate),
+        })
     }
 
     fn halved(&self) -> Self {

@@ -41,12 +41,13 @@ impl SeenReceiver {
             .iter()
             .map(|point| self.plane_from_camera.transform_point3(*point).y);
         let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
-        let camera_from_plane = self.plane_from_camera.inverse();
-        let [normal, point] =
-            [camera_from_plane.y_axis, camera_from_plane.w_axis].map(|axis| axis.truncate().as_vec3());
+        let normal = self.plane_from_camera.inverse().y_axis.truncate().normalize();
+        // Below the toy, where 32 bits are enough wherever the plane's origin is.
+        let above = *points.first()?;
+        let point = above - self.plane_from_camera.transform_point3(above).y * normal;
         (lowest_m.abs() <= most_m).then(|| Plane {
-            normal: normal.as_dvec3().normalize(),
-            point: point.as_dvec3(),
+            normal: normal.as_vec3().as_dvec3().normalize(),
+            point: point.as_vec3().as_dvec3(),
         })
     }
 

@@ -86,6 +86,8 @@ pub struct PoseAlignment {
     pub size_ratio: f64,
     /// What the outline of the toy's model is off by along some centimetres of it where it was found, in pixels: the root mean square.
     pub model_px: f64,
+    /// Whether that is what the pictures of cameras let it be off by: else the model is not quite this toy.
+    pub is_of_model: bool,
     /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,
     /// How the toy, where it is shown, is on the receiver that it was given on; none where it is given above all of them.
@@ -102,6 +104,18 @@ pub struct Stand {
 }
 
 impl PoseAlignment {
+    /// How the toy is off the receiver that it was given on, by more than a millimetre or a degree and by more than twice what its pose may
+    /// be off by; none if it stands there, or floats.
+    #[must_use]
+    pub fn off_receiver(&self) -> Option<Stand> {
+        const MOST_HEIGHT_M: f64 = 1e-3;
+        const MOST_LEAN_RAD: f64 = 0.017;
+        let height_m = MOST_HEIGHT_M.max(2.0 * self.deviation.depth_m);
+        let lean_rad = MOST_LEAN_RAD.max(2.0 * self.deviation.rotation_rad);
+        self.stand
+            .filter(|stand| stand.height_m.abs() > height_m || stand.lean_rad > lean_rad)
+    }
+
     /// The outline's distance as the toy is shown, in pixels.
     #[must_use]
     pub fn shown_px(&self) -> f64 {

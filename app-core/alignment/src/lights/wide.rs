@@ -133,6 +133,9 @@ impl<'a> Evidence<'a> {
         for _ in 0..N_ROUNDS {
             evidence.reweight();
         }
+        // By the same weights as lamps are judged.
+        let fits = evidence.fits(|pixel| [1.0, -evidence.taken[pixel], 0.0], [1.0, 0.0]);
+        evidence.left = fits.iter().map(|fit| fit.left).sum();
         evidence
     }
 
@@ -140,7 +143,6 @@ impl<'a> Evidence<'a> {
     fn reweight(&mut self) {
         let model = |pixel: usize| [1.0, -self.taken[pixel], 0.0];
         let fits = self.fits(model, [1.0, 0.0]);
-        self.left = fits.iter().map(|fit| fit.left).sum();
         let weight = |pixel: usize, channel: usize| {
             let seen = &self.pixels[pixel];
             let shown = Vector3::from(model(pixel)).dot(&fits[3 * seen.receiver + channel].factors);

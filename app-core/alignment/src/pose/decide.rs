@@ -3,30 +3,25 @@
 use super::edge::{self, Optics};
 use super::matte::Band;
 use super::motion::Measured;
-use super::paint::{Light, Paint, Shaded};
+use super::paint::{Light, Lit, Paint};
 use super::placement::{Placement, SIZE};
-use super::settle::{Balance, Known, Misfit, smoothed_px};
+use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::sides::Beside;
 use super::standing::Standing;
 use super::{FINE, Fit, Found, LESS_SEEN, Search, Subject, enough};
 use crate::picture::Level;
-use crate::raster::Coverage;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
 
-/// A pose is another one where the picture is so much likelier with it, as a natural logarithm.
-///
-/// Right poses of disturbed starts have 10 and more, exact poses against those found from them at most 3.
-pub(super) const LEAST_EVIDENCE: f64 = 6.0;
-/// A toy stands with its feet as high as they were given rather than on the plane where that is so much likelier.
-const GIVEN_HEIGHTS: f64 = 3.0;
+/// A toy on its plane is not doubted while the picture speaks against it by less; feet as high as they were given, or another size, are
+/// then as likely as they are unlikely: half of what decides.
+const UNDOUBTED: f64 = 0.5 * LEAST_EVIDENCE;
 /// Plates are tried as soft as the photograph where that is spread by more, in pixels.
 const SOFT_PX: f64 = 0.7;
 /// How often light and optics are looked at anew, before the last time.
 const N_LOOKS: usize = 1;
-/// Most rounds from the bands before, and from a pose that is nearly the one.
+/// Most rounds; each leaves about half of what the one before left.
 const N_ROUNDS: usize = 8;
-const N_NEAR_ROUNDS: usize = 8;
 /// A step that moves the toy by less, over its radius, is the last.
 const LAST_STEP: f64 = 2e-5;
 /// Half the band in which poses are compared that are some pixels apart, less what a spread adds.
@@ -39,21 +34,6 @@ const MET_PX2: f64 = 0.06;
 const MET_OF_SPREAD: f64 = 0.04;
 /// Sizes beyond are not those of the same toy, as a logarithm.
 const MOST_SIZE: f64 = 0.03;
-
-/// The light that a toy is seen in.
-#[derive(Clone, Copy)]
-pub(super) struct Lit<'a> {
-    paint: &'a Paint,
-    light: &'a Light,
-}
-
-impl<'a> Lit<'a> {
-    /// What the toy should look like where it is thought to be.
-    pub(super) fn shaded(self, placement: &Placement, level: &Level, coverage: &Coverage) -> Shaded<'a> {
-        self.paint
-            .shaded(placement, self.light, &level.intrinsics, coverage)
-    }
-}
 
 /// What is known before the last rounds.
 #[derive(Clone, Copy)]
@@ -96,12 +76,26 @@ impl Search<'_> {
         let free = self.settled(seen, &start, (None, N_ROUNDS))?;
         let standing = plane.and_then(|(plane, is_certain)| Some((Standing::on(shape, plane)?, is_certain)));
         let settled = match &standing {
-            Some((standing, true)) => self.on_plane(seen, &free, standing).unwrap_or(free),
-            Some((standing, false)) => self.stood(seen, &free, standing).unwrap_or(free),
-            None => free,
+            Some((standing, true)) => self.on_plane(seen, &free, standing),
+            Some((standing, false)) => self.stood(seen, &free, standing),
+            None => None,
         };
+        let settled = settled.unwrap_or_else(|| free.clone());
         let as_given = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-        let as_given = self.edges(&as_given, seen)?;
+        let as_given = self.edges(&as_given, seen).unwrap_or_default();
+        let of_given = Misfit::of(&as_given);
+        let is_certain = standing.as_ref().is_some_and(|(_, is_certain)| *is_certain);
+        let standing_evidence = match &standing {
+            Some((standing, true)) => standing.evidence(|point| settled.placement.apply(point)),
+            _ => 0.0,
+        };
+        let is_refused = !is_certain && settled.misfit.likelier_than(&of_given) < LEAST_EVIDENCE;
+        // A plane that a toy need not stand on is no reason to leave it where it is not.
+        let settled = if is_refused && free.misfit.likelier_than(&of_given) >= LEAST_EVIDENCE {
+            free
+        } else {
+            settled
+        };
         let found = self.fit(&settled.placement)?;
         Some(Found {
             motion: settled.placement.matrix(),
@@ -110,9 +104,8 @@ impl Search<'_> {
                 outline_px(&found, &settled.measured, seen.optics),
             ],
             is_less_seen: found.share <= given.share - LESS_SEEN,
-            evidence: settled.misfit.likelier_than(&Misfit::of(&as_given)),
+            evidence: settled.misfit.likelier_than(&of_given) + standing_evidence,
             deviation: settled.deviation,
-            size: settled.placement.size,
             model_px: smoothed_px(&settled.measured),
             spread_px: seen.optics.spread_px,
             stands: standing.map(|(standing, _)| {
@@ -137,22 +130,22 @@ impl Search<'_> {
     /// speaks against all of these.
     fn stood(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
         let is_likely = |settled: &Settled| free.misfit.likelier_than(&settled.misfit) < LEAST_EVIDENCE;
-        let on_plane = self.settled(seen, &free.placement, (Some((standing, false)), N_NEAR_ROUNDS))?;
+        let on_plane = self.settled(seen, &free.placement, (Some((standing, false)), N_ROUNDS))?;
         let is_given_elsewhere = standing.away_m() > ON_PLANE_M;
         let costs = free.misfit.likelier_than(&on_plane.misfit);
-        if costs < GIVEN_HEIGHTS || (costs < LEAST_EVIDENCE && !is_given_elsewhere) {
+        if costs < UNDOUBTED || (costs < LEAST_EVIDENCE && !is_given_elsewhere) {
             return Some(on_plane);
         }
         let mut others = Vec::new();
         if is_given_elsewhere {
             let heights = standing.as_given();
-            others.extend(self.settled(seen, &free.placement, (Some((&heights, false)), N_NEAR_ROUNDS)));
+            others.extend(self.settled(seen, &free.placement, (Some((&heights, false)), N_ROUNDS)));
         }
         let resized = self.settled(seen, &free.placement, (Some((standing, true)), N_ROUNDS));
         others.extend(resized.filter(|resized| resized.placement.size.ln().abs() < MOST_SIZE));
         let best = others
             .into_iter()
-            .filter(|other| is_likely(other) && other.misfit.likelier_than(&on_plane.misfit) >= GIVEN_HEIGHTS)
+            .filter(|other| is_likely(other) && other.misfit.likelier_than(&on_plane.misfit) >= UNDOUBTED)
             .min_by(|a, b| a.misfit.loss_px2.total_cmp(&b.misfit.loss_px2));
         best.or_else(|| is_likely(&on_plane).then_some(on_plane))
     }
@@ -178,10 +171,11 @@ impl Search<'_> {
         };
         self.softened = None;
         let (optics, misfit) = found(sharp);
-        if optics.spread_px < SOFT_PX {
+        let is_soft = optics.spread_px >= SOFT_PX;
+        let softened = is_soft.then(|| sharp.with_plate_spread(optics.spread_px));
+        let Some(softened) = softened.flatten() else {
             return optics;
-        }
-        let softened = sharp.with_plate_spread(optics.spread_px);
+        };
         let (of_softened, its_misfit) = found(&softened);
         if its_misfit < misfit {
             self.softened = Some(softened);

@@ -26,9 +26,9 @@ const MOST_PX: f64 = 1.5;
 const SHARPENED_PX: f64 = 1.2;
 /// Variance of a point's place within a pixel, along any direction, in square pixels.
 const PIXEL_PX2: f64 = 1.0 / 12.0;
-/// Spreads below show the shape of the pixel.
+/// A smaller spread is not seen beside the shape of the pixel.
 const LEAST_SPREAD_PX: f64 = 0.3;
-/// Spreads beyond are another thing than a lens.
+/// A larger spread is not that of a lens.
 const MOST_SPREAD_PX: f64 = 4.0;
 /// Half the band in which spreads are compared, the same for all, in pixels.
 const COMPARED_PX: f64 = 4.0;
@@ -191,7 +191,7 @@ impl<'a> Edges<'a> {
         )]
         let n = (FITTING * left.len() as f64) as usize;
         let sum: f64 = left[..n].iter().sum();
-        if n == 0 { 0.0 } else { sum / n as f64 }
+        if n == 0 { f64::INFINITY } else { sum / n as f64 }
     }
 
     fn pieces(&self, optics: Optics) -> Vec<Piece> {
@@ -270,8 +270,13 @@ impl Piece {
             let apart = f64::from(pixel.toy[channel] - pixel.background[channel]);
             let mixed = f64::from(pixel.background[channel]) + lens.covered * apart;
             let contrast = pixel.contrast_codes[channel];
-            let predicted = code(mixed) + beyond.covered * contrast;
-            let slope = slope_of_code(mixed) * apart * lens.density + contrast * beyond.density;
+            let unclipped = code(mixed) + beyond.covered * contrast;
+            let predicted = unclipped.clamp(0.0, 255.0);
+            let slope = if unclipped == predicted {
+                slope_of_code(mixed) * apart * lens.density + contrast * beyond.density
+            } else {
+                0.0
+            };
             let residual = pixel.seen_codes[channel] - predicted;
             let weight = SLOPE_OF_WHITE / slope_of_code(mixed);
             self.slope2 += weight * slope * slope;

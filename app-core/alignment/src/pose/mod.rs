@@ -1,8 +1,11 @@
 //! The toy's pose, by its outline in the picture.
 //!
-//! Coarse to fine. Where the pose is many pixels off, colours tell toy from surroundings (`odds`), and lines across the outline where
-//! the one becomes the other (`lines`). Then each pixel beside the outline tells how much of it the toy covers (`matte`). Each
-//! round is one Gauss-Newton step of all six numbers (`motion`).
+//! Coarse to fine. If the pose is many pixels off, colours distinguish the toy from its surroundings (`odds`), and lines across the outline
+//! show where the one becomes the other (`lines`). Then each pixel beside the outline shows how much of it the toy covers (`matte`),
+//! each round being one Gauss-Newton step of six numbers (`motion`). The last rounds predict the codes of the pixels beside the outline
+//! (`edge`) from what lies on either side of it (`sides`): the plate, and the model's own colours in the light of the photograph (`paint`).
+//! They solve for the offset of the whole outline as well, and with the feet of the toy on their plane (`standing`) for its size
+//! (`settle`). Which of these poses the picture speaks for is one decision (`decide`).
 
 mod contour;
 mod decide;
@@ -23,16 +26,17 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Level, Pyramid};
 use super::raster::{Coverage, Rasterizer, project};
-use super::report::{PoseDeviation, Stand};
+use super::report::{PoseDeviation, Stand, most_model_px};
 use super::rigid_motion::{Matrix6, RigidMotion};
 use super::shape::Shape;
 use app_scene::scene::{Intrinsics, PoseUncertainty};
 use contour::{Element, contour};
-use decide::{LEAST_EVIDENCE, Lit};
 use matte::Band;
 use motion::{Held, Measured, solve};
 use odds::Odds;
+use paint::Lit;
 use placement::Placement;
+use settle::LEAST_EVIDENCE;
 use sides::Beside;
 
 pub(super) use paint::Paint;
@@ -115,8 +119,6 @@ pub(super) struct Found {
     pub(super) evidence: f64,
     /// One deviation of what was found.
     pub(super) deviation: PoseDeviation,
-    /// Over the size as given.
-    pub(super) size: f64,
     /// What the model's outline is off by along some centimetres of it, in pixels.
     pub(super) model_px: f64,
     /// Standard deviation of the spread that the camera gives an edge, in pixels.
@@ -126,6 +128,11 @@ pub(super) struct Found {
 }
 
 impl Found {
+    /// Whether the outline is that of the model, as far as so soft a picture shows it.
+    pub(super) fn is_of_model(&self) -> bool {
+        self.model_px < most_model_px(self.spread_px)
+    }
+
     /// Whether the picture is that much likelier with it; and not because less of the outline is seen.
     pub(super) fn is_better(&self) -> bool {
         self.evidence >= LEAST_EVIDENCE && !self.is_less_seen
@@ -297,7 +304,7 @@ impl<'a> Search<'a> {
             let k = &level.intrinsics;
             let step = match held {
                 Some(held) => held.solve(&measured, k, &motion, &self.damping),
-                None => solve(&measured, k, &motion, &self.damping).map(|(step, _)| step),
+                None => solve(&measured, k, &motion, &self.damping),
             };
             if let Some(step) = step {
                 motion = motion.then(&step).within(&self.uncertainty);
@@ -316,7 +323,7 @@ impl<'a> Search<'a> {
             for _ in 0..*n_rounds {
                 let (measured, _) = self.matte(&Placement::of(motion), lit, *band)?;
                 let k = &self.pyramid.level(0).intrinsics;
-                let (step, _) = solve(&measured, k, &motion, &self.damping)?;
+                let step = solve(&measured, k, &motion, &self.damping)?;
                 motion = motion.then(&step).within(&self.uncertainty);
                 if step.norm() < LAST_STEP * self.shape.radius_m {
                     break;

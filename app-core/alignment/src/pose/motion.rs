@@ -26,7 +26,7 @@ pub(super) struct Measured {
     pub(super) robust: f64,
 }
 
-/// The step that moves all pieces as measured, in weighted least squares, with the information that there is on it.
+/// The step that moves all pieces as measured, in weighted least squares.
 ///
 /// `damping` holds what the outline does not tell, such as how a toy of revolution is turned. None where nothing was measured.
 pub(super) fn solve(
@@ -34,10 +34,10 @@ pub(super) fn solve(
     k: &Intrinsics,
     motion: &RigidMotion,
     damping: &Matrix6,
-) -> Option<(Vector6, Matrix6)> {
+) -> Option<Vector6> {
     let (information, gradient) = normal_equations(measured, k, motion, damping);
     let factor = information.cholesky()?;
-    (!measured.is_empty()).then(|| (factor.solve(&gradient), information))
+    (!measured.is_empty()).then(|| factor.solve(&gradient))
 }
 
 fn normal_equations(

@@ -4,11 +4,13 @@
 //! The ratio of the photograph to a shaded model changes far less, so that is what is carried across the outline, as the ratio to the
 //! plate is on the other side.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec2, DVec3, IVec2};
 use nalgebra::{SMatrix, SVector};
 
 use super::placement::Placement;
-use crate::picture::{Color, Level, index_in, noise_deviation, places};
+use crate::picture::{Color, Level, index_in, noise_deviation};
 use crate::raster::{Coverage, project};
 use crate::rigid_motion::RigidMotion;
 use app_scene::geometry::color::linear_of_codes;
@@ -42,9 +44,9 @@ pub(crate) struct Paint {
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
     faces: Vec<Face>,
-    colors: Vec<Color>,
-    uvs: Vec<DVec2>,
-    textures: Vec<Mipmap>,
+    toy: Arc<Toy>,
+    /// Linear light of each code.
+    linear: [f32; 256],
 }
 
 #[derive(Clone, Debug)]
@@ -52,7 +54,6 @@ struct Face {
     corners: [u32; 3],
     color: Color,
     texture: Option<(usize, [Wrap; 2])>,
-    is_double_sided: bool,
 }
 
 impl Paint {
@@ -61,15 +62,10 @@ impl Paint {
         let toy = &scene.toy;
         let mut posed = PosedMesh::default();
         toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
-        let colors = toy.colors_linear().unwrap_or_default().iter();
-        let uvs = toy.uvs().iter();
         Ok(Self {
             faces: faces(toy),
-            colors: colors.map(|[r, g, b, _]| [*r, *g, *b]).collect(),
-            uvs: uvs
-                .map(|[u, v]| DVec2::new(f64::from(*u), f64::from(*v)))
-                .collect(),
-            textures: toy.textures().iter().map(Mipmap::new).collect(),
+            toy: Arc::clone(toy),
+            linear: linear_of_codes(),
             positions: posed.points().collect(),
             normals: posed.normals.iter().map(|normal| normal.as_dvec3()).collect(),
         })
@@ -108,7 +104,7 @@ impl Paint {
         let origin = coverage.origin_px.as_dvec2().extend(0.0);
         for (index, face) in (0..).zip(&self.faces) {
             let corners = face.corners.map(|corner| corners[corner as usize] - origin);
-            if face.is_seen(&corners) {
+            if corners.iter().all(|corner| corner.z > 0.0) {
                 draw(corners, size_px, |place, inverse_depth, weights| {
                     if inverse_depth > nearest[place].inverse_depth {
                         nearest[place] = Hit {
@@ -130,26 +126,25 @@ impl Paint {
         }
     }
 
-    /// The level of a texture of which a texel is about a pixel.
-    fn level_of(&self, face: &Face, corners: &[DVec3]) -> usize {
+    /// Side of the square of a texture that a pixel shows, in texels; at least one.
+    fn texels_of(&self, face: &Face, corners: &[DVec3]) -> f64 {
         let Some((texture, _)) = face.texture else {
-            return 0;
+            return 1.0;
         };
         let area = |[a, b, c]: [DVec2; 3]| (b - a).perp_dot(c - a).abs();
         let pixels = area(face.corners.map(|corner| corners[corner as usize].truncate()));
-        let size = self.textures[texture].size();
-        let texels = area(face.corners.map(|corner| self.uvs[corner as usize] * size));
-        let per_pixel = texels / pixels;
-        #[allow(clippy::cast_possible_truncation, reason = "a logarithm")]
-        let level = if per_pixel > 1.0 && per_pixel.is_finite() {
-            (0.5 * per_pixel.log2()) as usize
-        } else {
-            0
-        };
-        level
+        let size = texture_size(&self.toy.textures()[texture]);
+        let texels = area(face.corners.map(|corner| self.uv(corner as usize) * size));
+        let side = (texels / pixels).sqrt();
+        if side.is_finite() { side.max(1.0) } else { 1.0 }
     }
 
-    fn at(&self, face: &Face, weights: [f64; 3], motion: &RigidMotion, level: usize) -> Surface {
+    fn uv(&self, vertex: usize) -> DVec2 {
+        let [u, v] = self.toy.uvs()[vertex];
+        DVec2::new(f64::from(u), f64::from(v))
+    }
+
+    fn at(&self, face: &Face, weights: [f64; 3], motion: &RigidMotion, texels: f64) -> Surface {
         let mixed = |of: &dyn Fn(usize) -> DVec3| {
             let corners = face.corners.into_iter().zip(weights);
             corners
@@ -160,13 +155,17 @@ impl Paint {
             .turn_of(mixed(&|corner| self.normals[corner]))
             .normalize_or_zero();
         let mut color = face.color;
-        if !self.colors.is_empty() {
-            let of_vertices = mixed(&|corner| DVec3::from_array(self.colors[corner].map(f64::from)));
+        if let Some(colors) = self.toy.colors_linear() {
+            let of_vertices = mixed(&|corner| {
+                let [r, g, b, _] = colors[corner].map(f64::from);
+                DVec3::new(r, g, b)
+            });
             color = scaled(color, of_vertices.as_vec3().to_array());
         }
         if let Some((texture, wraps)) = face.texture {
-            let uv = mixed(&|corner| self.uvs[corner].extend(0.0)).truncate();
-            color = scaled(color, self.textures[texture].at(uv, wraps, level));
+            let uv = mixed(&|corner| self.uv(corner).extend(0.0)).truncate();
+            let texture = &self.toy.textures()[texture];
+            color = scaled(color, mean_texel(texture, &self.linear, (uv, wraps), texels));
         }
         Surface { color, normal }
     }
@@ -176,27 +175,16 @@ fn faces(toy: &Toy) -> Vec<Face> {
     let parts = toy.parts().iter().flat_map(|part| {
         let material = &toy.materials()[part.material];
         let [r, g, b, _] = material.base_color_linear;
-        let has_uvs = !toy.uvs().is_empty();
-        let texture = material.base_color_texture.as_ref().filter(|_| has_uvs);
+        let texture = material.base_color_texture.as_ref();
         let texture = texture.map(|texture| (texture.texture, [texture.wrap_u, texture.wrap_v]));
         let corners = toy.indices()[part.indices.start as usize..part.indices.end as usize].chunks_exact(3);
         corners.map(move |corners| Face {
             corners: [corners[0], corners[1], corners[2]],
             color: [r, g, b],
             texture,
-            is_double_sided: material.double_sided,
         })
     });
     parts.collect()
-}
-
-impl Face {
-    /// Whether it lies before the eye and shows a side that can be seen.
-    fn is_seen(&self, [a, b, c]: &[DVec3; 3]) -> bool {
-        let is_before = a.z.min(b.z).min(c.z) > 0.0;
-        // Rows go down: triangles that face the eye turn to the left.
-        is_before && (self.is_double_sided || (*b - *a).truncate().perp_dot((*c - *a).truncate()) < 0.0)
-    }
 }
 
 /// Calls `pixel` with the index, one over the depth and the corners' weights of each pixel whose centre a projected triangle covers.
@@ -278,8 +266,17 @@ impl Seen<'_> {
         let hit = self.nearest[index_in(self.size_px, at - self.origin_px)?];
         (hit.inverse_depth > 0.0).then(|| {
             let face = &self.paint.faces[hit.face as usize];
-            let level = self.paint.level_of(face, &self.corners);
-            self.paint.at(face, hit.weights, &self.motion, level)
+            let texels = self.paint.texels_of(face, &self.corners);
+            let surface = self.paint.at(face, hit.weights, &self.motion, texels);
+            // Rows go down: triangles whose outer side is seen turn to the left. Of others it is the inner side that receives light.
+            let [a, b, c] = face
+                .corners
+                .map(|corner| self.corners[corner as usize].truncate());
+            let is_inner = (b - a).perp_dot(c - a) > 0.0;
+            Surface {
+                normal: if is_inner { -surface.normal } else { surface.normal },
+                ..surface
+            }
         })
     }
 }
@@ -379,6 +376,21 @@ fn fitted(pixels: &[(Surface, Color)], channel: usize) -> Basis {
     factors.unwrap_or_else(Basis::zeros)
 }
 
+/// The light that a toy is seen in.
+#[derive(Clone, Copy)]
+pub(super) struct Lit<'a> {
+    pub(super) paint: &'a Paint,
+    pub(super) light: &'a Light,
+}
+
+impl<'a> Lit<'a> {
+    /// What the toy should look like where it is thought to be.
+    pub(super) fn shaded(self, placement: &Placement, level: &Level, coverage: &Coverage) -> Shaded<'a> {
+        self.paint
+            .shaded(placement, self.light, &level.intrinsics, coverage)
+    }
+}
+
 /// What the toy should look like, over a rectangle of the picture.
 pub(super) struct Shaded<'a> {
     seen: Seen<'a>,
@@ -392,53 +404,51 @@ impl Shaded<'_> {
     }
 }
 
-/// A texture in linear light, each level half as large as the one before.
-#[derive(Clone, Debug)]
-struct Mipmap {
-    levels: Vec<(IVec2, Vec<Color>)>,
+fn texture_size(texture: &Texture) -> DVec2 {
+    DVec2::new(f64::from(texture.width_px), f64::from(texture.height_px))
 }
 
-impl Mipmap {
-    fn new(texture: &Texture) -> Self {
-        let table = linear_of_codes();
-        let texels = texture.rgba8_srgb.chunks_exact(4);
-        let texels = texels.map(|texel| [0, 1, 2].map(|channel| table[usize::from(texel[channel])]));
-        let size = IVec2::new(texture.width_px.cast_signed(), texture.height_px.cast_signed());
-        let mut levels = vec![(size, texels.collect::<Vec<Color>>())];
-        while let Some((size, texels)) = levels.last().filter(|(size, _)| size.min_element() > 1) {
-            let half = *size / 2;
-            let mean = |at: IVec2| {
-                let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE]
-                    .map(|step| index_in(*size, 2 * at + step).map_or([0.0; 3], |index| texels[index]));
-                [0, 1, 2].map(|channel| 0.25 * four.iter().map(|texel| texel[channel]).sum::<f32>())
-            };
-            levels.push((half, places(half).map(mean).collect()));
+/// Mean of some texels around a place, in linear light, over a square of a side in texels; (0, 0) is the corner of the first texel.
+fn mean_texel(texture: &Texture, linear: &[f32; 256], (uv, wraps): (DVec2, [Wrap; 2]), side: f64) -> Color {
+    /// Along each side of the square: the light of a square of more texels is about that of as many of them.
+    const MOST_TEXELS: f64 = 4.0;
+    let size = texture_size(texture);
+    let n = side.min(MOST_TEXELS).round();
+    let index = |at: DVec2| {
+        let [x, y] = [
+            texel(at.x / size.x, wraps[0], texture.width_px),
+            texel(at.y / size.y, wraps[1], texture.height_px),
+        ];
+        4 * (y as usize * texture.width_px as usize + x as usize)
+    };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 4")]
+    let steps = 0..n as u32;
+    let offset = |step: u32| ((f64::from(step) + 0.5) / n - 0.5) * side;
+    let mut sum = [0.0; 3];
+    for y in steps.clone() {
+        for x in steps.clone() {
+            let at = index(uv * size + DVec2::new(offset(x), offset(y)));
+            let codes = texture.rgba8_srgb.get(at..at + 3).unwrap_or(&[u8::MAX; 3]);
+            sum = [0, 1, 2].map(|channel| sum[channel] + linear[usize::from(codes[channel])]);
         }
-        Self { levels }
     }
+    #[allow(clippy::cast_possible_truncation, reason = "1 to 16")]
+    sum.map(|sum| sum / (n * n) as f32)
+}
 
-    /// In texels.
-    fn size(&self) -> DVec2 {
-        self.levels[0].0.as_dvec2()
-    }
-
-    /// The nearest texel; (0, 0) is the corner of the first one.
-    fn at(&self, uv: DVec2, wraps: [Wrap; 2], level: usize) -> Color {
-        let (size, texels) = &self.levels[level.min(self.levels.len() - 1)];
-        let place = |at: f64, wrap: Wrap, n: i32| {
-            let at = match wrap {
-                Wrap::Repeat => at.rem_euclid(1.0),
-                Wrap::MirroredRepeat => 1.0 - (at.rem_euclid(2.0) - 1.0).abs(),
-                Wrap::ClampToEdge => at,
-            };
-            #[allow(clippy::cast_possible_truncation, reason = "a place in a texture")]
-            let place = (at * f64::from(n)).floor().clamp(0.0, f64::from(n - 1)) as i32;
-            place
-        };
-        let at = IVec2::new(place(uv.x, wraps[0], size.x), place(uv.y, wraps[1], size.y));
-        index_in(*size, at)
-            .and_then(|index| texels.get(index))
-            .copied()
-            .unwrap_or([1.0; 3])
-    }
+/// The texel that a coordinate falls on, of so many along it.
+fn texel(at: f64, wrap: Wrap, n: u32) -> u32 {
+    let at = match wrap {
+        Wrap::Repeat => at.rem_euclid(1.0),
+        Wrap::MirroredRepeat => 1.0 - (at.rem_euclid(2.0) - 1.0).abs(),
+        Wrap::ClampToEdge => at,
+    };
+    let most = f64::from(n.saturating_sub(1));
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a place in a texture"
+    )]
+    let texel = (at * f64::from(n)).floor().clamp(0.0, most) as u32;
+    texel
 }

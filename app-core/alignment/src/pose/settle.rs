@@ -10,6 +10,10 @@ use super::standing::{DEVIATION_M, Standing};
 use crate::report::PoseDeviation;
 use app_scene::scene::Intrinsics;
 
+/// A pose is another one where the picture is so much likelier with it, as a natural logarithm.
+///
+/// Right poses of disturbed starts have 10 and more, exact poses against those found from them at most 3.
+pub(super) const LEAST_EVIDENCE: f64 = 6.0;
 /// The whole outline may be out of the toy, or within it, by as much, in pixels: one deviation. A halo, or a model that is as much too thin.
 const OFFSET_PX: f64 = 0.1;
 /// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and McClure 1987).
@@ -214,7 +218,13 @@ impl Misfit {
 
     /// Logarithm of how much likelier the picture is with this outline than with another one.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
-        let n = self.length_px.min(other.length_px) / Self::EVIDENCE_PX;
+        // Of an outline that cannot be measured nothing is known but that.
+        let length_px = if other.length_px > 0.0 {
+            self.length_px.min(other.length_px)
+        } else {
+            self.length_px
+        };
+        let n = length_px / Self::EVIDENCE_PX;
         // A loss of nothing is that of a picture without noise.
         let least_px2 = f64::EPSILON;
         0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln()

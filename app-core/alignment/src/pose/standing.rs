@@ -65,6 +65,15 @@ impl Standing {
         }
     }
 
+    /// Logarithm of how much likelier the heights of the feet are once they are moved.
+    pub(super) fn evidence(&self, moved: impl Fn(DVec3) -> DVec3) -> f64 {
+        let squares =
+            |point: DVec3, height_m: f64| ((self.plane.height_m(point) - height_m) / DEVIATION_M).powi(2);
+        let feet = self.points.iter().zip(self.heights_m);
+        feet.map(|(point, height_m)| 0.5 * (squares(*point, height_m) - squares(moved(*point), height_m)))
+            .sum()
+    }
+
     /// How the toy is on the plane once its points are moved.
     pub(super) fn stand(&self, moved: impl Fn(DVec3) -> DVec3) -> Stand {
         let feet = self.points.map(moved);

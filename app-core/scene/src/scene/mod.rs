@@ -55,7 +55,8 @@ pub struct Scene {
     pub resting: Option<bool>,
     /// Planes that catch the shadow; at least one, in any order.
     pub receivers: Vec<Receiver>,
-    /// Known lights, unless a frame brings its own. Without any, alignment looks for them; frames pass through where it finds none.
+    /// Known lights, unless a frame brings its own. Without any, alignment looks for them; where it finds none the toy moves in light from all
+    /// around.
     pub lights: Vec<Light>,
     /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
     pub plates: Vec<Plate>,

@@ -115,7 +115,7 @@ pub struct CaptureRecord {
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub receivers: Vec<ReceiverRecord>,
     /// Lights whose shadows are moved, in any order; those beyond the fourth are left out, with a warning. Without any,
-    /// the probe tells them, or alignment looks for them by the toy's shadow; else frames pass through, with a warning.
+    /// the probe tells them, or alignment looks for them by the toy's shadow; else the toy moves in light from all around, with a warning.
     #[serde(default)]
     pub lights: Vec<LightRecord>,
     /// Plates: photographs of the place before the toy was put there, in any order. What none shows is estimated, or

@@ -116,10 +116,13 @@ fn against_listed(error: &LightError) -> String {
     )
 }
 
+/// Ratios of sizes that differ from 1 by rounding.
+const SAME_SIZE: f64 = 1e-6;
+
 /// How well a pose is known that was found, and in which size and how soft a picture.
 fn how_well(pose: &PoseAlignment) -> String {
     let size = match pose.size_ratio {
-        1.0 => String::new(),
+        ratio if (ratio - 1.0).abs() < SAME_SIZE => String::new(),
         ratio => format!(", {ratio:.4} times the size given"),
     };
     format!(
