@@ -327,9 +327,10 @@ impl Aligner {
                 camera,
                 camera_report,
                 world_from_object: found.world_from_object,
+                plate_spread_px: found.plate_spread_px,
                 report: found.report,
             },
-            photograph,
+            photograph: photograph.with_plate_spread(found.plate_spread_px),
             input: input_seen,
         })
     }

@@ -56,6 +56,16 @@ impl Photograph {
         }
     }
 
+    /// With the plate as soft as a pose's search found the photograph; 0 leaves it as it was taken.
+    pub(super) fn with_plate_spread(mut self, deviation_px: f64) -> Self {
+        if deviation_px > 0.0
+            && let Some(pyramid) = self.pyramid.with_plate_spread(deviation_px)
+        {
+            self.pyramid = pyramid;
+        }
+        self
+    }
+
     /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
     fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
         (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
@@ -192,6 +202,7 @@ impl Photograph {
         let Some(found) = found else {
             return FoundPose {
                 world_from_object: *start,
+                plate_spread_px: 0.0,
                 report: None,
             };
         };
@@ -205,6 +216,7 @@ impl Photograph {
         let picture_px = self.pyramid.picture_px();
         FoundPose {
             world_from_object,
+            plate_spread_px: found.plate_spread_px,
             report: Some(PoseAlignment {
                 is_applied: world_from_object != input.world_from_object,
                 is_held: !is_better && *start != input.world_from_object,
@@ -378,6 +390,8 @@ pub(super) type Discovered = Result<Vec<DiscoveredLight>, NoLight>;
 pub(super) struct FoundPose {
     /// From object space.
     pub(super) world_from_object: DMat4,
+    /// That which makes the plate as soft as the photograph, in pixels of the largest level; 0 if it is so as it was taken.
+    pub(super) plate_spread_px: f64,
     /// None where too little of the outline is seen.
     pub(super) report: Option<PoseAlignment>,
 }

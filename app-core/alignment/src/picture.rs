@@ -178,6 +178,15 @@ impl Pyramid {
         Self { levels, picture_px }
     }
 
+    /// With the plate spread by a Gaussian, whose deviation is in pixels of the largest level; none if there is no plate.
+    pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
+        let mut levels = vec![self.levels[0].with_plate_spread(deviation_px)?];
+        for above in 0..Self::SMALLEST {
+            levels.push(levels[above].halved());
+        }
+        Some(Self { levels, ..*self })
+    }
+
     /// Pixels of the photograph in one of the largest level.
     pub(super) fn picture_px(&self) -> f64 {
         self.picture_px

@@ -25,6 +25,7 @@ pub(super) struct AlignedView {
     pub(super) camera: Camera,
     pub(super) camera_report: Option<CameraAlignment>,
     pub(super) world_from_object: DMat4,
+    pub(super) plate_spread_px: f64,
     pub(super) report: Option<PoseAlignment>,
 }
 
@@ -36,7 +37,7 @@ impl Seen {
             .with_camera(view.camera)
             .with_world_from_object(view.world_from_object);
         Self {
-            photograph: Photograph::new(scene, &input, None),
+            photograph: Photograph::new(scene, &input, None).with_plate_spread(view.plate_spread_px),
             view,
             input,
         }

@@ -108,6 +108,7 @@ impl Search<'_> {
             deviation: settled.deviation,
             model_px: smoothed_px(&settled.measured),
             spread_px: seen.optics.spread_px,
+            plate_spread_px: self.softened.as_ref().map_or(0.0, |(_, spread_px)| *spread_px),
             stands: standing.map(|(standing, _)| {
                 let found = standing.stand(|point| settled.placement.apply(point));
                 [standing.stand(|point| point), found]
@@ -178,7 +179,7 @@ impl Search<'_> {
         };
         let (of_softened, its_misfit) = found(&softened);
         if its_misfit < misfit {
-            self.softened = Some(softened);
+            self.softened = Some((softened, optics.spread_px));
             of_softened
         } else {
             optics
@@ -188,7 +189,8 @@ impl Search<'_> {
     /// The pieces by the codes beside them; none where that is too little.
     fn edges(&mut self, placement: &Placement, seen: Seen<'_>) -> Option<Vec<Measured>> {
         let (coverage, elements) = self.outline(placement, self.pyramid.level(0));
-        let level = self.softened.as_ref().unwrap_or_else(|| self.pyramid.level(0));
+        let softened = self.softened.as_ref().map(|(level, _)| level);
+        let level = softened.unwrap_or_else(|| self.pyramid.level(0));
         let shaded = seen.lit.map(|lit| lit.shaded(placement, level, &coverage));
         let beside = Beside {
             level,

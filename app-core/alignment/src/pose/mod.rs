@@ -123,6 +123,8 @@ pub(super) struct Found {
     pub(super) model_px: f64,
     /// Standard deviation of the spread that the camera gives an edge, in pixels.
     pub(super) spread_px: f64,
+    /// That which makes the plate as soft as the photograph; 0 if it is so as it was taken.
+    pub(super) plate_spread_px: f64,
     /// How it is on the plane that it is to stand on, as given and as found; none where it floats.
     pub(super) stands: Option<[Stand; 2]>,
 }
@@ -219,8 +221,9 @@ struct Search<'a> {
     raster: Rasterizer,
     damping: Matrix6,
     uncertainty: PoseUncertainty,
-    /// The largest level with its plate as soft as the photograph; none where the plate is as it was taken.
-    softened: Option<Level>,
+    /// The largest level with its plate as soft as the photograph, and by how many pixels that was spread; none if the plate is so as it was
+    /// taken.
+    softened: Option<(Level, f64)>,
 }
 
 impl<'a> Search<'a> {
