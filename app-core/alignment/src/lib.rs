@@ -19,7 +19,7 @@
 //! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out, but for
 //! the last of them. A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
 //!
-//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.3 to 0.6 s for a pose, once a view, and 1 to 7 s for the
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and 1 to 7 s for the
 //! lights, once a session: more the more triangles and lights there are. A camera takes about as long as a pose, once a view and
 //! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and a focal length 2 to 12 s more, once a session.
 

@@ -88,7 +88,7 @@ impl Picture {
         Some(sum)
     }
 
-    /// Spread by a Gaussian of so many pixels; what is near to the border, or to what is unknown, is unknown.
+    /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
     fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
         let along = |from: &Self, axis: IVec2| {

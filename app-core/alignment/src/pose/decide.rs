@@ -13,26 +13,25 @@ use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
 
-/// A toy on its plane is not doubted while the picture speaks against it by less; feet as high as they were given, or another size, are
-/// then as likely as they are unlikely: half of what decides.
+/// If the picture speaks against a toy on its plane by more than that, half of what decides, its feet are tried as high as they were given,
+/// and the toy in another size; these are taken if they are likelier by as much.
 const UNDOUBTED: f64 = 0.5 * LEAST_EVIDENCE;
-/// Plates are tried as soft as the photograph where that is spread by more, in pixels.
+/// If a photograph is spread by more, in pixels, its plate is tried as soft as it is. A picture of a sharp lens, compressed or not, is
+/// spread by .6 at most.
 const SOFT_PX: f64 = 0.7;
-/// How often light and optics are looked at anew, before the last time.
-const N_LOOKS: usize = 1;
-/// Most rounds; each leaves about half of what the one before left.
+/// Most rounds of one search; each leaves about half of what the one before left.
 const N_ROUNDS: usize = 8;
-/// A step that moves the toy by less, over its radius, is the last.
+/// A step that moves the toy by less, over its radius, is the last: a thousandth of a pixel.
 const LAST_STEP: f64 = 2e-5;
-/// Half the band in which poses are compared that are some pixels apart, less what a spread adds.
+/// The band is wider by as much on either side than an edge of that spread needs, in pixels, so that poses some pixels apart can be compared.
 const COMPARED_PX: f64 = 1.0;
-/// Feet that are given nearer to the plane, in metres, are given on it.
+/// Feet that are given nearer to the plane, in metres, are given on it: about the deviation of feet that stand.
 const ON_PLANE_M: f64 = 2e-4;
-/// Codes are those of an outline where its loss is less, in square pixels, and more so where the picture is spread by a pixel. Right
-/// outlines came to .04 in sharp pictures, compressed or not, and to .12 in one that is spread by 2 px.
+/// An outline is met if its loss is less, in square pixels, and by how much more for each pixel of spread. Right outlines came to .04 in
+/// sharp pictures, compressed or not, and to .12 in pictures that are spread by 2 px.
 const MET_PX2: f64 = 0.06;
 const MET_OF_SPREAD: f64 = 0.04;
-/// Sizes beyond are not those of the same toy, as a logarithm.
+/// A toy whose size differs by more, as a logarithm, is another toy; as much as the scale of a world may be off.
 const MOST_SIZE: f64 = 0.03;
 
 /// What is known before the last rounds.
@@ -40,6 +39,13 @@ const MOST_SIZE: f64 = 0.03;
 struct Seen<'a> {
     lit: Option<Lit<'a>>,
     optics: Optics,
+}
+
+/// Where the size of a toy comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SizeOf {
+    Given,
+    Found,
 }
 
 /// Where the search came to rest.
@@ -57,23 +63,14 @@ impl Search<'_> {
         let Subject { shape, paint, plane } = subject;
         let light = self.light(paint, &Placement::of(motion));
         let lit = light.as_ref().map(|light| Lit { paint, light });
-        let mut start = Placement::of(self.fine(motion, lit, wide_bands())?);
-        // What a camera and the light do to the outline is seen best where that is nearly met.
-        for _ in 0..N_LOOKS {
-            let light = self.light(paint, &start);
-            let lit = light.as_ref().map(|light| Lit { paint, light });
-            let optics = self.optics(&start, lit);
-            start = self
-                .settled(Seen { lit, optics }, &start, (None, N_ROUNDS))?
-                .placement;
-        }
+        let start = Placement::of(self.fine(motion, lit, wide_bands())?);
         let light = self.light(paint, &start);
-        let seen = {
-            let lit = light.as_ref().map(|light| Lit { paint, light });
-            let optics = self.optics(&start, lit);
-            Seen { lit, optics }
-        };
-        let free = self.settled(seen, &start, (None, N_ROUNDS))?;
+        let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
+        // What a camera and the light do to the outline is seen best once that is nearly met.
+        let start = self.settled(seen, &start, None)?.placement;
+        let light = self.light(paint, &start);
+        let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
+        let free = self.settled(seen, &start, None)?;
         let standing = plane.and_then(|(plane, is_certain)| Some((Standing::on(shape, plane)?, is_certain)));
         let settled = match &standing {
             Some((standing, true)) => self.on_plane(seen, &free, standing),
@@ -118,8 +115,8 @@ impl Search<'_> {
 
     /// The toy on its plane, whatever the picture says; in another size where that is so much likelier.
     fn on_plane(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
-        let own = self.settled(seen, &free.placement, (Some((standing, false)), N_ROUNDS))?;
-        let resized = self.settled(seen, &own.placement, (Some((standing, true)), N_ROUNDS));
+        let own = self.settled(seen, &free.placement, Some((standing, SizeOf::Given)))?;
+        let resized = self.settled(seen, &own.placement, Some((standing, SizeOf::Found)));
         let resized = resized.filter(|resized| {
             let is_same_toy = resized.placement.size.ln().abs() < MOST_SIZE;
             is_same_toy && resized.misfit.likelier_than(&own.misfit) >= LEAST_EVIDENCE
@@ -131,7 +128,7 @@ impl Search<'_> {
     /// speaks against all of these.
     fn stood(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
         let is_likely = |settled: &Settled| free.misfit.likelier_than(&settled.misfit) < LEAST_EVIDENCE;
-        let on_plane = self.settled(seen, &free.placement, (Some((standing, false)), N_ROUNDS))?;
+        let on_plane = self.settled(seen, &free.placement, Some((standing, SizeOf::Given)))?;
         let is_given_elsewhere = standing.away_m() > ON_PLANE_M;
         let costs = free.misfit.likelier_than(&on_plane.misfit);
         if costs < UNDOUBTED || (costs < LEAST_EVIDENCE && !is_given_elsewhere) {
@@ -140,9 +137,9 @@ impl Search<'_> {
         let mut others = Vec::new();
         if is_given_elsewhere {
             let heights = standing.as_given();
-            others.extend(self.settled(seen, &free.placement, (Some((&heights, false)), N_ROUNDS)));
+            others.extend(self.settled(seen, &free.placement, Some((&heights, SizeOf::Given))));
         }
-        let resized = self.settled(seen, &free.placement, (Some((standing, true)), N_ROUNDS));
+        let resized = self.settled(seen, &free.placement, Some((standing, SizeOf::Found)));
         others.extend(resized.filter(|resized| resized.placement.size.ln().abs() < MOST_SIZE));
         let best = others
             .into_iter()
@@ -155,6 +152,11 @@ impl Search<'_> {
         let level = self.pyramid.level(0);
         let (coverage, _) = self.outline(placement, level);
         paint.light(placement, level, &coverage)
+    }
+
+    fn seen<'a>(&mut self, placement: &Placement, lit: Option<Lit<'a>>) -> Seen<'a> {
+        let optics = self.optics(placement, lit);
+        Seen { lit, optics }
     }
 
     /// What the camera does to an outline; where it is soft, with the plate as soft or as it was taken, whichever explains more.
@@ -202,23 +204,23 @@ impl Search<'_> {
         enough(measured, &elements).map(|(measured, _)| measured)
     }
 
-    /// With all that is free; standing with or without its size, for so many rounds.
+    /// With all that is free; the feet of a toy that stands are on their plane, and its size may be looked for.
     fn settled(
         &mut self,
         seen: Seen<'_>,
         start: &Placement,
-        (standing, n_rounds): (Option<(&Standing, bool)>, usize),
+        standing: Option<(&Standing, SizeOf)>,
     ) -> Option<Settled> {
         let pyramid = self.pyramid;
         let known = Known {
             k: &pyramid.level(0).intrinsics,
             radius_m: self.shape.radius_m,
             standing: standing.map(|(standing, _)| standing),
-            is_size_open: standing.is_some_and(|(_, is_size_open)| is_size_open),
+            is_size_open: standing.is_some_and(|(_, size)| size == SizeOf::Found),
         };
         let mut placement = *start;
         let mut measured = self.edges(&placement, seen)?;
-        for _ in 0..n_rounds {
+        for _ in 0..N_ROUNDS {
             let step = Balance::new(&measured, &placement, known).step()?;
             placement = placement.then(&step, &self.uncertainty);
             measured = self.edges(&placement, seen)?;

@@ -1,7 +1,7 @@
 //! Where the outline is to a fraction of a pixel, by how much of each pixel beside it the toy covers.
 //!
-//! A pixel there is a mixture of toy and background: alpha matting, with a background that the plate tells. Colours are
-//! carried across the band from just inside and just outside it.
+//! A pixel there is a mixture of toy and background: alpha matting, with a background that the plate shows. What lies on either
+//! side is carried across the band (`sides`).
 
 use glam::IVec2;
 

@@ -17,23 +17,23 @@ use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Intrinsics, Scene};
 use app_scene::toy::{PosedMesh, Texture, Toy, ToyError, Wrap};
 
-/// Spherical harmonics of the first three orders tell what a matt surface receives from all around.
+/// Spherical harmonics of the first three orders describe what a matt surface receives from all around.
 ///
 /// Source: Ramamoorthi and Hanrahan 2001.
 const N_BASIS: usize = 9;
-/// Holds what the visible side of a toy does not tell, over the weight of its pixels: each order beyond the first.
+/// Weight of the prior that holds each order beyond the first, over that of the pixels: the visible side of a toy does not determine all.
 const PRIOR: f64 = 1e-3;
-/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light.
+/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light: shading by facets and contact is off by as much.
 const N_ROUNDS: usize = 4;
 const ROBUST: f64 = 0.15;
 /// Light that a surface receives is no less than this part of the mean: what is darker is a shadow, which the model does not have.
 const DARKEST: f32 = 0.15;
-/// Fewer pixels tell no light; more than so many tell no more.
+/// Fewer pixels determine no light; more than the second number add nothing.
 const LEAST_PIXELS: usize = 100;
 const MOST_PIXELS: usize = 2000;
-/// The light is told by pixels this far within the outline, in pixels.
+/// The light is fitted to pixels this far within the outline, in pixels.
 const WITHIN_PX: i32 = 2;
-/// Paints darker than this tell no light.
+/// Paints are taken to be no darker: what they receive could not be divided by them.
 const DARKEST_PAINT: f32 = 0.01;
 
 type Basis = SVector<f64, N_BASIS>;

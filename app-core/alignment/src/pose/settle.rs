@@ -10,35 +10,36 @@ use super::standing::{DEVIATION_M, Standing};
 use crate::report::PoseDeviation;
 use app_scene::scene::Intrinsics;
 
-/// A pose is another one where the picture is so much likelier with it, as a natural logarithm.
+/// A found pose is taken in place of another one if the picture is likelier with it by that natural logarithm.
 ///
 /// Right poses of disturbed starts have 10 and more, exact poses against those found from them at most 3.
 pub(super) const LEAST_EVIDENCE: f64 = 6.0;
-/// The whole outline may be out of the toy, or within it, by as much, in pixels: one deviation. A halo, or a model that is as much too thin.
+/// One deviation of how far the whole outline may be out of the toy, or within it, in pixels: by a halo, or a model that is too thin.
 const OFFSET_PX: f64 = 0.1;
 /// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and McClure 1987).
 const ROBUST: f64 = 3.0;
 const LEAST_ROBUST_PX: f64 = 0.1;
 const MOST_ROBUST_PX: f64 = 0.5;
-/// Pieces along the outline that err alike, by halos, textures and what a compressed picture has of them.
+/// How many pieces along the outline err alike: halos, textures and the blocks of a compressed picture span some ten pixels.
 const ALIKE: f64 = 12.0;
-/// A step that the outline does not tell is held back as by this deviation, over the toy's radius (Levenberg 1944).
+/// One deviation of a step, over the toy's radius, which holds back what the outline does not determine (Levenberg 1944).
 const STEP: f64 = 0.2;
-/// Deviation of the logarithm of the size where it is held, and where it is looked for.
+/// One deviation of the logarithm of the size: if it is held, and if it is looked for.
 const HELD: f64 = 1e-6;
 const FREE: f64 = 0.02;
 /// Side of the squares of the picture within which residuals err alike, in pixels.
 const BLOCK_PX: i32 = 40;
-/// What deviations are taken for, over those that the blocks tell: there are few of them.
+/// What is claimed over what the blocks say, of which there are few; and over the root mean square of the outline, by which the model itself
+/// may be off. Chosen on five scenes through six cameras so that nine errors in ten are within two deviations; four other scenes
+/// then had 97 %.
 const OF_BLOCKS: f64 = 2.5;
-/// And, over the root mean square of the outline, what the model itself may be off by.
 const OF_MISFIT: f64 = 0.5;
 
 /// Deviation of the smoothing along the outline, in pixels.
 const SMOOTHED_PX: f64 = 10.0;
 /// Pieces whose normals differ by more, as a cosine, are on another rim.
 const SAME_RIM: f64 = 0.5;
-/// Pieces count in proportion to their precision below that one, in 1/px2, and above it alike.
+/// Pieces count in proportion to their precision up to about that one, in 1/px2, and alike beyond it.
 const PRECISE: f64 = 50.0;
 
 /// What is known of a toy's pose besides its outline.

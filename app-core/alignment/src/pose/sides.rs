@@ -14,7 +14,7 @@ const FLOOR: f32 = 5e-4;
 /// Samples on either side of the band, and where the first is beyond it, in pixels.
 const N_SAMPLES: i32 = 3;
 const BEYOND_PX: f64 = 0.75;
-/// Covered as much, a pixel shows the toy alone; the same for its background.
+/// A pixel that is covered but for that part shows the toy alone; one that is covered by no more, the background.
 const ALONE: f32 = 0.001;
 
 /// What lies beside a picture's outline.

@@ -4,7 +4,7 @@ use app_core::alignment::PoseDeviation;
 use app_core::frame::FrameInput;
 use glam::{DMat4, DVec3};
 
-/// Errors within so many deviations are as claimed.
+/// An error within that number of deviations is as claimed.
 const WITHIN: f64 = 2.0;
 
 /// An error of a pose, and the deviation that was claimed for it: along the view and beside it in millimetres, of the turn in degrees.
