@@ -74,7 +74,7 @@ impl Line {
             0 | 1 => parts[number] = step,
             2 => out.turn_rad += step,
             3 => out.half_length *= step.exp(),
-            4 => parts[SPREAD] = self.middle.spread * step.exp_m1(),
+            4 => parts[SPREAD] = self.middle.spread * (step.exp() - 1.0),
             _ => parts[NEARNESS] = step / radius_m,
         }
         if number == 5 && self.middle.is_far() {
