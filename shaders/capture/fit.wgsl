@@ -113,7 +113,7 @@ fn receiver_equation(seen: Observation) -> Equation {
     eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
     predicted += fit.receivers[step.receiver].direct_fraction[i].rgb * eq.columns[2u + i];
   }
-  if globals.n_lights == 0u { eq.columns[UNSHADED_COLUMN] = eq.value - b; }
+  if has_no_light() { eq.columns[UNSHADED_COLUMN] = eq.value - b; }
   eq.weight = seen.weight;
   eq.clipped = seen.clipped;
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, CAUCHY_SCALE * b); }

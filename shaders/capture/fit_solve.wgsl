@@ -291,7 +291,7 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   }
   // One invocation for all channels: a store to a component of a vector in memory may touch the others.
   if lane > 0u { return; }
-  // Judged at last: weights follow the shadow until then.
+  // Judged in the last step: weights follow the shadow until then.
   let is_shadow_told = !has_no_light() || step.is_last == 0u || is_ambient_shadow_told();
   for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_told); }
 }

@@ -51,6 +51,10 @@ struct Globals {
 
 @group(0) @binding(0) var<uniform> globals: Globals;
 
+fn has_no_light() -> bool {
+  return globals.n_lights == 0u;
+}
+
 // The texel of the toy box at a texel of the region; `is_in_toy_box` tells whether there is one.
 fn box_texel(in_region: vec2i) -> vec2i {
   return in_region - vec2i(globals.toy_box_origin_px);

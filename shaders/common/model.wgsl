@@ -24,9 +24,9 @@ fn plate_falloff(point: ReceiverPoint) -> vec3f {
   return total;
 }
 
-// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it, but that no light is known.
+// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it, unless no light is known.
 fn bounced(ambient: f32) -> f32 {
-  return select(ambient, 1.0, globals.n_lights == 0u) * (1.0 - ambient);
+  return select(ambient, 1.0, has_no_light()) * (1.0 - ambient);
 }
 
 // What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.

@@ -7,8 +7,9 @@
 // which there is none. Measured: under two overcast skies .6 and more, of an office's wide light .02 to .03, under one lamp .3 to .6.
 const LEAST_EXPLAINED: f32 = 0.1;
 
-fn has_no_light() -> bool {
-  return globals.n_lights == 0u;
+// Of the plate, from sums of what is left of the ambient light and of what is taken of it.
+fn squares_of_plate() -> f32 {
+  return matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
 }
 
 // Whether a shadow of the ambient light explains enough of what the frame shows beside the plate: in squares, over all channels, and
@@ -20,7 +21,7 @@ fn is_ambient_shadow_told() -> bool {
     load_equations(channel, 1u);
     // Sums of products of the plate, of what an ambient shadow of full strength takes of it, and of what is beside it.
     let first = UNSHADED_COLUMN * N_COLUMNS;
-    let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
+    let plate_plate = squares_of_plate();
     if plate_plate <= 0.0 { continue; }
     let plate_taken = matrix[1] + matrix[N_COLUMNS + 1u];
     let plate_beside = matrix[first] + matrix[first + 1u];
@@ -36,7 +37,7 @@ fn is_ambient_shadow_told() -> bool {
 // As bright below the toy as in the open.
 fn solve_unshadowed(channel: u32) {
   load_equations(channel, 1u);
-  let plate_plate = matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
+  let plate_plate = squares_of_plate();
   let clipped = sums[channel * N_SUMS + CLIPPED_SUM] / matrix[0];
   let gain_weight = select(PRIOR_WEIGHT, SAME_GAIN_WEIGHT, step.receiver > 0u) * plate_plate;
   let correction = (unknowns[0] + unknowns[1] + gain_weight) / (plate_plate + gain_weight);

@@ -147,7 +147,7 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let before = shown_model(b.rgb, clipped, models[0]);
   let after = shown_model(b.rgb, clipped, models[1]);
   // How strong a shadow of the ambient light is stays open where it is all that is known.
-  let most = select(largest(abs(after - before)), abs(a_after - a_before), globals.n_lights == 0u);
+  let most = select(largest(abs(after - before)), abs(a_after - a_before), has_no_light());
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);

@@ -14,7 +14,7 @@ use app_scene::toy::ToyError;
 pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Vec<Receiver>>, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
     let planes = scene.receivers.iter().map(plane_of);
-    let Some(plane) = planes.max_by(|a, b| a.normal.y.total_cmp(&b.normal.y)) else {
+    let Some(plane) = Plane::most_level(planes, DVec3::Y) else {
         return Ok(None);
     };
     Ok(feet(&shape, &plane).map(|[a, b, c]| {

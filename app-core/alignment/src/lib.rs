@@ -45,6 +45,7 @@ mod ratio;
 mod receivers;
 pub(crate) mod report;
 mod rigid_motion;
+mod robust;
 mod shape;
 mod view;
 mod warning;
@@ -93,8 +94,8 @@ pub struct Alignment {
     /// The lights; none where those that were given stay.
     pub lights: Option<Arc<[Light]>>,
     /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
-    /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the first frame is the one that the
-    /// [`Aligner`] was made with.
+    /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
+    /// first frame is the one that the [`Aligner`] was made with.
     pub scene: Option<Arc<Scene>>,
     /// What was found.
     pub report: AlignmentReport,
@@ -205,9 +206,9 @@ impl Aligner {
 
     /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
     /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
-    /// moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of what is
-    /// there without lights, and a light move by enough to show. Where the picture shows the toy nowhere near, it is where the input
-    /// says.
+    /// moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels counted once; the loss of the shadows must
+    /// fall by a twenty-fifth and to less than a tenth of what is there without lights, and a light move by enough to show. Where the
+    /// picture shows the toy nowhere near, it is where the input says.
     ///
     /// # Errors
     /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.

@@ -82,39 +82,47 @@ impl Photograph {
         let given = input.world_from_object;
         let uncertainty = &scene.uncertainty.toy;
         if let Some(held) = held.filter(|held| *held != given) {
-            let found = self.pose_from(scene, input, (&held, &PoseUncertainty::default()))?;
+            let start = self.start(scene, held)?;
+            let found = self.pose_from(input, &start, &PoseUncertainty::default());
             if found.is_seen() && found.is_within(uncertainty) {
                 return Ok(found);
             }
         }
-        let found = self.pose_from(scene, input, (&given, uncertainty))?;
+        let start = self.start(scene, given)?;
+        let found = self.pose_from(input, &start, uncertainty);
         if held.is_some() || found.is_seen() {
             return Ok(found);
         }
         // The first view: a person may have put it there.
-        let resting = self.pose_resting(scene, input)?;
+        let resting = self.pose_resting(input, &start, uncertainty);
         Ok(resting.filter(FoundPose::is_seen).unwrap_or(found))
     }
 
-    /// Where a toy is that rests on a receiver, as it does where it is given; none where it does not.
-    fn pose_resting(&self, scene: &Scene, input: &FrameInput) -> Result<Option<FoundPose>, ToyError> {
-        let start = input.world_from_object;
-        let shape = self.shape(scene, &start)?;
-        let paint = self.paint(scene, &start)?;
-        Ok(self.plane_under(scene, &shape).map(|(plane, is_certain)| {
-            let subject = pose::Subject {
-                shape: &shape,
-                paint: &paint,
-                plane: Some((plane, is_certain)),
-            };
-            let found = pose::find_resting(subject, &self.pyramid, plane.normal, &scene.uncertainty.toy);
-            self.judged(input, (&start, &shape), found)
-        }))
+    /// A toy where its pose is looked for from.
+    fn start(&self, scene: &Scene, world_from_object: DMat4) -> Result<PoseStart, ToyError> {
+        let shape = self.shape(scene, &world_from_object)?;
+        Ok(PoseStart {
+            paint: pose::Paint::new(scene, &self.camera_from_object(&world_from_object))?,
+            ground: self.ground_under(scene, &shape),
+            shape,
+            world_from_object,
+        })
     }
 
-    /// The plane that a toy rests on, and whether the scene says that it does; none if it floats. Of several planes it is the most level
-    /// one: a toy that touches a wall does not stand on it.
-    fn plane_under(&self, scene: &Scene, shape: &Shape) -> Option<(pose::Plane, bool)> {
+    /// Where a toy is that rests on a receiver, as it does at the start; none where it does not.
+    fn pose_resting(
+        &self,
+        input: &FrameInput,
+        start: &PoseStart,
+        uncertainty: &PoseUncertainty,
+    ) -> Option<FoundPose> {
+        let normal = start.ground?.plane.normal;
+        let found = pose::find_resting(start.subject(), &self.pyramid, normal, uncertainty);
+        Some(self.judged(input, start, found))
+    }
+
+    /// What a toy may stand on; none if it floats.
+    fn ground_under(&self, scene: &Scene, shape: &Shape) -> Option<pose::Ground> {
         if scene.uncertainty.are_receivers_guessed {
             return None;
         }
@@ -123,15 +131,13 @@ impl Photograph {
             Some(false) => return None,
             None => RESTING * shape.radius_m,
         };
+        let receivers = self.receivers.iter();
+        let planes = receivers.filter_map(|receiver| receiver.plane_under(&shape.points, most_m));
         let up = self.camera_from_world.transform_vector3(DVec3::Y);
-        let planes = self.receivers.iter();
-        let planes = planes.filter_map(|receiver| receiver.plane_under(&shape.points, most_m));
-        let plane = planes.max_by(|a, b| a.normal.dot(up).total_cmp(&b.normal.dot(up)))?;
-        Some((plane, scene.resting.is_some()))
-    }
-
-    fn paint(&self, scene: &Scene, world_from_object: &DMat4) -> Result<pose::Paint, ToyError> {
-        pose::Paint::new(scene, &self.camera_from_object(world_from_object))
+        Some(pose::Ground {
+            plane: pose::Plane::most_level(planes, up)?,
+            is_certain: scene.resting.is_some(),
+        })
     }
 
     /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
@@ -174,30 +180,18 @@ impl Photograph {
         }
     }
 
-    fn pose_from(
-        &self,
-        scene: &Scene,
-        input: &FrameInput,
-        (start, uncertainty): (&DMat4, &PoseUncertainty),
-    ) -> Result<FoundPose, ToyError> {
-        let shape = self.shape(scene, start)?;
-        let paint = self.paint(scene, start)?;
-        let subject = pose::Subject {
-            shape: &shape,
-            paint: &paint,
-            plane: self.plane_under(scene, &shape),
-        };
-        let found = pose::find(subject, &self.pyramid, uncertainty);
-        Ok(self.judged(input, (start, &shape), found))
+    fn pose_from(&self, input: &FrameInput, start: &PoseStart, uncertainty: &PoseUncertainty) -> FoundPose {
+        let found = pose::find(start.subject(), &self.pyramid, uncertainty);
+        self.judged(input, start, found)
     }
 
     /// A pose that was found from a start, or the start where it is no better.
-    fn judged(
-        &self,
-        input: &FrameInput,
-        (start, shape): (&DMat4, &Shape),
-        found: Option<pose::Found>,
-    ) -> FoundPose {
+    fn judged(&self, input: &FrameInput, start: &PoseStart, found: Option<pose::Found>) -> FoundPose {
+        let PoseStart {
+            shape,
+            world_from_object: start,
+            ..
+        } = start;
         let camera_from_object = self.camera_from_object(start);
         let Some(found) = found else {
             return FoundPose {
@@ -243,7 +237,7 @@ impl Photograph {
         input: &FrameInput,
         (given, uncertainty): (&[Light], &LightUncertainty),
     ) -> Result<Option<FoundLights>, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
         let found = lights::find(
             (given, uncertainty),
@@ -276,7 +270,7 @@ impl Photograph {
         input: &FrameInput,
         lights: &[Light],
     ) -> Result<Option<Watched>, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
         Ok(lights::watch(
             lights,
@@ -293,7 +287,7 @@ impl Photograph {
         scene: &Scene,
         input: &FrameInput,
     ) -> Result<Option<Vec<Plate>>, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let shape = self.shape(scene, &input.world_from_object)?;
         let relight = Relight::of(&shape, &self.receivers, &self.pyramid, &self.camera_from_world);
         let toy_in_world = input.world_from_object.w_axis.truncate();
         Ok(relight.map(|relight| {
@@ -312,7 +306,7 @@ impl Photograph {
         pose: &PoseDeviation,
         told: &[TrackedLight],
     ) -> Result<Discovered, ToyError> {
-        let shape = Shape::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
         let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
@@ -344,9 +338,7 @@ impl Photograph {
             }
         }))
     }
-}
 
-impl Photograph {
     /// A wide light where none is found, by the toy in its place; none where light from all around explains the picture about as well.
     pub(super) fn assume_wide(
         &self,
@@ -358,9 +350,7 @@ impl Photograph {
         let assumed = lights::assume_wide(&shape, &self.receivers, &self.pyramid, world_from_camera);
         Ok(assumed.filter(|assumed| assumed.light.check("lights").is_ok()))
     }
-}
 
-impl Photograph {
     /// A line of lights in place of one, by the toy in its place; none where that explains no more.
     pub(super) fn line_of(
         &self,
@@ -373,6 +363,24 @@ impl Photograph {
         let line = lights::line_of(light, (&shape, &self.receivers), &self.pyramid, world_from_camera);
         let can_be = |line: &Vec<Light>| line.iter().all(|light| light.check("lights").is_ok());
         Ok(line.filter(can_be).map(Arc::from))
+    }
+}
+
+/// A toy where its pose is looked for from.
+struct PoseStart {
+    world_from_object: DMat4,
+    shape: Shape,
+    paint: pose::Paint,
+    ground: Option<pose::Ground>,
+}
+
+impl PoseStart {
+    fn subject(&self) -> pose::Subject<'_> {
+        pose::Subject {
+            shape: &self.shape,
+            paint: &self.paint,
+            ground: self.ground,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, IVec2, UVec2};
 
-use app_scene::geometry::color::linear_of_codes;
+use app_scene::geometry::color::{linear_of_codes, linear_per_srgb};
 use app_scene::scene::{Image, Intrinsics};
 
 /// Index of a place within a rectangle of a size; none outside it.
@@ -231,15 +231,8 @@ impl Level {
 pub(super) const NOISE_CODES: f32 = 2.0;
 
 /// Standard deviation that a photograph's noise has in linear light.
-///
-/// Source: the derivative of IEC 61966-2-1.
 pub(super) fn noise_deviation(linear: f32) -> f32 {
-    let slope = if linear <= 0.003_130_8 {
-        1.0 / 12.92
-    } else {
-        2.4 / 1.055 * linear.powf(1.4 / 2.4)
-    };
-    NOISE_CODES / 255.0 * slope
+    NOISE_CODES / 255.0 * linear_per_srgb(linear)
 }
 
 /// Marked pixels, rows from the top.

@@ -1,5 +1,7 @@
 //! How much of each pixel a mesh covers, and how far away it is there.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3, IVec2};
 
 use super::picture::{index_in, places};
@@ -281,18 +283,9 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
     let nearest = at_a + to_b.max(to_c).max(0.0);
     let farthest = at_a + to_b.min(to_c).min(0.0);
     let slope = DVec2::new(to_b * ac.y - to_c * ab.y, to_c * ab.x - to_b * ac.x) / area;
-    let limit = f64::from(out.size_px.y);
-    let top = a.y.min(b.y).min(c.y);
-    let bottom = a.y.max(b.y).max(c.y);
-    for row in round_up((top - 0.5).min(limit))..round_up((bottom - 0.5).min(limit)) {
-        let y = row as f64 + 0.5;
-        let Some([left, right]) = crossing([a, b, c], y) else {
-            continue;
-        };
-        let width = f64::from(out.size_px.x);
-        let columns = round_up((left - 0.5).min(width))..round_up((right - 0.5).min(width));
+    for (row, columns) in centres([a, b, c], out.size_px) {
         for column in columns {
-            let at = DVec2::new(column as f64 + 0.5, y);
+            let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
             let inverse = (at_a + slope.dot(at - a.truncate())).max(farthest).min(nearest);
             #[allow(clippy::cast_possible_truncation, reason = "a depth, to 7 digits")]
             let depth_m = (1.0 / inverse) as f32;
@@ -300,6 +293,19 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
             *kept = kept.min(depth_m);
         }
     }
+}
+
+/// The rows of a picture with the columns in which a projected triangle covers the pixels' centres.
+pub(super) fn centres(corners: [DVec3; 3], size_px: IVec2) -> impl Iterator<Item = (usize, Range<usize>)> {
+    let [a, b, c] = corners.map(|corner| corner.y);
+    let [width, height] = size_px.as_dvec2().to_array();
+    let from_to =
+        |first: f64, end: f64, most: f64| round_up((first - 0.5).min(most))..round_up((end - 0.5).min(most));
+    let rows = from_to(a.min(b).min(c), a.max(b).max(c), height);
+    rows.filter_map(move |row| {
+        let [left, right] = crossing(corners, row as f64 + 0.5)?;
+        Some((row, from_to(left, right, width)))
+    })
 }
 
 /// Where the line at `y` enters and leaves a triangle.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DVec3};
 
+use super::picture::Level;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::geometry::edges::Faces;
 use app_scene::scene::Scene;
@@ -54,10 +55,15 @@ impl Shape {
         })
     }
 
+    /// The same shape, merged in cells of a side in pixels of a level, at the distance of its middle.
+    pub(super) fn merged_in_px(&self, cell_px: f64, level: &Level) -> Self {
+        self.merged(cell_px * self.centre.length() / level.intrinsics.fx_px)
+    }
+
     /// The same shape with the vertices within each cell of a side merged to their mean, and without triangles that collapse.
     ///
     /// Source: Rossignac and Borrel 1993.
-    pub(super) fn merged(&self, cell_m: f64) -> Self {
+    fn merged(&self, cell_m: f64) -> Self {
         let mut cells: BTreeMap<[i64; 3], u32> = BTreeMap::new();
         let mut sums: Vec<(DVec3, f64)> = Vec::new();
         let places: Vec<u32> = self

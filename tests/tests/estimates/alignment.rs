@@ -1,22 +1,16 @@
 //! Toy and lights are found in the pictures of the bundled session, however they were given within some millimetres and
 //! degrees; what is right stays as it is.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use app_core::alignment::{AlignError, Aligner, Alignment, AlignmentWarning, Outlines};
 use app_core::frame::FrameInput;
-use app_core::scene::{Camera, Image, Light, Plate, Scene};
-use app_core::session::{Capture, Session};
+use app_core::scene::{Camera, Image, Light, Plate};
 use app_scene::geometry::bounds::Bounds;
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::{DMat4, DQuat, DVec2, DVec3};
 use measure::photographer::{Shot, World};
 
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
+use super::bundled::SESSION;
 
 /// Where the pose that is found with the recorded one may differ from it, at the corners of the toy's box: the session was
 /// rendered with few samples a pixel.

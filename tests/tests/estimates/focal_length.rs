@@ -1,19 +1,13 @@
 //! The focal length of the bundled session is found by toy and shadow, whatever else is off; what is right stays as it is.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use app_core::alignment::{Aligner, Alignment, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Scene};
-use app_core::session::{Capture, Session};
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::{DMat4, DQuat, DVec3};
 
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
+use super::bundled::{SESSION, middle};
 
 /// What the ratio that is found may be off by: the session was rendered with few samples a pixel.
 const RATIO: f64 = 6e-4;
@@ -33,11 +27,6 @@ fn off(ratio: f64) -> (Scene, FrameInput) {
     }
     input.camera = lengthened(&input.camera, ratio);
     (scene, input)
-}
-
-fn middle(world_from_object: &DMat4) -> DVec3 {
-    let bounds = SESSION.0.toy.bounds_of_pose(&SESSION.0.physical_pose).unwrap();
-    world_from_object.transform_point3((0.5 * (bounds.min + bounds.max)).as_dvec3())
 }
 
 /// Toy and light off as well: 5 mm and 3 degrees, 10 degrees and twice the size.

@@ -1,21 +1,22 @@
 //! The distortion of a lens that nobody lists is found by toy and shadow; a picture without one stays as it is.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 use std::{fs, process};
 
 use app_core::alignment::{Aligner, LensAlignment, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::scene::{Image, Scene};
-use app_core::session::{Capture, Session};
 use desk::alignment::{Alignments, Asked, Lights, Source};
 use desk::check::aligned_session;
-use desk::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
+use desk::files::{BUNDLED_SESSION, SESSION_FILE};
 use desk::opened;
 use desk::stored::Stored;
 use image::RgbaImage;
 use serde_json::Value;
+
+use super::bundled::SESSION;
 
 const BARREL: Distortion = Distortion { k1: -0.1, k2: 0.03 };
 const CUSHION: Distortion = Distortion { k1: 0.08, k2: 0.0 };
@@ -26,12 +27,6 @@ const AT_PX: f64 = 180.0;
 /// What the lens that is found may move there, beside the true one: with every lens the loss is least .2 px beside it, since
 /// the session was rendered with few samples a pixel.
 const OFF_PX: f64 = 0.25;
-
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
 
 /// How many pixels farther out a lens shows what a pinhole sees so far from the principal point.
 fn moved_px(lens: Distortion, at_px: f64) -> f64 {

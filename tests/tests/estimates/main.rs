@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod alignment;
+mod bundled;
 mod discovery;
 mod focal_length;
 mod lens_found;

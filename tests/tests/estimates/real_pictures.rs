@@ -1,20 +1,14 @@
 //! A toy is found in pictures as cameras make them, on its table, in its size, and as well as it is claimed to be.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use app_core::alignment::{Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Light, Scene};
-use app_core::session::{Capture, Session};
 use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::{DMat4, DVec3};
 
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
+use super::bundled::{SESSION, middle};
 
 /// What a camera may do to a picture.
 #[derive(Clone, Copy, Debug)]
@@ -99,16 +93,10 @@ fn too_many_lights(input: &FrameInput) -> FrameInput {
     input.clone().with_lights(Some(vec![light; 5].into()))
 }
 
-fn middle() -> DVec3 {
-    let (scene, _) = &*SESSION;
-    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
-    (0.5 * (bounds.min + bounds.max)).as_dvec3()
-}
-
 /// The first frame, with the toy moved about its middle by millimetres and degrees, in a picture as a camera makes it.
 fn disturbed(camera: Camera, mm: DVec3, (axis, deg): (DVec3, f64)) -> FrameInput {
     let recorded = &SESSION.1;
-    let place = recorded.world_from_object.transform_point3(middle());
+    let place = middle(&recorded.world_from_object);
     let moved = DMat4::from_translation(place + 1e-3 * mm)
         * DMat4::from_axis_angle(axis.normalize(), deg.to_radians())
         * DMat4::from_translation(-place);
@@ -124,7 +112,7 @@ fn align(scene: Scene, input: &FrameInput) -> Alignment {
 /// Of the toy's middle: along the view, and beside it, in millimetres.
 fn off_mm(found: &Alignment) -> [f64; 2] {
     let camera_from_world = SESSION.1.camera.world_from_camera.inverse();
-    let place = |pose: &DMat4| camera_from_world.transform_point3(pose.transform_point3(middle()));
+    let place = |pose: &DMat4| camera_from_world.transform_point3(middle(pose));
     let off = place(&found.world_from_object) - place(&SESSION.1.world_from_object);
     [1e3 * off.z.abs(), 1e3 * off.truncate().length()]
 }

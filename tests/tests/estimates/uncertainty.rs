@@ -1,19 +1,11 @@
 //! What a session says of how far its toy, camera and lights may be off bounds what alignment moves, and says how far it looks.
 
-use std::sync::LazyLock;
-
 use app_core::alignment::{Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
-use app_core::scene::{Camera, Light, LightUncertainty, PoseUncertainty, Scene, Uncertainty};
-use app_core::session::{Capture, Session};
-use desk::files::{BUNDLED_SESSION, Folder};
+use app_core::scene::{Camera, Light, LightUncertainty, PoseUncertainty, Uncertainty};
 use glam::{DMat4, DQuat, DVec3};
 
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
+use super::bundled::{SESSION, middle};
 
 /// What rounding may add to a bound.
 const ROUNDING: f64 = 1e-5;
@@ -49,15 +41,8 @@ fn of_lights(direction_deg: f64) -> Uncertainty {
     }
 }
 
-/// Middle of the toy's box.
-fn middle_in_object() -> DVec3 {
-    let (scene, _) = &*SESSION;
-    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
-    0.5 * (bounds.min + bounds.max).as_dvec3()
-}
-
 fn middle_in_world() -> DVec3 {
-    SESSION.1.world_from_object.transform_point3(middle_in_object())
+    middle(&SESSION.1.world_from_object)
 }
 
 /// The first frame with the toy moved by metres, and turned about its middle by degrees.
@@ -73,7 +58,7 @@ fn disturbed(by_m: DVec3, axis: DVec3, deg: f64) -> FrameInput {
 
 /// Between two poses of the toy: metres at its middle, and degrees.
 fn apart(a: &DMat4, b: &DMat4) -> (f64, f64) {
-    let [at_a, at_b] = [a, b].map(|pose| pose.transform_point3(middle_in_object()));
+    let [at_a, at_b] = [a, b].map(middle);
     (at_a.distance(at_b), turned_deg(a, b))
 }
 

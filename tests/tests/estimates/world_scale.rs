@@ -1,19 +1,13 @@
 //! The scale of the world is found by the toy's size and its shadow; what is right stays as it is.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use app_core::alignment::{Aligner, Alignment, AlignmentWarning, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Light, Scene};
-use app_core::session::{Capture, Session};
-use desk::files::{BUNDLED_SESSION, Folder};
 use glam::{DMat4, DQuat, DVec3};
 
-static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
-    let session = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let input = FrameInput::from(&session.frame(0).unwrap());
-    (session.scene().clone(), input)
-});
+use super::bundled::{SESSION, middle};
 
 /// What the ratio that is found may be off by: the session was rendered with few samples a pixel.
 const RATIO: f64 = 1e-3;
@@ -58,11 +52,6 @@ fn off(ratio: f64) -> (Scene, FrameInput) {
         radius_m: ratio * radius_m,
     }];
     (scene, input)
-}
-
-fn middle(world_from_object: &DMat4) -> DVec3 {
-    let bounds = SESSION.0.toy.bounds_of_pose(&SESSION.0.physical_pose).unwrap();
-    world_from_object.transform_point3((0.5 * (bounds.min + bounds.max)).as_dvec3())
 }
 
 /// The toy 4 mm and 2 degrees off, the light by 8 degrees.

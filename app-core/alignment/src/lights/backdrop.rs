@@ -147,7 +147,7 @@ fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
         let (mut normal, mut side) = (SMatrix::<f64, N, N>::identity() * PRIOR, Terms::<N>::zeros());
         for (terms, value) in values {
             let excess = (value - color.dot(terms)) / (2.0 * deviation);
-            let weight = (1.0 + excess * excess).powi(-2);
+            let weight = crate::robust::weight(excess * excess);
             normal.ger(weight, terms, terms, 1.0);
             side.axpy(weight * value, terms, 1.0);
         }

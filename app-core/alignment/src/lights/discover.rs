@@ -52,8 +52,7 @@ pub(super) fn discover(
     hints: &Hints,
 ) -> Result<Vec<Discovered>, NoLight> {
     let searched = pyramid.smallest_for_shadows();
-    let px_m = |level: usize| shape.centre.length() / pyramid.level(level).intrinsics.fx_px;
-    let coarse = shape.merged(SEARCH_CELL_PX * px_m(searched));
+    let coarse = shape.merged_in_px(SEARCH_CELL_PX, pyramid.level(searched));
     let mut raster = Rasterizer::default();
     let mut shadows = Shadows::new(&mut raster, (&coarse, receivers), pyramid.level(searched), None);
     shadows.is_rough = true;
@@ -66,7 +65,7 @@ pub(super) fn discover(
         guessed(&shadows, &mut raster, &hints.guesses)
     };
     for level in (searched.saturating_sub(N_LARGER_LEVELS)..=searched).rev() {
-        let fine = shape.merged(CELL_PX * px_m(level));
+        let fine = shape.merged_in_px(CELL_PX, pyramid.level(level));
         let is_last = level == searched.saturating_sub(N_LARGER_LEVELS);
         let level = pyramid.level(level);
         let mut refined = Refined {
@@ -93,8 +92,7 @@ pub(crate) fn scores(
     pyramid: &Pyramid,
 ) -> Option<Vec<(DVec3, f64)>> {
     let searched = pyramid.smallest_for_shadows();
-    let px_m = shape.centre.length() / pyramid.level(searched).intrinsics.fx_px;
-    let coarse = shape.merged(SEARCH_CELL_PX * px_m);
+    let coarse = shape.merged_in_px(SEARCH_CELL_PX, pyramid.level(searched));
     let mut raster = Rasterizer::default();
     let shadows = Shadows::new(&mut raster, (&coarse, receivers), pyramid.level(searched), None);
     if shadows.pixels.len() < LEAST_PIXELS {

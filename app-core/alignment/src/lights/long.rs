@@ -30,8 +30,8 @@ const MOST_ROUNDS: usize = 24;
 ///
 /// Measured: .29 of a tube of 60 cm by 4 cm in a metre's distance.
 const OF_ROUND: f64 = 0.6;
-
-/// And those that are tried first no more than this, or none is followed: it would be looked for in vain where a shadow falls on a step.
+/// The best of the lines that are tried first is followed if it leaves no more than this part: else a shadow falls on a step, say, and
+/// no line explains it.
 ///
 /// Measured: .63 of that tube, 1.01 of a book and 1.03 of a mug under the shadow of a bulb.
 const OF_ROUND_AT_FIRST: f64 = 0.9;
@@ -95,7 +95,7 @@ pub(super) fn line_of(
 ) -> Option<[Lamp; MAX_LIGHTS]> {
     let mut raster = Rasterizer::default();
     let level = pyramid.level(pyramid.smallest_for_shadows());
-    let coarse = shape.merged(CELL_PX * shape.centre.length() / level.intrinsics.fx_px);
+    let coarse = shape.merged_in_px(CELL_PX, level);
     let mut shadows = Shadows::new(&mut raster, (&coarse, receivers), level, None);
     if shadows.pixels.len() < LEAST_PIXELS {
         return None;

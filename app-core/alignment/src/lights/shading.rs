@@ -102,14 +102,12 @@ impl Shaded<'_> {
         }
         let row = columns * f64::from(pixel.plate[channel]);
         let residual = f64::from(pixel.frame[channel]) - row.dot(factors);
-        // Geman and McClure 1987.
-        let square = residual * residual * precision;
-        let excess = square / (robust * robust);
+        let (square, scale_square) = (residual * residual * precision, robust * robust);
         Some(Residual {
             residual,
-            weight: precision / (1.0 + excess).powi(2),
+            weight: precision * crate::robust::weight(square / scale_square),
             row,
-            loss: square / (1.0 + excess),
+            loss: crate::robust::loss(square, scale_square),
         })
     }
 

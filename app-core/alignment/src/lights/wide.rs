@@ -16,6 +16,7 @@ use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
 use crate::picture::Pyramid;
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
+use crate::robust;
 use crate::shape::Shape;
 
 /// Directions that are tried: as many around, at these elevations above the receiver, in radians (25, 45 and 70 degrees). So wide a light
@@ -40,6 +41,8 @@ const MOST_SHARE: f64 = 0.98;
 const N_ROUNDS: usize = 3;
 /// Keeps an unknown that no pixel shows at 0.
 const PRIOR: f64 = 1e-6;
+/// Side of the cells that vertices are merged in, in pixels: a hundred lights of two dozen points are tried.
+const CELL_PX: f64 = 0.5;
 
 /// A wide light that explains a picture better than light from all around does.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +60,8 @@ pub(super) fn assume(shape: &Shape, receivers: &[SeenReceiver], pyramid: &Pyrami
     let level = pyramid.level(pyramid.smallest_for_shadows());
     level.plate.as_ref()?;
     let mut raster = Rasterizer::default();
-    let shadows = Shadows::new(&mut raster, (shape, receivers), level, None);
+    let coarse = shape.merged_in_px(CELL_PX, level);
+    let shadows = Shadows::new(&mut raster, (&coarse, receivers), level, None);
     if shadows.pixels.len() < LEAST_PIXELS {
         return None;
     }
@@ -148,9 +152,7 @@ impl<'a> Evidence<'a> {
             let shown = Vector3::from(model(pixel)).dot(&fits[3 * seen.receiver + channel].factors);
             let residual = f64::from(seen.frame[channel]) - f64::from(seen.plate[channel]) * shown;
             let precision = f64::from(seen.precision[channel]);
-            // Geman and McClure 1987.
-            let excess = residual * residual * precision / (ROBUST_FAR * ROBUST_FAR);
-            precision / (1.0 + excess).powi(2)
+            precision * robust::weight(residual * residual * precision / (ROBUST_FAR * ROBUST_FAR))
         };
         let weights = (0..self.pixels.len()).map(|pixel| [0, 1, 2].map(|channel| weight(pixel, channel)));
         self.weights = weights.collect();

@@ -6,9 +6,8 @@ use super::motion::Measured;
 use super::paint::{Light, Lit, Paint};
 use super::placement::{Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
-use super::sides::Beside;
-use super::standing::Standing;
-use super::{FINE, Fit, Found, LESS_SEEN, Search, Subject, enough};
+use super::standing::{Ground, Standing};
+use super::{FINE, Fit, Found, Search, Subject, enough};
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
@@ -33,6 +32,9 @@ const MET_PX2: f64 = 0.06;
 const MET_OF_SPREAD: f64 = 0.04;
 /// A toy whose size differs by more, as a logarithm, is another toy; as much as the scale of a world may be off.
 const MOST_SIZE: f64 = 0.03;
+
+/// How much less of the outline a better pose may have measured: a different part of it may be thin, or beside a corner.
+const LESS_SEEN: f64 = 0.1;
 
 /// What is known before the last rounds.
 #[derive(Clone, Copy)]
@@ -60,7 +62,7 @@ struct Settled {
 impl Search<'_> {
     /// With all six freedoms, in all bands; standing, where the picture does not speak against it.
     pub(super) fn freed(&mut self, subject: Subject<'_>, given: Fit, motion: RigidMotion) -> Option<Found> {
-        let Subject { shape, paint, plane } = subject;
+        let Subject { shape, paint, ground } = subject;
         let light = self.light(paint, &Placement::of(motion));
         let lit = light.as_ref().map(|light| Lit { paint, light });
         let start = Placement::of(self.fine(motion, lit, wide_bands())?);
@@ -71,22 +73,23 @@ impl Search<'_> {
         let light = self.light(paint, &start);
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
         let free = self.settled(seen, &start, None)?;
-        let standing = plane.and_then(|(plane, is_certain)| Some((Standing::on(shape, plane)?, is_certain)));
-        let settled = match &standing {
-            Some((standing, true)) => self.on_plane(seen, &free, standing),
-            Some((standing, false)) => self.stood(seen, &free, standing),
-            None => None,
+        let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
+        let certain = standing
+            .as_ref()
+            .filter(|_| ground.is_some_and(|ground| ground.is_certain));
+        let settled = match (certain, &standing) {
+            (Some(standing), _) => self.on_plane(seen, &free, standing),
+            (None, Some(standing)) => self.stood(seen, &free, standing),
+            (None, None) => None,
         };
         let settled = settled.unwrap_or_else(|| free.clone());
         let as_given = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
         let as_given = self.edges(&as_given, seen).unwrap_or_default();
         let of_given = Misfit::of(&as_given);
-        let is_certain = standing.as_ref().is_some_and(|(_, is_certain)| *is_certain);
-        let standing_evidence = match &standing {
-            Some((standing, true)) => standing.evidence(|point| settled.placement.apply(point)),
-            _ => 0.0,
-        };
-        let is_refused = !is_certain && settled.misfit.likelier_than(&of_given) < LEAST_EVIDENCE;
+        let standing_evidence = certain.map_or(0.0, |standing| {
+            standing.evidence(|point| settled.placement.apply(point))
+        });
+        let is_refused = certain.is_none() && settled.misfit.likelier_than(&of_given) < LEAST_EVIDENCE;
         // A plane that a toy need not stand on is no reason to leave it where it is not.
         let settled = if is_refused && free.misfit.likelier_than(&of_given) >= LEAST_EVIDENCE {
             free
@@ -106,7 +109,7 @@ impl Search<'_> {
             model_px: smoothed_px(&settled.measured),
             spread_px: seen.optics.spread_px,
             plate_spread_px: self.softened.as_ref().map_or(0.0, |(_, spread_px)| *spread_px),
-            stands: standing.map(|(standing, _)| {
+            stands: standing.map(|standing| {
                 let found = standing.stand(|point| settled.placement.apply(point));
                 [standing.stand(|point| point), found]
             }),
@@ -116,12 +119,15 @@ impl Search<'_> {
     /// The toy on its plane, whatever the picture says; in another size where that is so much likelier.
     fn on_plane(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
         let own = self.settled(seen, &free.placement, Some((standing, SizeOf::Given)))?;
-        let resized = self.settled(seen, &own.placement, Some((standing, SizeOf::Found)));
-        let resized = resized.filter(|resized| {
-            let is_same_toy = resized.placement.size.ln().abs() < MOST_SIZE;
-            is_same_toy && resized.misfit.likelier_than(&own.misfit) >= LEAST_EVIDENCE
-        });
+        let resized = self.resized(seen, &own.placement, standing);
+        let resized = resized.filter(|resized| resized.misfit.likelier_than(&own.misfit) >= LEAST_EVIDENCE);
         Some(resized.unwrap_or(own))
+    }
+
+    /// The toy on its plane in the size that explains its outline there; none if that is another toy's.
+    fn resized(&mut self, seen: Seen<'_>, start: &Placement, standing: &Standing) -> Option<Settled> {
+        let resized = self.settled(seen, start, Some((standing, SizeOf::Found)))?;
+        (resized.placement.size.ln().abs() < MOST_SIZE).then_some(resized)
     }
 
     /// The toy on its plane, in its own size or in another, or with its feet as high as they are given; none where the picture
@@ -139,8 +145,7 @@ impl Search<'_> {
             let heights = standing.as_given();
             others.extend(self.settled(seen, &free.placement, Some((&heights, SizeOf::Given))));
         }
-        let resized = self.settled(seen, &free.placement, Some((standing, SizeOf::Found)));
-        others.extend(resized.filter(|resized| resized.placement.size.ln().abs() < MOST_SIZE));
+        others.extend(self.resized(seen, &free.placement, standing));
         let best = others
             .into_iter()
             .filter(|other| is_likely(other) && other.misfit.likelier_than(&on_plane.misfit) >= UNDOUBTED)
@@ -149,9 +154,8 @@ impl Search<'_> {
     }
 
     fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
-        let level = self.pyramid.level(0);
-        let (coverage, _) = self.outline(placement, level);
-        paint.light(placement, level, &coverage)
+        let posed = self.posed(placement, None);
+        paint.light(placement, self.pyramid.level(0), &posed.coverage)
     }
 
     fn seen<'a>(&mut self, placement: &Placement, lit: Option<Lit<'a>>) -> Seen<'a> {
@@ -161,17 +165,9 @@ impl Search<'_> {
 
     /// What the camera does to an outline; where it is soft, with the plate as soft or as it was taken, whichever explains more.
     fn optics(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> Optics {
+        let posed = self.posed(placement, lit);
         let sharp = self.pyramid.level(0);
-        let (coverage, elements) = self.outline(placement, sharp);
-        let shaded = lit.map(|lit| lit.shaded(placement, sharp, &coverage));
-        let found = |level: &Level| {
-            let beside = Beside {
-                level,
-                coverage: &coverage,
-                shaded: shaded.as_ref(),
-            };
-            Optics::found(&beside, &elements)
-        };
+        let found = |level: &Level| Optics::found(&posed.beside(level), &posed.elements);
         self.softened = None;
         let (optics, misfit) = found(sharp);
         let is_soft = optics.spread_px >= SOFT_PX;
@@ -190,18 +186,12 @@ impl Search<'_> {
 
     /// The pieces by the codes beside them; none where that is too little.
     fn edges(&mut self, placement: &Placement, seen: Seen<'_>) -> Option<Vec<Measured>> {
-        let (coverage, elements) = self.outline(placement, self.pyramid.level(0));
+        let posed = self.posed(placement, seen.lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
         let level = softened.unwrap_or_else(|| self.pyramid.level(0));
-        let shaded = seen.lit.map(|lit| lit.shaded(placement, level, &coverage));
-        let beside = Beside {
-            level,
-            coverage: &coverage,
-            shaded: shaded.as_ref(),
-        };
         let half_px = COMPARED_PX + seen.optics.half_px();
-        let measured = edge::measure(&beside, &elements, seen.optics, half_px);
-        enough(measured, &elements).map(|(measured, _)| measured)
+        let measured = edge::measure(&posed.beside(level), &posed.elements, seen.optics, half_px);
+        enough(measured, &posed.elements).map(|(measured, _)| measured)
     }
 
     /// With all that is free; the feet of a toy that stands are on their plane, and its size may be looked for.

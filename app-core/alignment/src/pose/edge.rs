@@ -11,7 +11,8 @@ use super::owners::Owners;
 use super::sides::{Beside, Sides};
 use crate::picture::{Color, NOISE_CODES, gaussian, index_in, places};
 use crate::raster::Coverage;
-use app_scene::geometry::color::srgb_from_linear;
+use crate::robust;
+use app_scene::geometry::color::{linear_per_srgb, srgb_from_linear};
 
 /// What the prediction of a piece is wrong by, in pixels, however many pixels it has.
 const CARRIED_PX: f64 = 0.05;
@@ -307,7 +308,7 @@ impl Piece {
             element: *element,
             offset_px,
             precision: 1.0 / (noise_px2 + CARRIED_PX * CARRIED_PX),
-            robust: (1.0 + (offset_px / ROBUST_PX).powi(2)).powi(-2),
+            robust: robust::weight((offset_px / ROBUST_PX).powi(2)),
         })
     }
 }
@@ -327,13 +328,11 @@ fn code(linear: f64) -> f64 {
 /// weigh halfway between the two.
 const SLOPE_OF_WHITE: f64 = 255.0 * 1.055 / 2.4;
 
-/// Codes for each unit of light. Source: the derivative of IEC 61966-2-1.
+/// Codes for each unit of light.
 fn slope_of_code(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        255.0 * 12.92
-    } else {
-        SLOPE_OF_WHITE * linear.min(1.0).powf(1.0 / 2.4 - 1.0)
-    }
+    #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+    let slope = linear_per_srgb(linear.min(1.0) as f32);
+    255.0 / f64::from(slope)
 }
 
 /// Coverage as a lens spreads it.

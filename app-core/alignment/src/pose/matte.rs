@@ -10,6 +10,7 @@ use super::motion::Measured;
 use super::owners::Owners;
 use super::sides::{Beside, Sides};
 use crate::picture::noise_deviation;
+use crate::robust;
 
 /// What colours that are carried across the band are wrong by, over the contrast.
 const CARRIED: f32 = 0.05;
@@ -33,7 +34,7 @@ impl Band {
         for one in measured {
             let weight = one.precision * one.element.length_px;
             let square = one.offset_px * one.offset_px;
-            sum += weight * scale * square / (scale + square);
+            sum += weight * robust::loss(square, scale);
             total += weight;
         }
         if total > 0.0 { sum / total } else { scale }
@@ -110,12 +111,11 @@ impl Piece {
         }
         let offset_px = f64::from(self.more_area) / element.length_px;
         let noise = self.n_pixels / self.contrast;
-        let excess = (offset_px / band.robust_px).powi(2);
         Some(Measured {
             element: *element,
             offset_px: offset_px.clamp(-band.half_px, band.half_px),
             precision: f64::from(1.0 / (noise + CARRIED * CARRIED)),
-            robust: 1.0 / (1.0 + excess).powi(2),
+            robust: robust::weight((offset_px / band.robust_px).powi(2)),
         })
     }
 }

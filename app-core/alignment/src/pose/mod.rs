@@ -34,14 +34,14 @@ use contour::{Element, contour};
 use matte::Band;
 use motion::{Held, Measured, solve};
 use odds::Odds;
-use paint::Lit;
+use paint::{Lit, Shaded};
 use placement::Placement;
-use settle::LEAST_EVIDENCE;
+use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
 pub(super) use paint::Paint;
 pub(super) use resting::find_resting;
-pub(super) use standing::{Plane, feet};
+pub(super) use standing::{Ground, Plane, feet};
 
 /// Colours are learned this far around the toy, over how far lines reach.
 const LEARNED_AROUND: i32 = 3;
@@ -63,17 +63,12 @@ const NEAR_PX: f64 = 0.6;
 const FINE_ENOUGH: f64 = 0.7;
 /// A step that moves the toy by less, over its radius, is the last of its band.
 const LAST_STEP: f64 = 1e-6;
-/// A step that the outline does not tell is held back as by this deviation, over the toy's radius (Levenberg 1944).
-const STEP: f64 = 0.2;
 /// Deviation of one piece of the outline, for the weight of that against the pictures.
 const PIECE_PX: f64 = 0.3;
 /// Fewer pieces of the outline than that tell no pose.
 const LEAST_PIECES: usize = 40;
 /// Of the outline, what has to be measured.
 const LEAST_MEASURED: f64 = 0.3;
-
-/// How much less of the outline a better pose may have measured: a different part of it may be thin, or beside a corner.
-const LESS_SEEN: f64 = 0.1;
 
 const fn band(half_px: f64, robust_px: f64) -> Band {
     Band { half_px, robust_px }
@@ -83,7 +78,7 @@ const fn band(half_px: f64, robust_px: f64) -> Band {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
     /// Of the finest band, robust, in square pixels.
-    pub(super) loss_px2: f64,
+    loss_px2: f64,
     /// The same of the wide band.
     wide_loss_px2: f64,
     /// Of the outline, what was measured in the finest band.
@@ -92,7 +87,7 @@ pub(super) struct Fit {
 
 impl Fit {
     /// Root mean square distance of the outline, in pixels: by the finest band where that is wide enough to tell.
-    pub(super) fn outline_px(&self) -> f64 {
+    fn outline_px(&self) -> f64 {
         let fine_px = self.loss_px2.sqrt();
         if fine_px < FINE_ENOUGH * FINEST.robust_px {
             fine_px
@@ -148,8 +143,8 @@ pub(super) struct Subject<'a> {
     pub(super) shape: &'a Shape,
     /// Its colours there.
     pub(super) paint: &'a Paint,
-    /// The plane that it stands on, and whether that is known for certain; none where it floats.
-    pub(super) plane: Option<(Plane, bool)>,
+    /// What it may stand on; none if it floats.
+    pub(super) ground: Option<Ground>,
 }
 
 /// Finds the pose, starting from that of a subject, no farther from it than that is uncertain; none where too little of the outline is
@@ -260,6 +255,17 @@ impl<'a> Search<'a> {
         outline(&mut self.raster, posed, &level.intrinsics, level.frame.size_px)
     }
 
+    /// The toy where it is thought to be, in the largest level.
+    fn posed<'b>(&mut self, placement: &Placement, lit: Option<Lit<'b>>) -> Posed<'b> {
+        let level = self.pyramid.level(0);
+        let (coverage, elements) = self.outline(placement, level);
+        Posed {
+            shaded: lit.map(|lit| lit.shaded(placement, level, &coverage)),
+            coverage,
+            elements,
+        }
+    }
+
     /// The pieces that can be measured, and how many of all these are.
     fn matte(
         &mut self,
@@ -267,15 +273,9 @@ impl<'a> Search<'a> {
         lit: Option<Lit<'_>>,
         band: Band,
     ) -> Option<(Vec<Measured>, f64)> {
-        let level = self.pyramid.level(0);
-        let (coverage, elements) = self.outline(placement, level);
-        let shaded = lit.map(|lit| lit.shaded(placement, level, &coverage));
-        let beside = Beside {
-            level,
-            coverage: &coverage,
-            shaded: shaded.as_ref(),
-        };
-        enough(matte::measure(&beside, &elements, band), &elements)
+        let posed = self.posed(placement, lit);
+        let beside = posed.beside(self.pyramid.level(0));
+        enough(matte::measure(&beside, &posed.elements, band), &posed.elements)
     }
 
     fn fit(&mut self, placement: &Placement) -> Option<Fit> {
@@ -334,6 +334,23 @@ impl<'a> Search<'a> {
             }
         }
         Some(motion)
+    }
+}
+
+/// A toy where it is thought to be: what it covers, its outline, and what it should look like if that is known.
+struct Posed<'a> {
+    coverage: Coverage,
+    elements: Vec<Element>,
+    shaded: Option<Shaded<'a>>,
+}
+
+impl Posed<'_> {
+    fn beside<'b>(&'b self, level: &'b Level) -> Beside<'b> {
+        Beside {
+            level,
+            coverage: &self.coverage,
+            shaded: self.shaded.as_ref(),
+        }
     }
 }
 

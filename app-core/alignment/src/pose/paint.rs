@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::placement::Placement;
 use crate::picture::{Color, Level, index_in, noise_deviation};
-use crate::raster::{Coverage, project};
+use crate::raster::{Coverage, centres, project};
 use crate::rigid_motion::RigidMotion;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Intrinsics, Scene};
@@ -78,20 +78,6 @@ impl Paint {
             level,
             coverage,
         )
-    }
-
-    /// What the toy should look like in a light, over the pixels of its coverage.
-    pub(super) fn shaded<'a>(
-        &'a self,
-        placement: &Placement,
-        light: &'a Light,
-        k: &Intrinsics,
-        coverage: &Coverage,
-    ) -> Shaded<'a> {
-        Shaded {
-            seen: self.seen(placement, k, coverage),
-            light,
-        }
     }
 
     /// The face at the centre of each pixel of the coverage.
@@ -194,32 +180,19 @@ fn draw([a, b, c]: [DVec3; 3], size_px: IVec2, mut pixel: impl FnMut(usize, f64,
     if area == 0.0 || !area.is_finite() {
         return;
     }
-    let size = size_px.as_dvec2();
-    let low = (pa.min(pb).min(pc) - 0.5)
-        .ceil()
-        .clamp(DVec2::ZERO, size)
-        .as_ivec2();
-    let high = (pa.max(pb).max(pc) + 0.5)
-        .floor()
-        .clamp(DVec2::ZERO, size)
-        .as_ivec2();
-    for y in low.y..high.y {
-        for x in low.x..high.x {
-            let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    for (row, columns) in centres([a, b, c], size_px) {
+        for column in columns {
+            let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
             let weights = [
                 (pb - at).perp_dot(pc - at) / area,
                 (pc - at).perp_dot(pa - at) / area,
                 (pa - at).perp_dot(pb - at) / area,
             ];
-            if weights.iter().any(|weight| *weight < 0.0) {
-                continue;
-            }
             // Weights over depth are affine over the picture.
             let over_depth = [weights[0] / a.z, weights[1] / b.z, weights[2] / c.z];
             let inverse_depth: f64 = over_depth.iter().sum();
-            let place = (y * size_px.x + x) as usize;
             pixel(
-                place,
+                row * size_px.x as usize + column,
                 inverse_depth,
                 over_depth.map(|weight| weight / inverse_depth),
             );
@@ -386,8 +359,10 @@ pub(super) struct Lit<'a> {
 impl<'a> Lit<'a> {
     /// What the toy should look like where it is thought to be.
     pub(super) fn shaded(self, placement: &Placement, level: &Level, coverage: &Coverage) -> Shaded<'a> {
-        self.paint
-            .shaded(placement, self.light, &level.intrinsics, coverage)
+        Shaded {
+            seen: self.paint.seen(placement, &level.intrinsics, coverage),
+            light: self.light,
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use super::motion::Measured;
 use super::placement::{Information, OFFSET, Placement, SIZE, Unknowns};
 use super::standing::{DEVIATION_M, Standing};
 use crate::report::PoseDeviation;
+use crate::robust;
 use app_scene::scene::Intrinsics;
 
 /// A found pose is taken in place of another one if the picture is likelier with it by that natural logarithm.
@@ -23,7 +24,7 @@ const MOST_ROBUST_PX: f64 = 0.5;
 /// How many pieces along the outline err alike: halos, textures and the blocks of a compressed picture span some ten pixels.
 const ALIKE: f64 = 12.0;
 /// One deviation of a step, over the toy's radius, which holds back what the outline does not determine (Levenberg 1944).
-const STEP: f64 = 0.2;
+pub(super) const STEP: f64 = 0.2;
 /// One deviation of the logarithm of the size: if it is held, and if it is looked for.
 const HELD: f64 = 1e-6;
 const FREE: f64 = 0.02;
@@ -52,11 +53,43 @@ pub(super) struct Known<'a> {
     pub(super) is_size_open: bool,
 }
 
+impl Known<'_> {
+    /// The information that this is, and how it pulls at a placement.
+    fn priors(&self, placement: &Placement) -> (Information, Unknowns) {
+        let (mut information, mut pull) = (Information::zeros(), Unknowns::zeros());
+        for rigid in 0..SIZE {
+            information[(rigid, rigid)] += (STEP * self.radius_m).powi(-2);
+        }
+        let size = if self.is_size_open { FREE } else { HELD };
+        information[(SIZE, SIZE)] += size.powi(-2);
+        pull[SIZE] -= placement.size.ln() * size.powi(-2);
+        information[(OFFSET, OFFSET)] += OFFSET_PX.powi(-2);
+        pull[OFFSET] -= placement.offset_px * OFFSET_PX.powi(-2);
+        if let Some(Standing {
+            plane,
+            points,
+            heights_m,
+        }) = self.standing
+        {
+            for (point, height_m) in points.iter().zip(heights_m) {
+                let now = placement.apply(*point);
+                let row = placement.row(now, plane.normal);
+                let weight = DEVIATION_M.powi(-2);
+                information += weight * row * row.transpose();
+                pull += weight * (height_m - plane.height_m(now)) * row;
+            }
+        }
+        (information, pull)
+    }
+}
+
 /// Pieces of the outline against a placement, with the weights that they have.
 pub(super) struct Balance<'a> {
     known: Known<'a>,
-    placement: Placement,
     rows: Vec<Weighted>,
+    /// What is known besides, and its pull.
+    priors: (Information, Unknowns),
+    /// Of outline and priors.
     information: Information,
 }
 
@@ -71,7 +104,7 @@ impl<'a> Balance<'a> {
     pub(super) fn new(measured: &[Measured], placement: &Placement, known: Known<'a>) -> Self {
         let residual_px = |one: &Measured| one.offset_px - placement.offset_px;
         let robust_px = robust_px(measured.iter().map(residual_px));
-        let robust = |one: &Measured| 1.0 / (1.0 + (residual_px(one) / robust_px).powi(2)).powi(2);
+        let robust = |one: &Measured| robust::weight((residual_px(one) / robust_px).powi(2));
         let (mut square, mut total) = (0.0, 0.0);
         for one in measured {
             let weight = robust(one) * one.element.length_px;
@@ -90,49 +123,17 @@ impl<'a> Balance<'a> {
             residual_px: residual_px(one),
             weight: one.precision * robust(one) * one.element.length_px / (unit_variance * ALIKE),
         });
-        let mut balance = Self {
-            rows: rows.collect(),
-            information: Information::zeros(),
-            placement: *placement,
-            known,
-        };
-        balance.information = balance.of_outline() + balance.of_priors().0;
-        balance
-    }
-
-    fn of_outline(&self) -> Information {
-        let rows = self.rows.iter();
-        rows.fold(Information::zeros(), |sum, one| {
+        let rows: Vec<Weighted> = rows.collect();
+        let outline = rows.iter().fold(Information::zeros(), |sum, one| {
             sum + one.weight * one.row * one.row.transpose()
-        })
-    }
-
-    /// What is known besides: its information, and its pull.
-    fn of_priors(&self) -> (Information, Unknowns) {
-        let (mut information, mut pull) = (Information::zeros(), Unknowns::zeros());
-        for rigid in 0..SIZE {
-            information[(rigid, rigid)] += (STEP * self.known.radius_m).powi(-2);
+        });
+        let priors = known.priors(placement);
+        Self {
+            known,
+            rows,
+            information: outline + priors.0,
+            priors,
         }
-        let size = if self.known.is_size_open { FREE } else { HELD };
-        information[(SIZE, SIZE)] += size.powi(-2);
-        pull[SIZE] -= self.placement.size.ln() * size.powi(-2);
-        information[(OFFSET, OFFSET)] += OFFSET_PX.powi(-2);
-        pull[OFFSET] -= self.placement.offset_px * OFFSET_PX.powi(-2);
-        if let Some(Standing {
-            plane,
-            points,
-            heights_m,
-        }) = self.known.standing
-        {
-            for (point, height_m) in points.iter().zip(heights_m) {
-                let now = self.placement.apply(*point);
-                let row = self.placement.row(now, plane.normal);
-                let weight = DEVIATION_M.powi(-2);
-                information += weight * row * row.transpose();
-                pull += weight * (height_m - plane.height_m(now)) * row;
-            }
-        }
-        (information, pull)
     }
 
     /// The step in weighted least squares; none where nothing tells it.
@@ -142,7 +143,7 @@ impl<'a> Balance<'a> {
             sum + one.weight * one.residual_px * one.row
         });
         let factor = self.information.cholesky()?;
-        let mut step = factor.solve(&(outline + self.of_priors().1));
+        let mut step = factor.solve(&(outline + self.priors.1));
         if !self.known.is_size_open {
             step[SIZE] = 0.0;
         }
@@ -161,7 +162,7 @@ impl<'a> Balance<'a> {
         }
         let pulls = blocks
             .values()
-            .fold(self.of_priors().0, |sum, pull| sum + pull * pull.transpose());
+            .fold(self.priors.0, |sum, pull| sum + pull * pull.transpose());
         // It was solved with, so that it has an inverse.
         let inverse = self
             .information
@@ -208,7 +209,7 @@ impl Misfit {
         let (mut sum, mut length_px) = (0.0, 0.0);
         for one in measured {
             let square = (one.offset_px - offset_px).powi(2);
-            sum += one.element.length_px * scale * square / (scale + square);
+            sum += one.element.length_px * robust::loss(square, scale);
             length_px += one.element.length_px;
         }
         Self {
@@ -239,7 +240,7 @@ fn offset_px(measured: &[Measured]) -> f64 {
     for _ in 0..N_ROUNDS {
         let (mut information, mut pull) = (ALIKE * OFFSET_PX.powi(-2), 0.0);
         for one in measured {
-            let robust = 1.0 / (1.0 + ((one.offset_px - offset_px) / Misfit::ROBUST_PX).powi(2)).powi(2);
+            let robust = robust::weight(((one.offset_px - offset_px) / Misfit::ROBUST_PX).powi(2));
             let weight = robust * one.precision * one.element.length_px;
             information += weight;
             pull += weight * one.offset_px;

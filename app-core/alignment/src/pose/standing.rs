@@ -31,7 +31,20 @@ pub(crate) struct Plane {
     pub(crate) point: DVec3,
 }
 
+/// What a toy may stand on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ground {
+    pub(crate) plane: Plane,
+    /// Whether it is known that the toy stands there.
+    pub(crate) is_certain: bool,
+}
+
 impl Plane {
+    /// The most level of some planes: a toy that touches a wall does not stand on it.
+    pub(crate) fn most_level(planes: impl Iterator<Item = Self>, up: DVec3) -> Option<Self> {
+        planes.max_by(|a, b| a.normal.dot(up).total_cmp(&b.normal.dot(up)))
+    }
+
     /// Distance of a point on the side of the normal, in metres.
     pub(crate) fn height_m(&self, point: DVec3) -> f64 {
         self.normal.dot(point - self.point)

@@ -20,6 +20,17 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
     }
 }
 
+/// How much more linear light there is for each unit of the encoded value, at a linear value in [0, 1]: the derivative of
+/// [`linear_from_srgb`].
+#[must_use]
+pub fn linear_per_srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        1.0 / 12.92
+    } else {
+        2.4 / 1.055 * linear.powf(1.4 / 2.4)
+    }
+}
+
 /// Linear light of each code of 8 bits.
 #[must_use]
 pub fn linear_of_codes() -> [f32; 256] {

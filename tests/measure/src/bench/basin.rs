@@ -61,10 +61,6 @@ pub struct Draw {
 pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>, ReplayError> {
     let scene = session.scene();
     let recorded = FrameInput::from(&session.frame(0)?);
-    let middle_in_object = recorded
-        .world_from_object
-        .inverse()
-        .transform_point3(middle(scene, &recorded.world_from_object));
     let mut random = Random::new(seed);
     let draws = (1..=n_draws).map(|index| {
         let part = f64::from(index) / f64::from(n_draws);
@@ -77,10 +73,12 @@ pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>
             })?;
         let pose = found.report.pose.filter(|pose| pose.is_applied);
         let found = found.applied_to(&given);
+        let end = off(scene, &recorded, &found);
+        let places = [&recorded, &found].map(|input| middle(scene, &input.world_from_object));
         Ok(Draw {
             start: off(scene, &recorded, &given),
-            end: off(scene, &recorded, &found),
-            pull: pose.map(|pose| Pull::of(&recorded, &found, middle_in_object, &pose.deviation)),
+            pull: pose.map(|pose| Pull::of(&recorded, places, end.pose_deg, &pose.deviation)),
+            end,
         })
     });
     draws.collect()

@@ -2,7 +2,7 @@
 
 use app_core::alignment::PoseDeviation;
 use app_core::frame::FrameInput;
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 /// An error within that number of deviations is as claimed.
 const WITHIN: f64 = 2.0;
@@ -17,25 +17,17 @@ pub struct Pull {
 }
 
 impl Pull {
-    /// Of the toy's middle, by what is recorded.
+    /// Of the toy's middle in the recorded and in the found pose, and of its turn in degrees, as the recorded camera sees them.
     pub(super) fn of(
         recorded: &FrameInput,
-        found: &FrameInput,
-        middle: DVec3,
+        [there, here]: [DVec3; 2],
+        turn_deg: f64,
         claimed: &PoseDeviation,
     ) -> Self {
         let camera_from_world = recorded.camera.world_from_camera.inverse();
-        let place = |pose: &DMat4| camera_from_world.transform_point3(pose.transform_point3(middle));
-        let moved = place(&found.world_from_object) - place(&recorded.world_from_object);
-        let [there, here] =
-            [recorded, found].map(|input| input.world_from_object.to_scale_rotation_translation().1);
-        let turn_rad = (here * there.inverse()).to_scaled_axis().length();
+        let moved = camera_from_world.transform_vector3(here - there);
         Self {
-            errors: [
-                1e3 * moved.z.abs(),
-                1e3 * moved.truncate().length(),
-                turn_rad.to_degrees(),
-            ],
+            errors: [1e3 * moved.z.abs(), 1e3 * moved.truncate().length(), turn_deg],
             claimed: [
                 1e3 * claimed.depth_m,
                 1e3 * claimed.lateral_m,
