@@ -15,6 +15,7 @@
 //#import common/depth
 //#import common/fullscreen
 //#import common/source
+//#import common/marks
 
 @group(1) @binding(0) var validity: texture_2d<f32>;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
@@ -41,8 +42,8 @@ fn nearest_source(texel: vec2i) -> u32 {
   // Well clear of the toy.
   if marks.b == 1.0 { return NO_SOURCE; }
   let here = textureLoad(gbuffer_depth, texel, 0);
-  // A part too thin to have such a pixel: its own is the best there is.
-  var nearest = select(NO_SOURCE, number_of(vec2i(0)), here > 0.0);
+  // A part too thin to have such a pixel: its own is the best there is, unless that shows a thing before it.
+  var nearest = select(NO_SOURCE, number_of(vec2i(0)), here > 0.0 && !is_before_toy(marks));
   var least = 2 * OTHER_SURFACE;
   for (var y = -REACH_PX; y <= REACH_PX; y++) {
     for (var x = -REACH_PX; x <= REACH_PX; x++) {

@@ -142,6 +142,11 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
     return mix(lit, f, evident.r);
   }
+  // A thing stays as the camera saw it.
+  if is_thing(evident) && evident.b == 1.0 {
+    *change = vec4f(0.0);
+    return f;
+  }
   let models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
   let before = shown_model(b.rgb, clipped, models[0]);
@@ -164,7 +169,8 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let kept = mix(own, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
-  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || evident.a < 1.0) * is_near;
+  let is_withheld = evident.a < 1.0 && !is_thing(evident);
+  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
   *change = vec4f(lit * (after - before), keep_mixed);
   return max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
 }
@@ -218,13 +224,14 @@ fn stillness(texel: vec2i) -> f32 {
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
   let frame_color = frame_at(vec2i(texel));
+  let evident = marks_at(vec2i(texel));
+  if is_before_toy(evident) { return vec4f(frame_color, 1.0); }
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {
     return vec4f(mix(toy.rgb, frame_color, stillness(in_box)), 1.0);
   }
   var change = vec4f(0.0);
-  let evident = marks_at(vec2i(texel));
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.

@@ -33,6 +33,7 @@ mod laid;
 mod light_search;
 mod lights;
 mod no_light;
+mod observer;
 mod outlines;
 mod photograph;
 mod picture;
@@ -47,6 +48,7 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod things;
 mod view;
 mod warning;
 mod withheld;
@@ -58,6 +60,7 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
+use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use photograph::{MOST_OUTLINE_PX, Photograph};
@@ -68,6 +71,7 @@ use view::{AlignedView, Seen};
 pub use directions::LightSearch;
 pub use error::AlignError;
 pub use no_light::NoLight;
+pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
@@ -97,6 +101,8 @@ pub struct Alignment {
     /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
     /// first frame is the one that the [`Aligner`] was made with.
     pub scene: Option<Arc<Scene>>,
+    /// Things that stand in the picture beside the toy; none where nothing tells of any.
+    pub things: Option<Things>,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -112,6 +118,7 @@ impl Alignment {
             world_from_object: input.world_from_object,
             lights: None,
             scene: None,
+            things: None,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }
@@ -125,6 +132,7 @@ impl Alignment {
             .with_camera(self.camera)
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
+            .with_things(self.things.clone().or_else(|| input.things.clone()))
     }
 }
 
@@ -149,6 +157,8 @@ pub struct Aligner {
     /// The pose in the latest view that showed where the toy is.
     held: Option<DMat4>,
     lights: Option<KeptLights>,
+    /// In the latest view.
+    things: Option<Things>,
     /// Whether the scene's plates are in another light than they were taken in.
     is_relit: bool,
     are_shadows_withheld: bool,
@@ -170,6 +180,7 @@ impl Aligner {
             view: None,
             held: None,
             lights: None,
+            things: None,
             is_relit: false,
             are_shadows_withheld: false,
             probe: None,
@@ -240,11 +251,21 @@ impl Aligner {
             Some(kept) => self.watch_lights(kept, &seen)?,
             None => self.find_lights(given, &seen)?,
         });
+        self.things = self.things_beside(&seen)?;
         if seen.view.is_trusted(MOST_OUTLINE_PX) {
             self.held = Some(seen.view.world_from_object);
         }
         self.view = Some(seen.view);
         Ok(self.aligned(input))
+    }
+
+    /// Things that stand beside the toy, in the lights that are in use.
+    fn things_beside(&self, seen: &Seen) -> Result<Option<Things>, ToyError> {
+        // A shadow that is withheld tells of none.
+        let lights = self.lights.as_ref().filter(|_| !self.are_shadows_withheld);
+        lights.map_or(Ok(None), |lights| {
+            seen.photograph.things(&self.scene, &seen.input, lights.in_use())
+        })
     }
 
     /// The view with receivers under the toy, where it is a guess where they are and the picture shows the toy.
@@ -424,6 +445,7 @@ impl Aligner {
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
+            things: self.things.clone(),
             report,
             warnings: warnings.collect(),
         }

@@ -9,11 +9,12 @@ use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
-use super::{lights, pose};
+use super::{lights, pose, things};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
+use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 /// A pose whose outline stays farther from the picture's, in pixels, was not found.
@@ -261,6 +262,21 @@ impl Photograph {
                 errors: found.losses,
             }
         }))
+    }
+
+    /// Things that stand beside the toy in its place, in given lights; none where nothing tells of any.
+    pub(super) fn things(&self, scene: &Scene, input: &FrameInput, lights: &[Light]) -> Result<Option<Things>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let found = things::find(&things::Sight {
+            shape: &shape,
+            paint: &paint,
+            receivers: &self.receivers,
+            pyramid: &self.pyramid,
+            lights,
+            world_from_camera: &input.camera.world_from_camera,
+        });
+        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, input.camera)))
     }
 
     /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.

@@ -7,6 +7,7 @@ use glam::DMat4;
 use crate::camera_frame::CameraImage;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
+use crate::things::Things;
 
 /// A camera frame of the real, static toy, and the pose to show.
 ///
@@ -28,6 +29,8 @@ pub struct FrameInput {
     pub lights: Option<Arc<[Light]>>,
     /// What the platform estimates of the light, where it does. Alignment alone looks at it, and only where no light is listed.
     pub light_estimate: Option<LightEstimate>,
+    /// Things that stand in the picture beside the toy, where any are known.
+    pub things: Option<Things>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
@@ -46,6 +49,7 @@ impl FrameInput {
             world_from_object,
             lights: None,
             light_estimate: None,
+            things: None,
             shown_pose: Pose::default(),
             effect: 1.0,
         }
@@ -90,6 +94,13 @@ impl FrameInput {
     #[must_use]
     pub fn with_light_estimate(mut self, estimate: Option<LightEstimate>) -> Self {
         self.light_estimate = estimate;
+        self
+    }
+
+    /// Sets the things that stand in the picture beside the toy.
+    #[must_use]
+    pub fn with_things(mut self, things: Option<Things>) -> Self {
+        self.things = things;
         self
     }
 

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use app_core::alignment::{
-    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, RatioAlignment,
+    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
+use app_core::things::Things;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
 
@@ -97,6 +98,10 @@ pub struct Alignments {
     lights: Lights,
     /// None where frames stay as they were recorded.
     aligner: Option<Aligner>,
+    /// What looks at frames that stay as they were recorded.
+    observer: Observer,
+    /// Things in the latest of them, and its index.
+    observed: Option<(usize, Option<Things>)>,
     first: usize,
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
@@ -190,6 +195,8 @@ impl Alignments {
         Self {
             lights: Lights::Given,
             aligner: None,
+            observer: Observer::default(),
+            observed: None,
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
@@ -261,6 +268,9 @@ impl Alignments {
     /// # Errors
     /// When it cannot be aligned.
     pub fn align(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
+        if self.aligner.is_none() {
+            return self.observe(scene, index, frame);
+        }
         let is_known = self.of(index).is_some();
         let Some(aligner) = self.aligner.as_mut().filter(|_| !is_known) else {
             return Ok(());
@@ -289,6 +299,17 @@ impl Alignments {
                 Lights::Found | Lights::Probe => scene.lights.clone(),
             },
         });
+        Ok(())
+    }
+
+    /// Looks at a frame that stays as it was recorded.
+    fn observe(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
+        let observed = self.observer.observed(scene, &self.lights.input(frame));
+        let observed = observed.map_err(|reason| ReplayError::Align {
+            index,
+            reason: Box::new(reason),
+        })?;
+        self.observed = Some((index, observed.things));
         Ok(())
     }
 
@@ -364,7 +385,10 @@ impl Alignments {
                 .alignment
                 .applied_to(&input)
                 .with_lights(aligned.lights(preset).or_else(|| input.lights.clone())),
-            None => input,
+            None => {
+                let observed = self.observed.as_ref().filter(|(of, _)| *of == index);
+                input.with_things(observed.and_then(|(_, things)| things.clone()))
+            }
         }
     }
 }

@@ -30,6 +30,7 @@ pub mod retarget;
 pub mod search;
 pub mod self_shadow;
 pub mod sets;
+pub mod things;
 pub mod tint;
 pub mod validity;
 pub mod visibility;

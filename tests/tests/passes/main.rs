@@ -49,4 +49,5 @@ mod stand;
 mod tint;
 mod toy;
 mod validity;
+mod things;
 mod withheld;

@@ -8,6 +8,7 @@
 
 mod backdrop;
 mod cast;
+mod classes;
 mod discover;
 mod evidence;
 mod floor;
@@ -37,6 +38,7 @@ use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
 use cast::flattened;
+pub(crate) use classes::{Compared, compare};
 pub(super) use discover::scores;
 pub(super) use follow::{Around, Followed, View};
 pub(super) use guess::{Guess, Hints};

@@ -109,6 +109,11 @@ impl<'a> Shadows<'a> {
         }
     }
 
+    /// The part of an even light from all around that the toy takes from a pixel.
+    pub(super) fn ambient_taken(&self, index: usize) -> f32 {
+        self.ambient[index][0]
+    }
+
     /// Width of the widest penumbra, about.
     pub(super) fn penumbra_px(&self, lamp: &Lamp) -> f64 {
         2.0 * lamp.spread * self.px_per_rad

@@ -71,6 +71,15 @@ impl Paint {
         })
     }
 
+    /// What the toy should look like where it is given, at each pixel of its coverage, in the light that `level` shows on it; none where
+    /// that is too little.
+    pub(crate) fn shown(&self, level: &Level, coverage: &Coverage) -> Option<Vec<Option<Color>>> {
+        let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
+        let light = self.light(&placement, level, coverage)?;
+        let shaded = Lit { paint: self, light: &light }.shaded(&placement, level, coverage);
+        Some(coverage.pixels().map(|at| shaded.at(at)).collect())
+    }
+
     /// The light on the toy, by what `level` shows of it where it is thought to be; none where that is too little.
     pub(super) fn light(&self, placement: &Placement, level: &Level, coverage: &Coverage) -> Option<Light> {
         Light::fitted(

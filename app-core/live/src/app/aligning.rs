@@ -11,6 +11,7 @@ use app_alignment::{AlignError, Aligner, Alignment};
 use app_scene::camera_frame::Anchor;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Scene};
+use app_scene::things::Things;
 
 /// The outline of a toy that was found lies this near to the picture's, root mean square in pixels: exact poses reach 1.2 where a
 /// shadow hides a part of it, and 2 is that of no toy at all.
@@ -111,6 +112,7 @@ pub(super) struct Place {
     world_from_anchored: DMat4,
     world_from_object: DMat4,
     lights: Option<Arc<[Light]>>,
+    things: Option<Things>,
     pub(super) verdict: Option<Verdict>,
 }
 
@@ -127,6 +129,7 @@ impl Place {
             world_from_anchored: DMat4::IDENTITY,
             world_from_object: scene.world_from_object,
             lights: None,
+            things: None,
             verdict: None,
             scene,
         }
@@ -167,6 +170,7 @@ impl Place {
             .with_camera(camera)
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone())
+            .with_things(self.things.clone())
     }
 
     /// An alignment of `input`, where it is time for one.
@@ -223,6 +227,7 @@ impl Place {
         self.world_from_anchored = alignment.camera.world_from_camera * given.world_from_camera.inverse();
         self.world_from_object = alignment.world_from_object;
         self.lights = alignment.lights;
+        self.things = alignment.things;
         // What an alignment told that missed the toy counts from here on, too.
         self.scene = Arc::clone(aligner.scene());
         self.verdict = Some(verdict);

@@ -93,6 +93,8 @@ pub enum Warning {
     },
     /// The camera sees what the model cannot explain.
     Outlier(Outlier),
+    /// Something beside the toy is in the pictures.
+    Thing(Thing),
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
     /// The real toy is out of the picture, but what is drawn is not.
@@ -185,6 +187,7 @@ impl fmt::Display for Warning {
             ),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
+            Self::Thing(thing) => thing.fmt(f),
             Self::TurnedDown {
                 what,
                 triangles,
@@ -290,6 +293,33 @@ impl fmt::Display for Outlier {
                 "something that the plate does not show lies on the receiver: it stays as photographed"
             }
             Self::Shadow => "a shadow is there that no listed light casts: it stays as photographed",
+        })
+    }
+}
+
+/// What is in the pictures beside the toy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Thing {
+    /// It stands where the toy's shadow falls.
+    OnReceiver,
+    /// It hides a part of the real toy.
+    BeforeToy,
+    /// The plate shows it, and the picture does not.
+    InPlateAlone,
+}
+
+impl fmt::Display for Thing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::OnReceiver => {
+                "a thing stands where the shadow falls: it stays as photographed, without a new shadow; move it away, or list its top as a receiver if it is flat"
+            }
+            Self::BeforeToy => {
+                "a thing stands before the toy: the toy is drawn behind it; the colours of what it hides are those of the toy's model"
+            }
+            Self::InPlateAlone => {
+                "the plate shows something that the picture does not, such as the toy in another place or the shadow of a hand: that part of the plate is estimated; take the plate again"
+            }
         })
     }
 }

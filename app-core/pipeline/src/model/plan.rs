@@ -104,6 +104,8 @@ pub struct Plan {
     pub is_noise_removed: bool,
     /// Whether the real shadow is withheld from all but the first fits.
     pub is_shadow_withheld: bool,
+    /// Whether things are marked beside the toy.
+    pub has_things: bool,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
     /// What casts shadows.
@@ -145,6 +147,7 @@ impl Plan {
             n_coverage_positions: settings.n_coverage_positions,
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
+            has_things: facts.has_things,
             self_shadow: self_shadow(n_lights, settings),
             casters: Casters::new(facts, settings),
             n_fit_steps: N_FIT_STEPS,
@@ -169,7 +172,7 @@ impl Plan {
         let sizes = |plan: &Self| {
             let counts = [plan.n_lights, plan.n_ambient_directions];
             let boxes_px = [plan.toy_box.size_px, plan.physical_box.size_px];
-            (plan.region.size_px, boxes_px, plan.ambient_px, counts)
+            (plan.region.size_px, boxes_px, plan.ambient_px, counts, plan.has_things)
         };
         sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
     }
@@ -218,13 +221,13 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
     })
 }
 
-/// A box of the image as one of the region. A shadow that is withheld marks pixels all over that.
+/// A box of the image as one of the region. A shadow that is withheld, and things, mark pixels all over that.
 fn box_in_region(of_image: Option<PixelRect>, facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
     let whole = PixelRect {
         origin_px: UVec2::ZERO,
         size_px: facts.region.size_px,
     };
-    if settings.is_shadow_withheld {
+    if settings.is_shadow_withheld || facts.has_things {
         return whole;
     }
     in_region(of_image, &facts.region).unwrap_or(PixelRect {

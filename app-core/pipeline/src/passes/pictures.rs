@@ -6,6 +6,7 @@ use glam::UVec2;
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::{Buffer, Gpu, Mat3Columns, Mirrors, Render, TextureView, mirrors, n_pixels, shared_struct};
+use crate::passes::things::Things;
 use app_scene::camera_frame::YcbcrEncoding;
 
 /// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.
@@ -115,6 +116,8 @@ pub(crate) struct Pictures<'a> {
     pub(crate) plate_views: &'a Buffer,
     /// Whether the first plate was taken from this very camera.
     pub(crate) is_same_view: bool,
+    /// Things that stand in the frame beside the toy.
+    pub(crate) things: Option<&'a Things>,
 }
 
 /// The picture that is shown: the camera image, and the region's picture to lay over it.

@@ -29,6 +29,8 @@ pub struct SceneFacts {
     pub is_plate_complete: bool,
     /// Whether a plate was brought to the exposure of another.
     pub are_plates_scaled: bool,
+    /// Whether things stand in the picture beside the toy, or a part of the plate is wrong.
+    pub has_things: bool,
 }
 
 /// Factor up to which a penumbra's width may change before it counts as another.

@@ -25,6 +25,7 @@ use crate::gpu::{Gpu, GpuError, Recorder, Texture, n_pixels};
 use crate::passes::pictures::{ComposedFrame, Frame, Pictures, RegionOverlay};
 use crate::passes::present;
 use crate::passes::present::OUTPUT_FORMAT;
+use crate::passes::things::Things;
 use crate::passes::toy_mesh::{Casting, ToyMesh};
 use crate::plan::{Change, FrameDelta, SkippedWork};
 use crate::plates::store::PlateStore;
@@ -35,6 +36,7 @@ use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Camera, Image, Scene};
+use app_scene::things::Things as GivenThings;
 use app_scene::toy;
 use app_scene::toy::{PosedMesh, Toy, ToyError};
 
@@ -80,6 +82,8 @@ pub(crate) struct Stage {
     posed: PosedMesh,
     camera: CameraTexture,
     plates: PlateStore,
+    /// Things that stand in the latest picture beside the toy.
+    things: Option<Things>,
     present: present::Pass,
     state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
@@ -105,6 +109,8 @@ struct MethodState {
     is_first_view: bool,
     /// Visibilities were injected after it was learned.
     is_visibility_outdated: bool,
+    /// Things that it was learned beside.
+    things: Option<GivenThings>,
     /// Settings were turned down or up after it was learned.
     are_settings_outdated: bool,
     /// The object or the lights moved after it was learned.
@@ -159,6 +165,7 @@ impl Stage {
             posed,
             camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
+            things: None,
             present: present::Pass::new(gpu),
             state: None,
             reached_rects: Vec::new(),
@@ -293,6 +300,7 @@ impl Stage {
         self.drop_method(gpu);
         self.camera.forget();
         self.plates.forget();
+        self.things = None;
         self.is_object_placed = false;
     }
 
@@ -365,6 +373,7 @@ impl Stage {
             self.toy.shown.write(gpu, &self.posed);
         }
         recorder.stages.begin("reuse");
+        self.take_things(gpu, input);
         let change = self.update_method(gpu, input, footprint);
         report.warnings.extend(self.cost_warning.clone());
         recorder.stages.begin("encode");
@@ -391,6 +400,10 @@ impl Stage {
             };
             gpu.write(&self.plates.views, &[views]);
         }
+        if let Some(things) = &self.things {
+            let world_from_plane = self.layout().world_from_anchor();
+            things.follow(gpu, &footprint.view, &method.region(), &world_from_plane);
+        }
         recorder.n_pixels = n_pixels(method.region().size_px);
         let frame = match method {
             Method::Model(_) => self.camera.frame(gpu),
@@ -404,6 +417,7 @@ impl Stage {
             plates: &self.plates.pictures.view,
             plate_views: &self.plates.views,
             is_same_view: footprint.choice.is_same_view,
+            things: self.things.as_ref(),
         };
         method.encode(recorder, &self.toy, &pictures, delta);
         if delta.keeps_pose() {
@@ -423,8 +437,23 @@ impl Stage {
         report.change = Some(change);
         report.warnings.extend(self.plate_warning(footprint));
         report.warnings.extend(self.light_warning());
+        report.warnings.extend(self.thing_warnings());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
+        }
+    }
+
+    /// Takes the things of a picture, unless they are there already; the baseline knows of none.
+    fn take_things(&mut self, gpu: &Gpu, input: &FrameInput) {
+        let given = input.things.as_ref();
+        let given = given.filter(|things| matches!(self.settings, Settings::Model(_)) && things.has_any());
+        let is_known = match (given, &self.things) {
+            (None, None) => true,
+            (Some(given), Some(known)) => known.given().is(given),
+            _ => false,
+        };
+        if !is_known {
+            self.things = given.map(|given| Things::new(gpu, given));
         }
     }
 

@@ -11,7 +11,7 @@ use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, uniform};
-use crate::frame::warning::Warning;
+use crate::frame::warning::{Thing, Warning};
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::governor::QualityStep;
@@ -22,12 +22,14 @@ use crate::model::state::SceneState;
 use crate::model::state::grids::{grids_over, holds};
 use crate::passes::globals::{Globals, globals};
 use crate::passes::plate::PlateViews;
+use crate::passes::things::Things;
 use crate::plan::{Change, SceneFacts};
 use crate::plates::choice::{covered_fraction, exposed};
 use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Plate};
+use app_scene::things::Mark;
 
 /// Sizes of the region under a moving camera, so that it keeps one for a while.
 const REGION_STEP_PX: u32 = 64;
@@ -86,15 +88,29 @@ impl Stage {
         // What was injected belongs to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
+        let is_known = state.image.as_ref().is_some_and(|known| known.is(&input.image));
+        let (known, given) = (state.things.as_ref(), self.things.as_ref().map(Things::given));
+        let are_things_known = match (known, given) {
+            (None, None) => true,
+            (Some(known), Some(given)) => known.is(given),
+            _ => false,
+        };
+        // What stood in a picture that was learned from was learned, too.
+        let is_fit_outdated = !are_things_known && given.is_some() && (known.is_none() || is_known);
+        state.things = given.cloned();
         if !has_grids {
             Reuse::Nothing
+        } else if is_fit_outdated {
+            Reuse::Targets
+        } else if !are_things_known {
+            Reuse::SceneState
         } else if mem::take(&mut state.is_placement_outdated) {
             Reuse::Targets
         } else if !is_within || are_settings_outdated {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region
-        } else if state.image.as_ref().is_some_and(|known| known.is(&input.image)) {
+        } else if is_known {
             Reuse::Picture
         } else {
             Reuse::View
@@ -120,6 +136,7 @@ impl Stage {
             exposure: input.exposure,
             n_pictures: 0,
             image: None,
+            things: self.things.as_ref().map(|things| things.given().clone()),
             light_indices: self.lights.indices.clone(),
             is_first_view: true,
             is_visibility_outdated: false,
@@ -230,7 +247,9 @@ impl Stage {
             pixel_in_object: self.pixel_in_object(footprint),
             penumbrae_px: footprint.penumbrae_px.clone(),
             n_receivers,
-            is_plate_complete: self.is_plate_complete(footprint, &region),
+            is_plate_complete: self.is_plate_complete(footprint, &region)
+                && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
+            has_things: self.things.is_some(),
             are_plates_scaled: footprint.plate_views.are_scaled(),
         }
     }
@@ -282,6 +301,20 @@ impl Stage {
             .used
             .is_empty()
             .then_some(Warning::NoLight { has_ambient })
+    }
+
+    /// What is known to be in the pictures beside the toy.
+    pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
+        let things = self.things.as_ref();
+        let told = [
+            (Mark::Thing, Thing::OnReceiver),
+            (Mark::BeforeToy, Thing::BeforeToy),
+            (Mark::WrongPlate, Thing::InPlateAlone),
+        ];
+        let told = told.into_iter().filter(move |(mark, _)| {
+            things.is_some_and(|things| things.given().count(*mark) > 0)
+        });
+        told.map(|(_, thing)| Warning::Thing(thing))
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {

@@ -148,6 +148,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
     };
     Plan::new(
         &SceneFacts {
+            has_things: false,
             region,
             physical_toy: Some(region),
             toy_box: Some(region),

@@ -42,6 +42,7 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
         size_px: size_px.into(),
     };
     SceneFacts {
+        has_things: false,
         region,
         physical_toy: Some(region),
         toy_box: Some(region),

@@ -22,7 +22,7 @@ use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::Change;
 
 passes!(Plan:
-    gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
+    gbuffer, validity, things, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
 );
 
 /// Rounds in which plate and light are estimated from one another.
@@ -154,6 +154,7 @@ impl CapturePath<'_> {
         passes
             .validity
             .encode(recorder, &self.validity_inputs(), &of.validity);
+        self.mark_things(recorder);
         self.lighting.encode_visibility(recorder, light, posed, maps);
         self.plate(recorder);
     }
@@ -168,6 +169,17 @@ impl CapturePath<'_> {
         // The fits before `estimate` read the photographed plate, too.
         let target = self.photographed().unwrap_or(&self.captured.plate);
         self.plate.encode(recorder, &inputs, target);
+        if let Some(things) = self.pictures.things.filter(|things| things.is_plate_wrong()) {
+            self.passes.things.forget_plate(recorder, things, &target.view);
+        }
+    }
+
+    fn mark_things(&self, recorder: &mut Recorder<'_>) {
+        if let Some(things) = self.pictures.things {
+            let of = &self.captured.by_pass;
+            let (things_of, marks) = (&of.things, &of.validity.marks);
+            self.passes.things.mark(recorder, things, things_of, marks);
+        }
     }
 
     fn withhold(&self, recorder: &mut Recorder<'_>) {

@@ -33,8 +33,8 @@ impl Marks {
         let mut near = Tiles::over(region.plan.region.size_px, TILE_PX);
         let mut shadowed = near.clone();
         let globals = region.globals_on_device();
-        if region.plan.is_shadow_withheld {
-            // The validity then tells of shadows, too.
+        if region.plan.is_shadow_withheld || region.plan.has_things {
+            // The validity then tells of shadows or of things, too.
             near.mark_all();
         } else {
             let camera = ByCamera {

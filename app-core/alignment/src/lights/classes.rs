@@ -1,0 +1,365 @@
+//! What each pixel beside the toy shows: a receiver in the light that falls on it, or something else.
+//!
+//! Something that stands where the shadow would fall shows frame = plate there, so that a fit of all pixels finds no shadow. So frame
+//! over plate is compared: each pixel counts once, however bright. Where a light is hidden, the part of the light that this ratio implies
+//! has a peak for each thing that such pixels show. The one at no light at all is "nothing has changed", which is no shadow; the largest
+//! of the others starts the fit, and a mixture of three classes ends it: the receiver, what has not changed, and anything else.
+
+use glam::{DMat4, IVec2};
+
+use super::lamp::Lamp;
+use super::shading::{FIRST_LAMP, Factors, Shading};
+use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
+use super::backdrop::QUADRATIC;
+use crate::picture::{Color, Level, index_in, noise_deviation, places};
+use crate::raster::Rasterizer;
+use crate::receivers::SeenReceiver;
+use crate::shape::Shape;
+use app_scene::scene::Light;
+
+/// Part of a light that is hidden from where it tells what the light gives.
+const HIDDEN: f32 = 0.7;
+/// Part of every light up to which a pixel is in the open.
+const OPEN: f32 = 0.02;
+/// Bounce of a toy of middle grey, as in `fit_solve`.
+const BOUNCE: f32 = 0.27;
+/// Bins of the part of the light, from none to all of it.
+const N_BINS: usize = 100;
+/// Deviation of the blur of the histogram, in bins.
+const BLUR_BINS: f32 = 1.5;
+/// A light gives at least that part, or its peak is that of what has not changed.
+const LEAST_SHARE: f32 = 0.12;
+/// Part of the votes that a peak must have.
+const LEAST_VOTES: f32 = 0.05;
+/// How far a vote may lie from its peak, as a part of the light.
+const OF_PEAK: f32 = 0.08;
+/// Deviation of what has not changed, and of the receiver at the start and at least: model and pictures differ by as much.
+const UNCHANGED: f32 = 0.06;
+const FIRST_DEVIATION: f32 = 0.08;
+const LEAST_DEVIATION: f32 = 0.012;
+/// What anything else shows lies evenly between none and that many plates.
+const MOST_RATIO: f32 = 1.5;
+/// A pixel from which the model takes less can have the shadow of nothing.
+const CHANGED: f32 = 0.12;
+/// Rounds of the mixture.
+const N_ROUNDS: usize = 4;
+/// Of what shows no receiver, the part that shows what has not changed, and anything else.
+const OF_THE_REST: [f32; 2] = [0.6, 0.4];
+/// Probability of the receiver before anything is known.
+const FIRST_PRIOR: f32 = 0.6;
+/// No prior is nearer to none or to all.
+const LEAST_PRIOR: f32 = 0.05;
+/// No exposure is lower.
+const LEAST_GAIN: f64 = 1e-3;
+/// Reach of the blur of the classes' probabilities, in pixels of the level.
+const BLUR_PX: i32 = 3;
+
+/// A pixel beside the toy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compared {
+    /// Where, in pixels of the level.
+    pub(crate) at: IVec2,
+    /// Of frame over plate, at the plate's exposure.
+    pub(crate) ratio: Color,
+    /// The same by the model.
+    pub(crate) model: Color,
+    /// Noise of the ratio, as a deviation.
+    pub(crate) noise: f32,
+    /// Probability that it shows the receiver.
+    pub(crate) receiver: f32,
+}
+
+/// Compares a level's pixels beside the toy with what given lights make of the plate; none where too little is seen, no plate shows the
+/// place, or no shadow of the lights does.
+pub(crate) fn compare(
+    lights: &[Light],
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    level: &Level,
+    world_from_camera: &DMat4,
+) -> Option<Vec<Compared>> {
+    level.plate.as_ref()?;
+    let camera_from_world = world_from_camera.inverse();
+    let lamps = lights.iter().map(|light| Lamp::new(light, &camera_from_world, shape.centre));
+    let lamps = lamps.collect::<Option<Vec<_>>>()?;
+    let mut raster = Rasterizer::default();
+    let mut shadows = Shadows::new(&mut raster, (shape, receivers), level, None);
+    if shadows.pixels.len() < LEAST_PIXELS || lamps.is_empty() {
+        return None;
+    }
+    let taken = shadows.taken_of_all(&mut raster, &lamps);
+    let gain = open_gain(&shadows, &taken)?;
+    let shares = shares(&shadows, &taken, &gain)?;
+    let mut mixture = Mixture::new(&shadows, &taken, level.frame.size_px);
+    let shading = first_shading(&shares, &gain, shadows.caster.receivers.len());
+    mixture.predict(&shadows, &shading);
+    mixture.classify(FIRST_DEVIATION);
+    for _ in 0..N_ROUNDS {
+        mixture.weigh(&mut shadows);
+        let shading = shadows.shaded(&taken).fit(receivers.len(), ROBUST_FAR);
+        mixture.predict(&shadows, &shading);
+        mixture.classify(mixture.deviation());
+    }
+    Some(mixture.compared)
+}
+
+/// Median of frame over plate in the open, for each channel; none where nothing is.
+fn open_gain(shadows: &Shadows<'_>, taken: &[Vec<f32>]) -> Option<Color> {
+    let open = shadows.pixels.iter().enumerate().filter(|(index, pixel)| {
+        taken.iter().all(|taken| taken[*index] < OPEN) && pixel.precision.iter().all(|precision| *precision > 0.0)
+    });
+    let ratios: Vec<Color> = open.map(|(_, pixel)| ratio(pixel.frame, pixel.plate)).collect();
+    medians(&ratios)
+}
+
+fn medians(colors: &[Color]) -> Option<Color> {
+    if colors.is_empty() {
+        return None;
+    }
+    Some([0, 1, 2].map(|channel| {
+        let mut values: Vec<f32> = colors.iter().map(|color| color[channel]).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f32::total_cmp).1
+    }))
+}
+
+fn ratio(frame: Color, plate: Color) -> Color {
+    // Pixels of no precision are never asked, and all others have a plate above the darkest codes.
+    [0, 1, 2].map(|channel| if plate[channel] > 0.0 { frame[channel] / plate[channel] } else { 0.0 })
+}
+
+/// The part of the light that each lamp gives, by the largest peak of what hidden pixels imply; none where no lamp has such a peak.
+fn shares(shadows: &Shadows<'_>, taken: &[Vec<f32>], gain: &Color) -> Option<Vec<Color>> {
+    let shares: Vec<Option<Color>> = (0..taken.len()).map(|lamp| share(shadows, taken, lamp, gain)).collect();
+    if shares.iter().all(Option::is_none) {
+        return None;
+    }
+    Some(shares.into_iter().map(|share| share.unwrap_or([0.0; 3])).collect())
+}
+
+fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -> Option<Color> {
+    let is_hidden = |index: usize| {
+        let others = taken.iter().enumerate().filter(|(other, _)| *other != lamp);
+        taken[lamp][index] > HIDDEN && others.map(|(_, taken)| taken[index]).all(|taken| taken < OPEN)
+    };
+    let votes: Vec<Color> = (0..shadows.pixels.len())
+        .filter(|index| is_hidden(*index))
+        .filter(|index| shadows.pixels[*index].precision.iter().all(|precision| *precision > 0.0))
+        .filter_map(|index| implied(shadows, index, taken[lamp][index], gain))
+        .collect();
+    let mean = |vote: &Color| vote.iter().sum::<f32>() / 3.0;
+    let peak = peak(votes.iter().map(mean))?;
+    let of_peak: Vec<Color> = votes.into_iter().filter(|vote| (mean(vote) - peak).abs() < OF_PEAK).collect();
+    medians(&of_peak)
+}
+
+/// The part of the light that a lamp gives, if a pixel that is hidden from it shows the receiver; none where as much of the ambient light is hidden.
+fn implied(shadows: &Shadows<'_>, index: usize, taken: f32, gain: &Color) -> Option<Color> {
+    let pixel = &shadows.pixels[index];
+    let hidden = shadows.ambient_taken(index);
+    let spread = taken - hidden;
+    (spread > 0.25).then(|| {
+        let ratio = ratio(pixel.frame, pixel.plate);
+        let bounced = (1.0 - hidden) * (1.0 + BOUNCE * hidden);
+        [0, 1, 2].map(|channel| (bounced - ratio[channel] / gain[channel]) / spread)
+    })
+}
+
+/// Where most values lie, beyond what has not changed; none where none has enough of them.
+fn peak(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut bins = [0.0_f32; N_BINS];
+    let mut n_values = 0.0;
+    for value in values {
+        n_values += 1.0;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the bins")]
+        let bin = (value.clamp(0.0, 1.0) * (N_BINS - 1) as f32).round() as usize;
+        bins[bin] += 1.0;
+    }
+    let blurred = blurred(&bins);
+    let first = (LEAST_SHARE * N_BINS as f32).ceil();
+    let is_peak = |bin: usize| {
+        let around = &blurred[bin.saturating_sub(1)..(bin + 2).min(N_BINS)];
+        around.iter().all(|other| *other <= blurred[bin])
+    };
+    let votes = |bin: usize| {
+        let reach = (OF_PEAK * N_BINS as f32).round();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some bins")]
+        let reach = reach as usize;
+        bins[bin.saturating_sub(reach)..(bin + reach + 1).min(N_BINS)].iter().sum::<f32>()
+    };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bin")]
+    let peaks = (first as usize..N_BINS).filter(|bin| is_peak(*bin));
+    let best = peaks.max_by(|a, b| votes(*a).total_cmp(&votes(*b)))?;
+    (n_values > 0.0 && votes(best) >= LEAST_VOTES * n_values).then(|| best as f32 / (N_BINS - 1) as f32)
+}
+
+fn blurred(bins: &[f32; N_BINS]) -> [f32; N_BINS] {
+    std::array::from_fn(|bin| {
+        let weights = bins.iter().enumerate().map(|(other, votes)| {
+            let away = (other as f32 - bin as f32) / BLUR_BINS;
+            votes * (-0.5 * away * away).exp()
+        });
+        weights.sum()
+    })
+}
+
+/// What lamps with shares give on every receiver; the rest is light from all around.
+fn first_shading(shares: &[Color], gain: &Color, n_receivers: usize) -> Shading {
+    let of_channel = |channel: usize| {
+        let mut factors = Factors::zeros();
+        let gain = f64::from(gain[channel]);
+        factors[0] = gain;
+        let mut rest = 1.0;
+        for (lamp, share) in shares.iter().enumerate() {
+            let share = f64::from(share[channel]).clamp(0.0, 1.0);
+            factors[FIRST_LAMP + lamp] = gain * share;
+            rest -= share;
+        }
+        factors[QUADRATIC] = gain * rest.max(0.0);
+        factors
+    };
+    Shading {
+        factors: vec![[0, 1, 2].map(of_channel); n_receivers],
+        loss: f64::INFINITY,
+    }
+}
+
+/// The classes of the pixels.
+struct Mixture<'a> {
+    taken: &'a [Vec<f32>],
+    size_px: IVec2,
+    /// As the pixels say it.
+    precisions: Vec<Color>,
+    compared: Vec<Compared>,
+}
+
+impl<'a> Mixture<'a> {
+    fn new(shadows: &Shadows<'_>, taken: &'a [Vec<f32>], size_px: IVec2) -> Self {
+        let compared = shadows.pixels.iter().map(|pixel| {
+            let noise = [0, 1, 2].map(|channel| noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE));
+            Compared {
+                at: pixel.at,
+                ratio: [1.0; 3],
+                model: [1.0; 3],
+                noise: noise.into_iter().fold(0.0, f32::max),
+                receiver: FIRST_PRIOR,
+            }
+        });
+        Self {
+            taken,
+            size_px,
+            precisions: shadows.pixels.iter().map(|pixel| pixel.precision).collect(),
+            compared: compared.collect(),
+        }
+    }
+
+    /// Compares all pixels with a shading.
+    fn predict(&mut self, shadows: &Shadows<'_>, shading: &Shading) {
+        let shaded = shadows.shaded(self.taken);
+        for (index, compared) in self.compared.iter_mut().enumerate() {
+            let pixel = &shadows.pixels[index];
+            let columns = shaded.columns(index);
+            let ratio = ratio(pixel.frame, pixel.plate);
+            for channel in 0..3 {
+                let factors = &shading.factors[pixel.receiver][channel];
+                let gain: f64 = (0..QUADRATIC).map(|term| columns[term] * factors[term]).sum();
+                #[allow(clippy::cast_possible_truncation, reason = "ratios, to 7 digits")]
+                let (gain, lit) = (gain.max(LEAST_GAIN) as f32, columns.dot(factors) as f32);
+                compared.ratio[channel] = ratio[channel] / gain;
+                compared.model[channel] = lit / gain;
+            }
+        }
+    }
+
+    /// Takes pixels for the receiver as far as they are like what is predicted and those around them are.
+    fn classify(&mut self, deviation: f32) {
+        let priors = self.priors();
+        for (compared, prior) in self.compared.iter_mut().zip(priors) {
+            compared.receiver = compared.probability(prior, deviation);
+        }
+    }
+
+    /// Probability of the receiver by the pixels around each: all alike at first.
+    fn priors(&self) -> Vec<f32> {
+        let mut sums = vec![[0.0; 2]; (self.size_px.x * self.size_px.y) as usize];
+        for compared in &self.compared {
+            if let Some(index) = index_in(self.size_px, compared.at) {
+                sums[index] = [compared.receiver, 1.0];
+            }
+        }
+        let blurred = box_blurred(&box_blurred(&sums, self.size_px, IVec2::X), self.size_px, IVec2::Y);
+        let prior = self.compared.iter().map(|compared| {
+            let [sum, n] = index_in(self.size_px, compared.at).map_or([1.0, 1.0], |index| blurred[index]);
+            (sum / n.max(1.0)).clamp(LEAST_PRIOR, 1.0 - LEAST_PRIOR)
+        });
+        prior.collect()
+    }
+
+    /// Makes pixels count by the probability that they show the receiver.
+    fn weigh(&self, shadows: &mut Shadows<'_>) {
+        for ((pixel, precision), compared) in shadows.pixels.iter_mut().zip(&self.precisions).zip(&self.compared) {
+            pixel.precision = precision.map(|precision| precision * compared.receiver);
+        }
+    }
+
+    /// Deviation of the pixels that show the receiver from what is predicted.
+    fn deviation(&self) -> f32 {
+        let near = self.compared.iter().filter(|compared| compared.receiver > 0.5 && compared.is_changed());
+        let mut away: Vec<f32> = near.map(Compared::away).collect();
+        if away.is_empty() {
+            return LEAST_DEVIATION;
+        }
+        let middle = away.len() / 2;
+        let median = *away.select_nth_unstable_by(middle, f32::total_cmp).1;
+        (1.4826 * median).clamp(LEAST_DEVIATION, FIRST_DEVIATION)
+    }
+}
+
+/// Sums over a box along an axis.
+fn box_blurred(values: &[[f32; 2]], size_px: IVec2, axis: IVec2) -> Vec<[f32; 2]> {
+    let sum = |at: IVec2| {
+        let taps = (-BLUR_PX..=BLUR_PX).filter_map(|step| index_in(size_px, at + step * axis));
+        taps.fold([0.0; 2], |sum, index| [sum[0] + values[index][0], sum[1] + values[index][1]])
+    };
+    places(size_px).map(sum).collect()
+}
+
+impl Compared {
+    /// Largest difference of a channel from the model, in plates.
+    pub(crate) fn away(&self) -> f32 {
+        (0..3).map(|channel| (self.ratio[channel] - self.model[channel]).abs()).fold(0.0, f32::max)
+    }
+
+    /// Largest change of a channel since the plate, in plates.
+    pub(crate) fn changed(&self) -> f32 {
+        self.ratio.iter().map(|ratio| (ratio - 1.0).abs()).fold(0.0, f32::max)
+    }
+
+    /// The part of the light that the model takes from it.
+    pub(crate) fn taken(&self) -> f32 {
+        1.0 - self.model.iter().sum::<f32>() / 3.0
+    }
+
+    /// Whether the model takes enough light from it to show.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.taken() > CHANGED
+    }
+
+    /// Probability that it shows the receiver, by that of those around it.
+    fn probability(&self, receiver: f32, deviation: f32) -> f32 {
+        let [unchanged, other] = OF_THE_REST.map(|part| part * (1.0 - receiver));
+        let density = |from: &Color, deviation: f32| {
+            let squares: f32 = (0..3).map(|channel| ((self.ratio[channel] - from[channel]) / deviation).powi(2)).sum();
+            // Of three channels that are off together: one deviation for all.
+            (-0.5 * squares / 3.0).exp() / deviation
+        };
+        let deviation = deviation.hypot(self.noise);
+        let receiver = receiver * density(&self.model, deviation);
+        let unchanged = if self.is_changed() {
+            unchanged * density(&[1.0; 3], UNCHANGED.hypot(self.noise))
+        } else {
+            0.0
+        };
+        let other = other / MOST_RATIO;
+        receiver / (receiver + unchanged + other)
+    }
+}

@@ -1,0 +1,118 @@
+//! How likely colours of the plate are a thing's, and how likely the receiver's.
+
+use super::Codes;
+use crate::picture::Color;
+
+/// Bins along each channel.
+const SIDE: usize = 24;
+/// What a colour that was never seen counts as, of all that were.
+const UNSEEN: f32 = 2e-5;
+
+/// How much rarer than what a place usually shows its rare colours are, as a log.
+const RARE: f32 = 3.0;
+
+/// Histograms of both, blurred by a bin.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Colors {
+    /// Log of how much likelier a colour is a thing's; empty where nothing is known.
+    likelier: Vec<f32>,
+    /// Parts of the place.
+    of_place: Vec<f32>,
+    /// Of the colour that half of the place is likelier of.
+    usual: f32,
+}
+
+impl Colors {
+    /// Of pixels of a picture by their indices: things', and the place's.
+    pub(super) fn of(
+        (of_things, things): (&Codes, impl Iterator<Item = usize>),
+        (of_place, place): (&Codes, impl Iterator<Item = usize>),
+    ) -> Self {
+        let [things, receivers] = [histogram(of_things, things), histogram(of_place, place)];
+        let (Some(things), Some(receivers)) = (things, receivers) else {
+            return Self::default();
+        };
+        let both = things.iter().zip(&receivers);
+        let mut usual: Vec<f32> = receivers.iter().copied().filter(|part| *part > 0.0).collect();
+        usual.sort_unstable_by(f32::total_cmp);
+        Self {
+            usual: weighted_median(&usual),
+            likelier: both.map(|(thing, receiver)| ((thing + UNSEEN) / (receiver + UNSEEN)).ln()).collect(),
+            of_place: receivers,
+        }
+    }
+
+    /// The part of the place that is of a colour.
+    pub(super) fn part_of_place(&self, color: Color) -> f32 {
+        bin(color).and_then(|bin| self.of_place.get(bin).copied()).unwrap_or(0.0)
+    }
+
+    /// How much rarer a colour is than the rare ones of the place, as a log; 0 for those and for all that are more common.
+    pub(super) fn unusual(&self, color: Color) -> f32 {
+        ((self.usual / (self.part_of_place(color) + UNSEEN)).ln() - RARE).max(0.0)
+    }
+
+    /// Median over pixels of a picture; none of it where nothing is known.
+    pub(super) fn median(&self, picture: &Codes, pixels: &[usize]) -> f32 {
+        let likelier = pixels.iter().filter_map(|index| self.likelier(picture.pixels[*index]));
+        let mut likelier: Vec<f32> = likelier.collect();
+        if likelier.is_empty() {
+            return 0.0;
+        }
+        let middle = likelier.len() / 2;
+        *likelier.select_nth_unstable_by(middle, f32::total_cmp).1
+    }
+
+    /// None where a colour or its like is not known.
+    pub(super) fn likelier(&self, color: Color) -> Option<f32> {
+        self.likelier.get(bin(color)?).copied()
+    }
+}
+
+/// Of sorted parts of 1: that below which half of the whole lies.
+fn weighted_median(sorted: &[f32]) -> f32 {
+    let half = 0.5 * sorted.iter().sum::<f32>();
+    let mut sum = 0.0;
+    let beyond = sorted.iter().find(|part| {
+        sum += **part;
+        sum >= half
+    });
+    beyond.copied().unwrap_or(1.0)
+}
+
+fn bin(color: Color) -> Option<usize> {
+    if color[0].is_nan() {
+        return None;
+    }
+    let along = color.map(|code| {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the bins")]
+        let along = (code / 256.0 * SIDE as f32).clamp(0.0, (SIDE - 1) as f32) as usize;
+        along
+    });
+    Some((along[0] * SIDE + along[1]) * SIDE + along[2])
+}
+
+/// Parts of 1; none of no pixels.
+fn histogram(plate: &Codes, pixels: impl Iterator<Item = usize>) -> Option<Vec<f32>> {
+    let mut bins = vec![0.0_f32; SIDE * SIDE * SIDE];
+    let mut n_pixels = 0.0;
+    for bin in pixels.filter_map(|index| bin(plate.pixels[index])) {
+        bins[bin] += 1.0;
+        n_pixels += 1.0;
+    }
+    if n_pixels == 0.0 {
+        return None;
+    }
+    for stride in [1, SIDE, SIDE * SIDE] {
+        bins = blurred(&bins, stride);
+    }
+    Some(bins.into_iter().map(|bin| bin / n_pixels).collect())
+}
+
+/// By a binomial of three along one channel.
+fn blurred(bins: &[f32], stride: usize) -> Vec<f32> {
+    let along = |bin: usize| bin / stride % SIDE;
+    let before = |bin: usize| if along(bin) > 0 { bins[bin - stride] } else { bins[bin] };
+    let after = |bin: usize| if along(bin) + 1 < SIDE { bins[bin + stride] } else { bins[bin] };
+    (0..bins.len()).map(|bin| 0.25 * before(bin) + 0.5 * bins[bin] + 0.25 * after(bin)).collect()
+}

@@ -1,0 +1,168 @@
+//! How far things reach: each pixel belongs to the seeds that are nearer, along paths that do not cross edges or the other's colours.
+//!
+//! Source: Criminisi et al. 2008, geodesic segmentation, with seeds that are found.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::{DVec2, IVec2};
+
+use super::Codes;
+use super::apart;
+use super::colors::Colors;
+use super::seeds::{Seed, Seeds, groups};
+use crate::picture::{index_in, places};
+
+/// Neighbours of a pixel.
+pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+/// Cost of a step: for itself, for each code that the plate changes by, and for each part of a log likelihood that speaks against it.
+const OF_STEP: f32 = 0.3;
+const OF_CODE: f32 = 1.0 / 6.0;
+const OF_COLOR: f32 = 0.4;
+/// A colour is the place's if it is so much likelier that than a thing's, as a log; of most pixels within some of it.
+const LIKE_PLACE: f32 = 0.5;
+const AROUND_PX: i32 = 2;
+/// Nothing grows farther.
+const FARTHEST: f32 = 40.0;
+
+/// Things of a level.
+pub(super) struct Grown {
+    size_px: IVec2,
+    /// How much farther each pixel is from the receiver's seeds than from those of things.
+    nearer: Vec<f32>,
+    /// Of each pixel the thing that it is of.
+    thing: Vec<Option<u32>>,
+    n_seeds: Vec<usize>,
+    /// Whether most pixels around each are in the plate's own colours of the place.
+    is_like_place: Vec<bool>,
+}
+
+impl Grown {
+    /// From the seeds of a kind; none where there are none.
+    pub(super) fn from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
+        if !seeds.seeds.contains(&kind) {
+            return None;
+        }
+        let colors = &seeds.colors[usize::from(kind == Seed::WrongPlate)];
+        let of_thing = distances(seeds, (plate, colors), kind);
+        let of_receiver = distances(seeds, (plate, colors), Seed::Receiver);
+        let nearer: Vec<f32> = of_thing.iter().zip(&of_receiver).map(|(thing, receiver)| receiver - thing).collect();
+        let groups = groups(seeds.size_px, |index| nearer[index] > 0.0);
+        let mut thing = vec![None; nearer.len()];
+        let mut n_seeds = Vec::new();
+        for (number, group) in (0..).zip(&groups) {
+            for index in group {
+                thing[*index] = Some(number);
+            }
+            n_seeds.push(group.iter().filter(|index| seeds.seeds[**index] == kind).count());
+        }
+        Some(Self {
+            size_px: seeds.size_px,
+            nearer,
+            thing,
+            n_seeds,
+            is_like_place: like_place(seeds.size_px, plate, colors),
+        })
+    }
+
+    /// Whether a place in pixels is in the colours of the place that things stand on, such as the shadow of one.
+    pub(super) fn is_like_place(&self, place: DVec2) -> bool {
+        index_in(self.size_px, place.floor().as_ivec2()).is_some_and(|index| self.is_like_place[index])
+    }
+
+    pub(super) fn n_things(&self) -> usize {
+        self.n_seeds.len()
+    }
+
+    pub(super) fn n_seeds(&self, thing: usize) -> usize {
+        self.n_seeds[thing]
+    }
+
+    /// The thing of a pixel.
+    pub(super) fn of_pixel(&self, at: IVec2) -> Option<usize> {
+        self.thing[index_in(self.size_px, at)?].map(|thing| thing as usize)
+    }
+
+    /// The thing at a place in pixels, between the centres of pixels by how much nearer it is.
+    pub(super) fn at(&self, place: DVec2) -> Option<usize> {
+        let corner = (place - 0.5).floor();
+        let [right, down] = (place - 0.5 - corner).as_vec2().to_array();
+        let corner = corner.as_ivec2();
+        let four = [
+            (IVec2::ZERO, (1.0 - right) * (1.0 - down)),
+            (IVec2::X, right * (1.0 - down)),
+            (IVec2::Y, (1.0 - right) * down),
+            (IVec2::ONE, right * down),
+        ];
+        let last = self.size_px - 1;
+        let mut sum = 0.0;
+        let mut thing = None;
+        for (step, weight) in four {
+            let at = (corner + step).clamp(IVec2::ZERO, last);
+            let index = index_in(self.size_px, at)?;
+            sum += weight * self.nearer[index].clamp(-FARTHEST, FARTHEST);
+            thing = thing.or(self.thing[index]);
+        }
+        thing.filter(|_| sum > 0.0).map(|thing| thing as usize)
+    }
+}
+
+/// Of each pixel, whether most of the pixels around it are likelier the place's.
+fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
+    let is_like = |color| colors.likelier(color).is_some_and(|likelier| likelier < -LIKE_PLACE);
+    let is_like: Vec<bool> = plate.pixels.iter().map(|color| is_like(*color)).collect();
+    let around = |at: IVec2| {
+        let square = (-AROUND_PX..=AROUND_PX).flat_map(move |y| (-AROUND_PX..=AROUND_PX).map(move |x| at + IVec2::new(x, y)));
+        square.filter_map(|at| index_in(size_px, at))
+    };
+    let most = |at: IVec2| 2 * around(at).filter(|index| is_like[*index]).count() > around(at).count();
+    places(size_px).map(most).collect()
+}
+
+/// From the seeds of one kind to each pixel, at most [`FARTHEST`]. Source: Dijkstra 1959.
+fn distances(seeds: &Seeds, (plate, colors): (&Codes, &Colors), from: Seed) -> Vec<f32> {
+    let mut distances = vec![FARTHEST; plate.pixels.len()];
+    let mut open = BinaryHeap::new();
+    for (at, index) in places(seeds.size_px).zip(0..) {
+        if seeds.seeds[index] == from {
+            distances[index] = 0.0;
+            open.push((Reverse(0), at.to_array()));
+        }
+    }
+    while let Some((Reverse(distance), at)) = open.pop() {
+        let at = IVec2::from_array(at);
+        let Some(index) = index_in(seeds.size_px, at) else { continue };
+        if distance > units(distances[index]) {
+            continue;
+        }
+        for step in STEPS {
+            let Some(other) = index_in(seeds.size_px, at + step) else { continue };
+            let farther = distances[index] + cost((plate, colors), [index, other], from);
+            if farther < distances[other] {
+                distances[other] = farther;
+                open.push((Reverse(units(farther)), (at + step).to_array()));
+            }
+        }
+    }
+    distances
+}
+
+/// Of a step to a pixel beside.
+fn cost((plate, colors): (&Codes, &Colors), [from, to]: [usize; 2], of: Seed) -> f32 {
+    let [a, b] = [plate.pixels[from], plate.pixels[to]];
+    if a[0].is_nan() || b[0].is_nan() {
+        return FARTHEST;
+    }
+    // The place is known by many pixels, a thing by some: what is new to the place is no part of it, what is new to a thing may be.
+    let against = match of {
+        Seed::Receiver => colors.unusual(b),
+        _ => -colors.likelier(b).unwrap_or(0.0),
+    };
+    OF_STEP + OF_CODE * apart(a, b) + OF_COLOR * against.max(0.0)
+}
+
+/// Distances as whole numbers, which can be ordered.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "no more than the farthest")]
+fn units(distance: f32) -> u32 {
+    (distance * 1e6) as u32
+}

@@ -1,0 +1,250 @@
+//! Things that stand in the picture beside the toy: on the table where its shadow falls, and before it.
+//!
+//! **Seeds** are pixels that no light on a receiver explains, where a change should show (`lights::compare`): frame and plate are alike
+//! there though a shadow should fall, or differ though none should. From them a thing **grows** over the plate, along colours that are
+//! its own and not the receiver's and to the next edge (`grown`), against what is known to show the receiver. What frame and plate show
+//! alike where the toy should be is **before the toy** (`front`).
+
+mod colors;
+mod grown;
+mod seeds;
+
+use glam::IVec2;
+
+use crate::lights::Compared;
+use crate::picture::{Color, Level, Mask, Picture, Pyramid, index_in, places};
+use crate::pose::Paint;
+use crate::raster::{Coverage, Rasterizer, project};
+use crate::receivers::SeenReceiver;
+use crate::shape::Shape;
+use app_scene::geometry::color::srgb_from_linear;
+use app_scene::things::Mark;
+use glam::DMat4;
+use app_scene::scene::Light;
+use grown::Grown;
+use seeds::{Seed, Seeds};
+
+/// Pixels of the level on which things are looked for, at most: more tell no more and take longer.
+const MOST_PIXELS: i32 = 150_000;
+/// Pixels of a level within the toy's outline where something before it may be told.
+const WITHIN_PX: i32 = 2;
+/// Codes up to which frame and plate are alike, and from which two colours are not.
+const ALIKE_CODES: f32 = 5.0;
+const UNLIKE_CODES: f32 = 12.0;
+/// A thing is before the toy if at least so many pixels of the level where the toy should be show it, and so many beside the toy.
+const LEAST_BEFORE: usize = 5;
+const LEAST_BESIDE: usize = 20;
+/// And that part of where it would be before the toy.
+const PART_BEFORE: f32 = 0.04;
+/// What a plate shows differs from the model by as much around what is wrong in it, in plates; it is wrong for some pixels more.
+const DIFFERS: f32 = 0.05;
+const WRONG_PX: i32 = 2;
+
+/// What things are looked for with.
+pub(crate) struct Sight<'a> {
+    pub(crate) shape: &'a Shape,
+    pub(crate) paint: &'a Paint,
+    pub(crate) receivers: &'a [SeenReceiver],
+    pub(crate) pyramid: &'a Pyramid,
+    pub(crate) lights: &'a [Light],
+    pub(crate) world_from_camera: &'a DMat4,
+}
+
+/// Marks of the pixels of the largest level; none where nothing stands beside the toy, or nothing tells.
+pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
+    let level = sight.level();
+    let plate = Codes::of(level.plate.as_ref()?);
+    let frame = Codes::of(&level.frame);
+    let compared = crate::lights::compare(
+        sight.lights,
+        (sight.shape, sight.receivers),
+        level,
+        sight.world_from_camera,
+    )?;
+    let toy = Toy::of(sight, level);
+    let seeds = Seeds::found(&compared, toy.hidden(&frame, &plate), (&frame, &plate));
+    let grown = Grown::from(&seeds, Seed::Thing, &plate);
+    let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
+    if grown.is_none() && wrong.is_none() {
+        return None;
+    }
+    let before = grown.as_ref().map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
+    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared));
+    Some(sight.marks(level, grown.as_ref(), &before, wrong.as_ref()))
+}
+
+/// Where a level's plate is wrong: all that hangs together with seeds and differs from the model, and where the toy hides it what it grew to.
+fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
+    let mut differs = vec![false; (size_px.x * size_px.y) as usize];
+    for pixel in compared {
+        if let Some(index) = index_in(size_px, pixel.at) {
+            differs[index] = pixel.away() > DIFFERS.max(2.0 * pixel.noise);
+        }
+    }
+    let mut wrong = Mask::new(size_px);
+    for at in places(size_px) {
+        let near_toy = (-2..=2).any(|y| (-2..=2).any(|x| toy.coverage.at(at + IVec2::new(x, y)) > 0.0));
+        let differs = index_in(size_px, at).is_some_and(|index| differs[index]);
+        if grown.of_pixel(at).is_some() && (near_toy || differs) {
+            wrong.mark(at);
+        }
+    }
+    filled(&wrong.grown(WRONG_PX), size_px)
+}
+
+/// With what a mask encloses.
+fn filled(mask: &Mask, size_px: IVec2) -> Mask {
+    let has = |index: usize| mask.has(place_of(index, size_px));
+    let last = size_px - 1;
+    let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
+    let mut filled = mask.clone();
+    for group in seeds::groups(size_px, |index| !has(index)) {
+        if !group.iter().any(|index| is_at_border(place_of(*index, size_px))) {
+            group.iter().for_each(|index| filled.mark(place_of(*index, size_px)));
+        }
+    }
+    filled
+}
+
+/// The place of a pixel by its index.
+#[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a place in a picture")]
+fn place_of(index: usize, size_px: IVec2) -> IVec2 {
+    IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x)
+}
+
+impl Sight<'_> {
+    fn level(&self) -> &Level {
+        let levels = (0..=Pyramid::SMALLEST).map(|level| self.pyramid.level(level));
+        let fits = |level: &&Level| level.frame.size_px.x * level.frame.size_px.y <= MOST_PIXELS;
+        levels.into_iter().find(fits).unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
+    }
+
+    /// In the largest level.
+    fn marks(&self, level: &Level, grown: Option<&Grown>, before: &[bool], wrong: Option<&Mask>) -> (IVec2, Vec<Mark>) {
+        let largest = self.pyramid.level(0);
+        let size_px = largest.frame.size_px;
+        let per_px = level.frame.size_px.as_dvec2() / size_px.as_dvec2();
+        let toy = Toy::of(self, largest);
+        let codes = largest.plate.as_ref().map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let mark = |at: IVec2| {
+            let there = (at.as_dvec2() + 0.5) * per_px;
+            let is_wrong = wrong.is_some_and(|wrong| wrong.has(there.floor().as_ivec2()));
+            let found = grown.and_then(|grown| Some((grown.at(there)?, grown.is_like_place(there))));
+            let Some((thing, is_like_place)) = found else {
+                return if is_wrong { Mark::WrongPlate } else { Mark::None };
+            };
+            if !before[thing] || is_like_place {
+                return Mark::Thing;
+            }
+            let shows_toy = codes.as_ref().is_some_and(|[frame, plate]| toy.shows(at, frame, plate));
+            if shows_toy { Mark::None } else { Mark::BeforeToy }
+        };
+        (size_px, places(size_px).map(mark).collect())
+    }
+}
+
+/// A picture in sRGB codes, 0 to 255; not a number where nothing is known.
+struct Codes {
+    size_px: IVec2,
+    pixels: Vec<Color>,
+}
+
+impl Codes {
+    fn of(picture: &Picture) -> Self {
+        let code = |at| picture.get(at).map_or([f32::NAN; 3], |color| color.map(|linear| 255.0 * srgb_from_linear(linear)));
+        Self {
+            size_px: picture.size_px,
+            pixels: places(picture.size_px).map(code).collect(),
+        }
+    }
+
+    fn get(&self, at: IVec2) -> Option<Color> {
+        let color = self.pixels[index_in(self.size_px, at)?];
+        (!color[0].is_nan()).then_some(color)
+    }
+}
+
+/// Largest difference of a channel.
+fn apart(a: Color, b: Color) -> f32 {
+    (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f32::max)
+}
+
+/// The toy in a level.
+struct Toy {
+    coverage: Coverage,
+    /// In codes; none where it is not known what it should look like.
+    shown: Option<Vec<Option<Color>>>,
+}
+
+impl Toy {
+    fn of(sight: &Sight<'_>, level: &Level) -> Self {
+        let corners = project(sight.shape.points.iter().copied(), &level.intrinsics);
+        let coverage = Rasterizer::default().coverage(&corners, &sight.shape.faces, level.frame.size_px);
+        let shown = sight.paint.shown(level, &coverage);
+        let codes = |color: Color| color.map(|linear| 255.0 * srgb_from_linear(linear.clamp(0.0, 1.0)));
+        let shown = shown.map(|shown| shown.into_iter().map(|color| color.map(codes)).collect());
+        Self { coverage, shown }
+    }
+
+    fn expected(&self, at: IVec2) -> Option<Color> {
+        let shown = self.shown.as_ref()?;
+        shown[index_in(self.coverage.size_px, at - self.coverage.origin_px)?]
+    }
+
+    fn is_within(&self, at: IVec2) -> bool {
+        let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+        steps.iter().all(|step| self.coverage.at(at + WITHIN_PX * *step) >= 1.0)
+    }
+
+    /// Whether a pixel where the toy should be shows what the plate shows, and the toy should look otherwise.
+    fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
+        let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
+            return false;
+        };
+        let is_unlike = self.expected(at).is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
+        apart(frame, plate) < ALIKE_CODES && is_unlike
+    }
+
+    /// Where a level shows the plate in place of the toy.
+    fn hidden<'a>(&'a self, frame: &'a Codes, plate: &'a Codes) -> impl Iterator<Item = IVec2> + 'a {
+        let covered = self.coverage.pixels().filter(|at| self.coverage.at(*at) >= 1.0);
+        covered.filter(|at| self.is_hidden(*at, frame, plate))
+    }
+
+    /// For each thing of a level, whether it is before the toy.
+    fn before(&self, grown: &Grown, (frame, plate): (&Codes, &Codes)) -> Vec<bool> {
+        let mut hidden = vec![0; grown.n_things()];
+        let mut n_within = vec![0; grown.n_things()];
+        for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
+            if let Some(thing) = grown.of_pixel(at) {
+                n_within[thing] += 1;
+                hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
+            }
+        }
+        if std::env::var("DEBUG_THINGS").is_ok() { eprintln!("hidden {hidden:?} within {n_within:?} seeds {:?}", (0..grown.n_things()).map(|t| grown.n_seeds(t)).collect::<Vec<_>>()); }
+        let is_before = |thing: usize| hidden[thing] >= LEAST_BEFORE && hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32 && grown.n_seeds(thing) >= LEAST_BESIDE;
+        (0..grown.n_things()).map(is_before).collect()
+    }
+
+    /// Whether a pixel shows the toy rather than a thing, which may lie in the toy's shadow: around it the picture is nearer to what the
+    /// toy should look like than to the plate in any light.
+    fn shows(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
+        if self.coverage.at(at) == 0.0 {
+            return false;
+        }
+        let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
+        let toy = around.filter(|at| match (frame.get(*at), plate.get(*at), self.expected(*at)) {
+            (Some(frame), Some(plate), Some(toy)) => apart(frame, toy) < from_shaded(frame, plate),
+            _ => false,
+        });
+        toy.count() >= 5
+    }
+}
+
+/// How far a color is from another in less light, in codes.
+fn from_shaded(color: Color, lit: Color) -> f32 {
+    let square: f32 = lit.iter().map(|code| code * code).sum();
+    let product: f32 = lit.iter().zip(color).map(|(lit, code)| lit * code).sum();
+    let light = if square > 0.0 { (product / square).clamp(0.0, 1.0) } else { 1.0 };
+    apart(color, lit.map(|code| light * code))
+}

@@ -1,0 +1,189 @@
+//! Pixels that are known to show a receiver, and pixels that are known to show none.
+
+use glam::IVec2;
+
+use super::Codes;
+use super::colors::Colors;
+use crate::lights::Compared;
+use crate::picture::index_in;
+
+/// Least difference from the model, in plates, that no light on a receiver explains; and most that shows a receiver.
+const UNEXPLAINED: f32 = 0.15;
+const EXPLAINED: f32 = 0.06;
+/// Such a difference is that many deviations of the noise, too.
+const OF_NOISE: f32 = 4.0;
+/// The model takes at least that much light from a pixel that is known to show a receiver.
+const SHADOWED: f32 = 0.25;
+/// And no more from one that is known to be in the open.
+const OPEN: f32 = 0.02;
+/// Of the nine pixels around a seed of a thing as many are seeds.
+const LEAST_AROUND: usize = 5;
+/// An open pixel shows a receiver if its colour is so much likelier the place's than a thing's, as a log, and that part of the place is of it.
+const LIKE_PLACE: f32 = 1.5;
+const COMMON: f32 = 0.02;
+/// A group is of what the plate alone shows, if the frame's colours there are no likelier a thing's, as a log.
+const OF_PLACE: f32 = 1.0;
+/// And of what the frame alone shows, if the plate's are no likelier and the frame's are likelier by so much.
+const OF_FRAME: [f32; 2] = [2.0, 1.5];
+/// Groups of seeds whose colours in the plate are not the receiver's: median of the log of how much likelier they are a thing's, from so many
+/// pixels; and for large groups.
+const TOLD: (f32, usize) = (3.0, 8);
+const TOLD_LARGE: (f32, usize) = (1.0, 200);
+
+/// What a pixel is known to show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seed {
+    /// Nothing is known.
+    None,
+    Receiver,
+    Thing,
+    /// What the plate shows and the frame does not.
+    WrongPlate,
+}
+
+/// Seeds of a level.
+pub(super) struct Seeds {
+    pub(super) size_px: IVec2,
+    pub(super) seeds: Vec<Seed>,
+    /// Pixels that are as bright as in the plate, and should be.
+    open: Vec<usize>,
+    /// The colours of receivers and of things, or of what the plate alone shows, in the plate.
+    pub(super) colors: [Colors; 2],
+}
+
+impl Seeds {
+    /// `hidden`: where the plate shows in place of the toy.
+    pub(super) fn found(compared: &[Compared], hidden: impl Iterator<Item = IVec2>, (frame, plate): (&Codes, &Codes)) -> Self {
+        let size_px = plate.size_px;
+        let mut seeds = vec![Seed::None; plate.pixels.len()];
+        for pixel in compared {
+            let Some(index) = index_in(size_px, pixel.at) else { continue };
+            let noise = OF_NOISE * pixel.noise;
+            if pixel.away() > UNEXPLAINED.max(noise) {
+                seeds[index] = Seed::Thing;
+            } else if pixel.away() < EXPLAINED.max(0.5 * noise) && pixel.taken() > SHADOWED {
+                seeds[index] = Seed::Receiver;
+            }
+        }
+        let open = compared.iter().filter(|pixel| pixel.taken() < OPEN && pixel.changed() < EXPLAINED);
+        let open = open.filter_map(|pixel| index_in(size_px, pixel.at));
+        let mut found = Self {
+            open: open.collect(),
+            size_px,
+            colors: [Colors::default(), Colors::default()],
+            seeds,
+        };
+        for at in hidden {
+            if let Some(index) = index_in(size_px, at) {
+                found.seeds[index] = Seed::Thing;
+            }
+        }
+        found.drop_lone();
+        found.tell(frame, plate);
+        found
+    }
+
+    pub(super) fn get(&self, at: IVec2) -> Seed {
+        index_in(self.size_px, at).map_or(Seed::None, |index| self.seeds[index])
+    }
+
+    /// Leaves seeds of things with enough of them around.
+    fn drop_lone(&mut self) {
+        let is_lone = |at: IVec2| {
+            let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
+            around.filter(|at| self.get(*at) == Seed::Thing).count() < LEAST_AROUND
+        };
+        let kept = crate::picture::places(self.size_px).zip(&self.seeds);
+        let kept = kept.map(|(at, seed)| if *seed == Seed::Thing && is_lone(at) { Seed::None } else { *seed });
+        self.seeds = kept.collect();
+    }
+
+    /// Leaves groups of seeds whose colours tell them from the place, each as what it is.
+    fn tell(&mut self, frame: &Codes, plate: &Codes) {
+        let groups = groups(self.size_px, |index| self.seeds[index] == Seed::Thing);
+        let receivers = self.of(Seed::Receiver);
+        // A thing is told apart from all of the place, and grows against what the shadow falls on.
+        let place: Vec<usize> = receivers.iter().chain(&self.open).copied().collect();
+        let of_place = |picture: &Codes| {
+            let seeds = groups.iter().flatten().copied();
+            Colors::of((picture, seeds), (plate, place.iter().copied()))
+        };
+        let [in_frame, in_plate] = [of_place(frame), of_place(plate)];
+        for group in &groups {
+            let [by_frame, by_plate] = [in_frame.median(frame, group), in_plate.median(plate, group)];
+            let seed = told([by_frame, by_plate], group.len());
+            if std::env::var("DEBUG_THINGS").is_ok() && group.len() >= 8 { eprintln!("group {} frame {by_frame:.2} plate {by_plate:.2} {seed:?} at {}", group.len(), IVec2::new(group[0] as i32 % self.size_px.x, group[0] as i32 / self.size_px.x)); }
+            for index in group {
+                self.seeds[*index] = seed;
+            }
+        }
+        self.colors = [Seed::Thing, Seed::WrongPlate].map(|seed| {
+            let seeds = self.of(seed).into_iter();
+            Colors::of((plate, seeds), (plate, place.iter().copied()))
+        });
+        for index in &self.open {
+            let color = plate.pixels[*index];
+            let is_like = |colors: &Colors| colors.likelier(color).is_none_or(|likelier| likelier < -LIKE_PLACE);
+            let is_common = in_plate.part_of_place(color) > COMMON;
+            if self.seeds[*index] == Seed::None && is_common && self.colors.iter().all(is_like) {
+                self.seeds[*index] = Seed::Receiver;
+            }
+        }
+        let receivers = self.of(Seed::Receiver);
+        self.colors = self.colors_against(&receivers, plate);
+    }
+
+    fn colors_against(&self, receivers: &[usize], plate: &Codes) -> [Colors; 2] {
+        [Seed::Thing, Seed::WrongPlate].map(|seed| {
+            let seeds = self.of(seed).into_iter();
+            Colors::of((plate, seeds), (plate, receivers.iter().copied()))
+        })
+    }
+
+    /// Indices of the seeds of a kind.
+    pub(super) fn of(&self, kind: Seed) -> Vec<usize> {
+        let seeds = self.seeds.iter().enumerate();
+        seeds.filter(|(_, seed)| **seed == kind).map(|(index, _)| index).collect()
+    }
+}
+
+/// What a group of seeds is of; by how much likelier its colours in frame and plate are its own than the place's.
+fn told([by_frame, by_plate]: [f32; 2], n_seeds: usize) -> Seed {
+    let passes = |(least, n): (f32, usize)| by_plate > least && n_seeds >= n;
+    if by_plate < OF_FRAME[0] && by_frame > by_plate + OF_FRAME[1] || !(passes(TOLD) || passes(TOLD_LARGE)) {
+        Seed::None
+    } else if by_frame < OF_PLACE {
+        Seed::WrongPlate
+    } else {
+        Seed::Thing
+    }
+}
+
+/// Indices of pixels that hang together.
+pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let n_pixels = (size_px.x * size_px.y) as usize;
+    let mut is_known = vec![false; n_pixels];
+    let mut groups = Vec::new();
+    for first in 0..n_pixels {
+        if is_known[first] || !is_in(first) {
+            continue;
+        }
+        is_known[first] = true;
+        let mut group = vec![first];
+        let mut next = 0;
+        while let Some(index) = group.get(next).copied() {
+            next += 1;
+            #[allow(clippy::cast_possible_truncation, reason = "a place in a picture")]
+            let at = IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x);
+            for step in super::grown::STEPS {
+                let Some(other) = index_in(size_px, at + step) else { continue };
+                if !is_known[other] && is_in(other) {
+                    is_known[other] = true;
+                    group.push(other);
+                }
+            }
+        }
+        groups.push(group);
+    }
+    groups
+}

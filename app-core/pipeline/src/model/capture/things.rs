@@ -1,0 +1,90 @@
+//! `things`: what stands in the picture beside the toy, in the validity mask and in the plate.
+
+use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::{Recorder, loaded};
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::texture::{Texture, TextureView};
+use crate::model::capture::validity;
+use crate::model::plan::Plan;
+use crate::passes::plate::FINE_FORMAT;
+use crate::passes::things::{CODE_BEFORE_TOY, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView};
+
+pub(crate) const SHADER: Shader = shader!(
+    "capture/things",
+    structs: [ThingsView],
+    constants: [CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE]
+);
+const SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture];
+/// And of the mask that is marked.
+const MASK_SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture, Slot::Texture];
+
+/// Only where any are known.
+pub(crate) fn is_needed(plan: &Plan) -> bool {
+    plan.has_things
+}
+
+pub(crate) struct Pass {
+    mark: Draw,
+    forget_plate: Draw,
+}
+
+/// Of the region's size, where it is needed.
+pub(crate) struct Targets {
+    /// The mask without things.
+    alone: Option<Texture>,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = || Texture::target(gpu, "validity alone", plan.region.size_px, validity::FORMAT);
+        Self {
+            alone: is_needed(plan).then(target),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let draw = |fragment, slots, format| {
+            let groups = [&[][..], slots, &[], &[]];
+            gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[format]))
+        };
+        Self {
+            mark: draw("fs_mark", MASK_SLOTS, validity::FORMAT),
+            forget_plate: draw("fs_forget_plate", SLOTS, FINE_FORMAT),
+        }
+    }
+
+    /// Marks things in the mask, where any are known.
+    pub(crate) fn mark(
+        &self,
+        recorder: &mut Recorder<'_>,
+        things: &Things,
+        targets: &Targets,
+        marks: &Texture,
+    ) {
+        let Some(alone) = &targets.alone else { return };
+        recorder.copy(marks, alone);
+        let [view, codes] = things.resources();
+        let groups = [
+            recorder.bind(&self.mark, GROUP_PASS, &[view, codes, (&alone.view).into()]),
+        ];
+        recorder.fullscreen(&self.mark, &groups, &[&marks.view]);
+    }
+
+    /// Takes the plate for not photographed where it is wrong.
+    pub(crate) fn forget_plate(
+        &self,
+        recorder: &mut Recorder<'_>,
+        things: &Things,
+        photographed: &TextureView,
+    ) {
+        let draw = &self.forget_plate;
+        let groups = [
+            recorder.bind(draw, GROUP_PASS, &things.resources()),
+        ];
+        recorder.fullscreen_onto(draw, &groups, &[Some(loaded(photographed))]);
+    }
+}

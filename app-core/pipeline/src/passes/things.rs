@@ -1,0 +1,81 @@
+//! Marks of things on the device: codes of the picture that they were found in, and where that picture's pixels are in a view.
+
+use app_scene::things::{Mark, Things as GivenThings};
+use bytemuck::Zeroable;
+use glam::{DMat3, DMat4};
+use wgpu::TextureFormat;
+
+use crate::geometry::rect::PixelRect;
+use crate::geometry::view::View;
+use crate::gpu::{Buffer, Gpu, Mat3Columns, Resource, Texture, shared_struct};
+
+pub(crate) const CODE_THING: u32 = 1;
+pub(crate) const CODE_BEFORE_TOY: u32 = 2;
+pub(crate) const CODE_WRONG_PLATE: u32 = 3;
+
+shared_struct! {
+    /// Where the marks' pixels are in the region.
+    pub(crate) struct ThingsView {
+        pub marks_px_from_region_px: Mat3Columns,
+    }
+}
+
+/// Things on the device.
+pub(crate) struct Things {
+    given: GivenThings,
+    codes: Texture,
+    view: Buffer,
+}
+
+impl Things {
+    pub(crate) fn new(gpu: &Gpu, given: &GivenThings) -> Self {
+        let codes = Texture::plane(gpu, "things", given.size_px(), TextureFormat::R8Unorm);
+        let code = |mark: &Mark| match mark {
+            Mark::None => 0,
+            Mark::Thing => CODE_THING,
+            Mark::BeforeToy => CODE_BEFORE_TOY,
+            Mark::WrongPlate => CODE_WRONG_PLATE,
+        };
+        #[allow(clippy::cast_possible_truncation, reason = "codes below 4")]
+        let texels: Vec<u8> = given.marks().iter().map(|mark| code(mark) as u8).collect();
+        codes.write(gpu, &texels);
+        Self {
+            given: given.clone(),
+            codes,
+            view: gpu.uniform("things view", &ThingsView::zeroed()),
+        }
+    }
+
+    /// What they were made of.
+    pub(crate) fn given(&self) -> &GivenThings {
+        &self.given
+    }
+
+    /// Whether a part of the plate is wrong.
+    pub(crate) fn is_plate_wrong(&self) -> bool {
+        self.given.count(Mark::WrongPlate) > 0
+    }
+
+    /// Follows the camera to a view and a region of it. Things are taken to lie in the plane of the first receiver.
+    pub(crate) fn follow(&self, gpu: &Gpu, view: &View, region: &PixelRect, world_from_plane: &DMat4) {
+        let image_px_from_region_px = DMat3::from_translation(region.origin_px.as_dvec2());
+        let own = View::new(self.given.size_px(), self.given.camera());
+        let matrix = if own == *view {
+            image_px_from_region_px
+        } else {
+            own.image_px_from_plane(world_from_plane) * view.plane_from_region_px(region, world_from_plane)
+        };
+        let columns = [0, 1, 2].map(|index| matrix.as_mat3().col(index).extend(0.0).to_array());
+        gpu.write(
+            &self.view,
+            &[ThingsView {
+                marks_px_from_region_px: columns,
+            }],
+        );
+    }
+
+    /// For a pass.
+    pub(crate) fn resources(&self) -> [Resource<'_>; 2] {
+        [(&self.view).into(), (&self.codes.view).into()]
+    }
+}

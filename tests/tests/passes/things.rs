@@ -1,0 +1,64 @@
+//! What stands in the picture beside the toy, in the validity mask.
+
+use glam::{DMat3, DVec3, DVec4, UVec2};
+use reference::raster::Raster;
+use reference::things::{BEFORE_TOY, THING, Things, WRONG_PLATE, mark};
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::{Errors, pairs_of};
+use crate::numbers::{number, numbers};
+use crate::scrambled::{buffers, views};
+
+/// Blocks of each code, in a picture that is not the region's.
+fn things() -> Things {
+    let codes = [0, THING, 0, BEFORE_TOY, WRONG_PLATE];
+    Things {
+        codes: Raster::from_fn(UVec2::new(97, 83), |at| {
+            codes[(5.0 * number(at / 6, 9)) as usize % 5]
+        }),
+        // Not exact in binary, so that no place lies on the border of two pixels; behind its camera to one side.
+        codes_px_from_region_px: DMat3::from_cols(
+            DVec3::new(0.803, 0.0511, -0.00713),
+            DVec3::new(-0.0417, 0.7907, 0.00031),
+            DVec3::new(3.317, 1.723, 0.8091),
+        ),
+    }
+}
+
+/// How far marks are off that `source` makes.
+fn errors(source: &str) -> Errors {
+    let (device, things) = (Device::shared(), things());
+    let size = UVec2::new(123, 101);
+    let validity = numbers(size, 3).map(|texel: DVec4| texel.map(f64::round));
+    let columns = [0, 1, 2].map(|index| things.codes_px_from_region_px.as_mat3().col(index).extend(0.0));
+    let maps = [
+        device.map(&things.codes.map(|code| DVec4::splat(f64::from(code) / 255.0))),
+        device.map(&validity),
+    ];
+    let view = device.uniform(&columns.map(|column| column.to_array()));
+    let mut own = buffers(0, std::slice::from_ref(&view));
+    own.extend(views(1, &maps));
+    let draw = Draw::of(source, "fs_mark", size);
+    let actual = device.draw(draw, [&[], &own]);
+    let expected = Raster::from_fn(size, |texel| mark(&things, &validity, texel));
+    Errors::between(pairs_of(&actual, &expected))
+}
+
+#[test]
+fn things_in_the_mask() {
+    errors(&source("things")).check_all("things", 1e-6);
+}
+
+#[test]
+fn a_fault_in_marking_things_is_found() {
+    let faults = [
+        ("at.z <= 0.0 { return 0u; }", "at.z <= -1e9 { return 0u; }"),
+        ("CODE_BEFORE_TOY: u32 = 2u", "CODE_BEFORE_TOY: u32 = 3u"),
+        ("MIXED_PX: f32 = 2.0", "MIXED_PX: f32 = 1.0"),
+        ("marks.g, marks.r, THING", "marks.g, marks.b, THING"),
+        ("floor(at.xy / at.z)", "round(at.xy / at.z)"),
+        ("vec4f(marks.r, 0.0, marks.ba)", "marks"),
+    ];
+    check_faults("things", &faults, 1e-6, errors);
+}
