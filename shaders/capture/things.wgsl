@@ -48,10 +48,11 @@ fn is_beside_thing_before_toy(region_px: vec2f) -> bool {
 fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let marks = textureLoad(validity, vec2u(position.xy), 0);
   let code = code_at(position.xy);
-  if code == CODE_THING { return vec4f(0.0, marks.g, marks.r, THING); }
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, marks.r, BEFORE_TOY); }
-  if marks.g == 1.0 && is_beside_thing_before_toy(position.xy) { return vec4f(marks.r, 0.0, marks.ba); }
-  return marks;
+  var of_toy = marks.g;
+  if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
+  if code == CODE_THING { return vec4f(0.0, of_toy, marks.r, THING); }
+  return vec4f(marks.r, of_toy, marks.ba);
 }
 
 @fragment

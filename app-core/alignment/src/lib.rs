@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
-//! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
+//! physical pose ─► shape ─────────────┴► pose ─► lights ─► things ─► Alignment
 //! ```
 //!
 //! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);

@@ -265,7 +265,12 @@ impl Photograph {
     }
 
     /// Things that stand beside the toy in its place, in given lights; none where nothing tells of any.
-    pub(super) fn things(&self, scene: &Scene, input: &FrameInput, lights: &[Light]) -> Result<Option<Things>, ToyError> {
+    pub(super) fn things(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<Things>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let found = things::find(&things::Sight {

@@ -35,7 +35,11 @@ impl Things {
         }
         let px = (at.truncate() / at.z).floor();
         let is_inside = px.cmpge(DVec2::ZERO).all() && px.cmplt(self.codes.size().as_dvec2()).all();
-        if is_inside { self.codes.at(px.as_uvec2()) } else { 0 }
+        if is_inside {
+            self.codes.at(px.as_uvec2())
+        } else {
+            0
+        }
     }
 }
 
@@ -43,14 +47,16 @@ impl Things {
 #[must_use]
 pub fn mark(things: &Things, validity: &Raster<DVec4>, texel: UVec2) -> DVec4 {
     let (marks, at) = (validity.at(texel), centre_px(texel));
+    let steps = [-MIXED_PX, 0.0, MIXED_PX];
+    let mut around = steps.iter().flat_map(|y| steps.map(|x| at + DVec2::new(x, *y)));
+    let of_toy = if around.any(|at| things.at(at) == BEFORE_TOY) {
+        0.0
+    } else {
+        marks.y
+    };
     match things.at(at) {
-        THING => DVec4::new(0.0, marks.y, marks.x, ALPHAS[0]),
+        THING => DVec4::new(0.0, of_toy, marks.x, ALPHAS[0]),
         BEFORE_TOY => DVec4::new(0.0, 0.0, marks.x, ALPHAS[1]),
-        _ => {
-            let steps = [-MIXED_PX, 0.0, MIXED_PX];
-            let mut around = steps.iter().flat_map(|y| steps.map(|x| at + DVec2::new(x, *y)));
-            let is_mixed = marks.y == 1.0 && around.any(|at| things.at(at) == BEFORE_TOY);
-            if is_mixed { DVec4::new(marks.x, 0.0, marks.z, marks.w) } else { marks }
-        }
+        _ => DVec4::new(marks.x, of_toy, marks.z, marks.w),
     }
 }

@@ -56,9 +56,9 @@ fn a_fault_in_marking_things_is_found() {
         ("at.z <= 0.0 { return 0u; }", "at.z <= -1e9 { return 0u; }"),
         ("CODE_BEFORE_TOY: u32 = 2u", "CODE_BEFORE_TOY: u32 = 3u"),
         ("MIXED_PX: f32 = 2.0", "MIXED_PX: f32 = 1.0"),
-        ("marks.g, marks.r, THING", "marks.g, marks.b, THING"),
+        ("of_toy, marks.r, THING", "of_toy, marks.b, THING"),
         ("floor(at.xy / at.z)", "round(at.xy / at.z)"),
-        ("vec4f(marks.r, 0.0, marks.ba)", "marks"),
+        ("of_toy = 0.0", "of_toy = 1.0"),
     ];
     check_faults("things", &faults, 1e-6, errors);
 }

@@ -7,10 +7,10 @@
 
 use glam::{DMat4, IVec2};
 
+use super::backdrop::QUADRATIC;
 use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
-use super::backdrop::QUADRATIC;
 use crate::picture::{Color, Level, index_in, noise_deviation, places};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
@@ -79,7 +79,9 @@ pub(crate) fn compare(
 ) -> Option<Vec<Compared>> {
     level.plate.as_ref()?;
     let camera_from_world = world_from_camera.inverse();
-    let lamps = lights.iter().map(|light| Lamp::new(light, &camera_from_world, shape.centre));
+    let lamps = lights
+        .iter()
+        .map(|light| Lamp::new(light, &camera_from_world, shape.centre));
     let lamps = lamps.collect::<Option<Vec<_>>>()?;
     let mut raster = Rasterizer::default();
     let mut shadows = Shadows::new(&mut raster, (shape, receivers), level, None);
@@ -105,7 +107,8 @@ pub(crate) fn compare(
 /// Median of frame over plate in the open, for each channel; none where nothing is.
 fn open_gain(shadows: &Shadows<'_>, taken: &[Vec<f32>]) -> Option<Color> {
     let open = shadows.pixels.iter().enumerate().filter(|(index, pixel)| {
-        taken.iter().all(|taken| taken[*index] < OPEN) && pixel.precision.iter().all(|precision| *precision > 0.0)
+        taken.iter().all(|taken| taken[*index] < OPEN)
+            && pixel.precision.iter().all(|precision| *precision > 0.0)
     });
     let ratios: Vec<Color> = open.map(|(_, pixel)| ratio(pixel.frame, pixel.plate)).collect();
     medians(&ratios)
@@ -124,16 +127,29 @@ fn medians(colors: &[Color]) -> Option<Color> {
 
 fn ratio(frame: Color, plate: Color) -> Color {
     // Pixels of no precision are never asked, and all others have a plate above the darkest codes.
-    [0, 1, 2].map(|channel| if plate[channel] > 0.0 { frame[channel] / plate[channel] } else { 0.0 })
+    [0, 1, 2].map(|channel| {
+        if plate[channel] > 0.0 {
+            frame[channel] / plate[channel]
+        } else {
+            0.0
+        }
+    })
 }
 
 /// The part of the light that each lamp gives, by the largest peak of what hidden pixels imply; none where no lamp has such a peak.
 fn shares(shadows: &Shadows<'_>, taken: &[Vec<f32>], gain: &Color) -> Option<Vec<Color>> {
-    let shares: Vec<Option<Color>> = (0..taken.len()).map(|lamp| share(shadows, taken, lamp, gain)).collect();
+    let shares: Vec<Option<Color>> = (0..taken.len())
+        .map(|lamp| share(shadows, taken, lamp, gain))
+        .collect();
     if shares.iter().all(Option::is_none) {
         return None;
     }
-    Some(shares.into_iter().map(|share| share.unwrap_or([0.0; 3])).collect())
+    Some(
+        shares
+            .into_iter()
+            .map(|share| share.unwrap_or([0.0; 3]))
+            .collect(),
+    )
 }
 
 fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -> Option<Color> {
@@ -143,12 +159,20 @@ fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -
     };
     let votes: Vec<Color> = (0..shadows.pixels.len())
         .filter(|index| is_hidden(*index))
-        .filter(|index| shadows.pixels[*index].precision.iter().all(|precision| *precision > 0.0))
+        .filter(|index| {
+            shadows.pixels[*index]
+                .precision
+                .iter()
+                .all(|precision| *precision > 0.0)
+        })
         .filter_map(|index| implied(shadows, index, taken[lamp][index], gain))
         .collect();
     let mean = |vote: &Color| vote.iter().sum::<f32>() / 3.0;
     let peak = peak(votes.iter().map(mean))?;
-    let of_peak: Vec<Color> = votes.into_iter().filter(|vote| (mean(vote) - peak).abs() < OF_PEAK).collect();
+    let of_peak: Vec<Color> = votes
+        .into_iter()
+        .filter(|vote| (mean(vote) - peak).abs() < OF_PEAK)
+        .collect();
     medians(&of_peak)
 }
 
@@ -170,7 +194,11 @@ fn peak(values: impl Iterator<Item = f32>) -> Option<f32> {
     let mut n_values = 0.0;
     for value in values {
         n_values += 1.0;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the bins")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to the bins"
+        )]
         let bin = (value.clamp(0.0, 1.0) * (N_BINS - 1) as f32).round() as usize;
         bins[bin] += 1.0;
     }
@@ -182,9 +210,15 @@ fn peak(values: impl Iterator<Item = f32>) -> Option<f32> {
     };
     let votes = |bin: usize| {
         let reach = (OF_PEAK * N_BINS as f32).round();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some bins")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "some bins"
+        )]
         let reach = reach as usize;
-        bins[bin.saturating_sub(reach)..(bin + reach + 1).min(N_BINS)].iter().sum::<f32>()
+        bins[bin.saturating_sub(reach)..(bin + reach + 1).min(N_BINS)]
+            .iter()
+            .sum::<f32>()
     };
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bin")]
     let peaks = (first as usize..N_BINS).filter(|bin| is_peak(*bin));
@@ -235,7 +269,9 @@ struct Mixture<'a> {
 impl<'a> Mixture<'a> {
     fn new(shadows: &Shadows<'_>, taken: &'a [Vec<f32>], size_px: IVec2) -> Self {
         let compared = shadows.pixels.iter().map(|pixel| {
-            let noise = [0, 1, 2].map(|channel| noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE));
+            let noise = [0, 1, 2].map(|channel| {
+                noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE)
+            });
             Compared {
                 at: pixel.at,
                 ratio: [1.0; 3],
@@ -259,14 +295,14 @@ impl<'a> Mixture<'a> {
             let pixel = &shadows.pixels[index];
             let columns = shaded.columns(index);
             let ratio = ratio(pixel.frame, pixel.plate);
-            for channel in 0..3 {
-                let factors = &shading.factors[pixel.receiver][channel];
+            let of_channels = shading.factors[pixel.receiver].map(|factors| {
                 let gain: f64 = (0..QUADRATIC).map(|term| columns[term] * factors[term]).sum();
                 #[allow(clippy::cast_possible_truncation, reason = "ratios, to 7 digits")]
-                let (gain, lit) = (gain.max(LEAST_GAIN) as f32, columns.dot(factors) as f32);
-                compared.ratio[channel] = ratio[channel] / gain;
-                compared.model[channel] = lit / gain;
-            }
+                let both = (gain.max(LEAST_GAIN) as f32, columns.dot(&factors) as f32);
+                both
+            });
+            compared.ratio = [0, 1, 2].map(|channel| ratio[channel] / of_channels[channel].0);
+            compared.model = of_channels.map(|(gain, lit)| lit / gain);
         }
     }
 
@@ -286,7 +322,11 @@ impl<'a> Mixture<'a> {
                 sums[index] = [compared.receiver, 1.0];
             }
         }
-        let blurred = box_blurred(&box_blurred(&sums, self.size_px, IVec2::X), self.size_px, IVec2::Y);
+        let blurred = box_blurred(
+            &box_blurred(&sums, self.size_px, IVec2::X),
+            self.size_px,
+            IVec2::Y,
+        );
         let prior = self.compared.iter().map(|compared| {
             let [sum, n] = index_in(self.size_px, compared.at).map_or([1.0, 1.0], |index| blurred[index]);
             (sum / n.max(1.0)).clamp(LEAST_PRIOR, 1.0 - LEAST_PRIOR)
@@ -296,14 +336,22 @@ impl<'a> Mixture<'a> {
 
     /// Makes pixels count by the probability that they show the receiver.
     fn weigh(&self, shadows: &mut Shadows<'_>) {
-        for ((pixel, precision), compared) in shadows.pixels.iter_mut().zip(&self.precisions).zip(&self.compared) {
+        for ((pixel, precision), compared) in shadows
+            .pixels
+            .iter_mut()
+            .zip(&self.precisions)
+            .zip(&self.compared)
+        {
             pixel.precision = precision.map(|precision| precision * compared.receiver);
         }
     }
 
     /// Deviation of the pixels that show the receiver from what is predicted.
     fn deviation(&self) -> f32 {
-        let near = self.compared.iter().filter(|compared| compared.receiver > 0.5 && compared.is_changed());
+        let near = self
+            .compared
+            .iter()
+            .filter(|compared| compared.receiver > 0.5 && compared.is_changed());
         let mut away: Vec<f32> = near.map(Compared::away).collect();
         if away.is_empty() {
             return LEAST_DEVIATION;
@@ -318,7 +366,9 @@ impl<'a> Mixture<'a> {
 fn box_blurred(values: &[[f32; 2]], size_px: IVec2, axis: IVec2) -> Vec<[f32; 2]> {
     let sum = |at: IVec2| {
         let taps = (-BLUR_PX..=BLUR_PX).filter_map(|step| index_in(size_px, at + step * axis));
-        taps.fold([0.0; 2], |sum, index| [sum[0] + values[index][0], sum[1] + values[index][1]])
+        taps.fold([0.0; 2], |sum, index| {
+            [sum[0] + values[index][0], sum[1] + values[index][1]]
+        })
     };
     places(size_px).map(sum).collect()
 }
@@ -326,12 +376,17 @@ fn box_blurred(values: &[[f32; 2]], size_px: IVec2, axis: IVec2) -> Vec<[f32; 2]
 impl Compared {
     /// Largest difference of a channel from the model, in plates.
     pub(crate) fn away(&self) -> f32 {
-        (0..3).map(|channel| (self.ratio[channel] - self.model[channel]).abs()).fold(0.0, f32::max)
+        (0..3)
+            .map(|channel| (self.ratio[channel] - self.model[channel]).abs())
+            .fold(0.0, f32::max)
     }
 
     /// Largest change of a channel since the plate, in plates.
     pub(crate) fn changed(&self) -> f32 {
-        self.ratio.iter().map(|ratio| (ratio - 1.0).abs()).fold(0.0, f32::max)
+        self.ratio
+            .iter()
+            .map(|ratio| (ratio - 1.0).abs())
+            .fold(0.0, f32::max)
     }
 
     /// The part of the light that the model takes from it.
@@ -348,7 +403,9 @@ impl Compared {
     fn probability(&self, receiver: f32, deviation: f32) -> f32 {
         let [unchanged, other] = OF_THE_REST.map(|part| part * (1.0 - receiver));
         let density = |from: &Color, deviation: f32| {
-            let squares: f32 = (0..3).map(|channel| ((self.ratio[channel] - from[channel]) / deviation).powi(2)).sum();
+            let squares: f32 = (0..3)
+                .map(|channel| ((self.ratio[channel] - from[channel]) / deviation).powi(2))
+                .sum();
             // Of three channels that are off together: one deviation for all.
             (-0.5 * squares / 3.0).exp() / deviation
         };

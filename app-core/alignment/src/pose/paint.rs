@@ -76,7 +76,11 @@ impl Paint {
     pub(crate) fn shown(&self, level: &Level, coverage: &Coverage) -> Option<Vec<Option<Color>>> {
         let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
         let light = self.light(&placement, level, coverage)?;
-        let shaded = Lit { paint: self, light: &light }.shaded(&placement, level, coverage);
+        let shaded = Lit {
+            paint: self,
+            light: &light,
+        }
+        .shaded(&placement, level, coverage);
         Some(coverage.pixels().map(|at| shaded.at(at)).collect())
     }
 

@@ -23,12 +23,9 @@ pub(super) struct Colors {
 }
 
 impl Colors {
-    /// Of pixels of a picture by their indices: things', and the place's.
-    pub(super) fn of(
-        (of_things, things): (&Codes, impl Iterator<Item = usize>),
-        (of_place, place): (&Codes, impl Iterator<Item = usize>),
-    ) -> Self {
-        let [things, receivers] = [histogram(of_things, things), histogram(of_place, place)];
+    /// Of colours of things, and of the place.
+    pub(super) fn of(things: impl Iterator<Item = Color>, place: impl Iterator<Item = Color>) -> Self {
+        let [things, receivers] = [histogram(things), histogram(place)];
         let (Some(things), Some(receivers)) = (things, receivers) else {
             return Self::default();
         };
@@ -37,14 +34,18 @@ impl Colors {
         usual.sort_unstable_by(f32::total_cmp);
         Self {
             usual: weighted_median(&usual),
-            likelier: both.map(|(thing, receiver)| ((thing + UNSEEN) / (receiver + UNSEEN)).ln()).collect(),
+            likelier: both
+                .map(|(thing, receiver)| ((thing + UNSEEN) / (receiver + UNSEEN)).ln())
+                .collect(),
             of_place: receivers,
         }
     }
 
     /// The part of the place that is of a colour.
     pub(super) fn part_of_place(&self, color: Color) -> f32 {
-        bin(color).and_then(|bin| self.of_place.get(bin).copied()).unwrap_or(0.0)
+        bin(color)
+            .and_then(|bin| self.of_place.get(bin).copied())
+            .unwrap_or(0.0)
     }
 
     /// How much rarer a colour is than the rare ones of the place, as a log; 0 for those and for all that are more common.
@@ -52,21 +53,29 @@ impl Colors {
         ((self.usual / (self.part_of_place(color) + UNSEEN)).ln() - RARE).max(0.0)
     }
 
-    /// Median over pixels of a picture; none of it where nothing is known.
+    /// Median over pixels of a picture.
     pub(super) fn median(&self, picture: &Codes, pixels: &[usize]) -> f32 {
-        let likelier = pixels.iter().filter_map(|index| self.likelier(picture.pixels[*index]));
-        let mut likelier: Vec<f32> = likelier.collect();
-        if likelier.is_empty() {
-            return 0.0;
-        }
-        let middle = likelier.len() / 2;
-        *likelier.select_nth_unstable_by(middle, f32::total_cmp).1
+        median(
+            pixels
+                .iter()
+                .filter_map(|index| self.likelier(picture.pixels[*index])),
+        )
     }
 
     /// None where a colour or its like is not known.
     pub(super) fn likelier(&self, color: Color) -> Option<f32> {
         self.likelier.get(bin(color)?).copied()
     }
+}
+
+/// The middle one of some numbers; 0 of none.
+pub(super) fn median(numbers: impl Iterator<Item = f32>) -> f32 {
+    let mut numbers: Vec<f32> = numbers.collect();
+    if numbers.is_empty() {
+        return 0.0;
+    }
+    let middle = numbers.len() / 2;
+    *numbers.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 /// Of sorted parts of 1: that below which half of the whole lies.
@@ -85,18 +94,22 @@ fn bin(color: Color) -> Option<usize> {
         return None;
     }
     let along = color.map(|code| {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the bins")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to the bins"
+        )]
         let along = (code / 256.0 * SIDE as f32).clamp(0.0, (SIDE - 1) as f32) as usize;
         along
     });
     Some((along[0] * SIDE + along[1]) * SIDE + along[2])
 }
 
-/// Parts of 1; none of no pixels.
-fn histogram(plate: &Codes, pixels: impl Iterator<Item = usize>) -> Option<Vec<f32>> {
+/// Parts of 1; none of no colours.
+fn histogram(colors: impl Iterator<Item = Color>) -> Option<Vec<f32>> {
     let mut bins = vec![0.0_f32; SIDE * SIDE * SIDE];
     let mut n_pixels = 0.0;
-    for bin in pixels.filter_map(|index| bin(plate.pixels[index])) {
+    for bin in colors.filter_map(bin) {
         bins[bin] += 1.0;
         n_pixels += 1.0;
     }
@@ -112,7 +125,21 @@ fn histogram(plate: &Codes, pixels: impl Iterator<Item = usize>) -> Option<Vec<f
 /// By a binomial of three along one channel.
 fn blurred(bins: &[f32], stride: usize) -> Vec<f32> {
     let along = |bin: usize| bin / stride % SIDE;
-    let before = |bin: usize| if along(bin) > 0 { bins[bin - stride] } else { bins[bin] };
-    let after = |bin: usize| if along(bin) + 1 < SIDE { bins[bin + stride] } else { bins[bin] };
-    (0..bins.len()).map(|bin| 0.25 * before(bin) + 0.5 * bins[bin] + 0.25 * after(bin)).collect()
+    let before = |bin: usize| {
+        if along(bin) > 0 {
+            bins[bin - stride]
+        } else {
+            bins[bin]
+        }
+    };
+    let after = |bin: usize| {
+        if along(bin) + 1 < SIDE {
+            bins[bin + stride]
+        } else {
+            bins[bin]
+        }
+    };
+    (0..bins.len())
+        .map(|bin| 0.25 * before(bin) + 0.5 * bins[bin] + 0.25 * after(bin))
+        .collect()
 }

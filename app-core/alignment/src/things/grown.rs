@@ -22,6 +22,8 @@ const OF_COLOR: f32 = 0.4;
 /// A colour is the place's if it is so much likelier that than a thing's, as a log; of most pixels within some of it.
 const LIKE_PLACE: f32 = 0.5;
 const AROUND_PX: i32 = 2;
+/// Holes of no more pixels are closed.
+const LARGEST_HOLE: usize = 100;
 /// Nothing grows farther.
 const FARTHEST: f32 = 40.0;
 
@@ -46,7 +48,9 @@ impl Grown {
         let colors = &seeds.colors[usize::from(kind == Seed::WrongPlate)];
         let of_thing = distances(seeds, (plate, colors), kind);
         let of_receiver = distances(seeds, (plate, colors), Seed::Receiver);
-        let nearer: Vec<f32> = of_thing.iter().zip(&of_receiver).map(|(thing, receiver)| receiver - thing).collect();
+        let both = of_thing.iter().zip(&of_receiver);
+        let nearer = both.map(|(thing, receiver)| receiver - thing);
+        let nearer = without_holes(nearer.collect(), seeds);
         let groups = groups(seeds.size_px, |index| nearer[index] > 0.0);
         let mut thing = vec![None; nearer.len()];
         let mut n_seeds = Vec::new();
@@ -107,12 +111,32 @@ impl Grown {
     }
 }
 
+/// With small holes closed that nothing is known of.
+fn without_holes(mut nearer: Vec<f32>, seeds: &Seeds) -> Vec<f32> {
+    let holes = groups(seeds.size_px, |index| nearer[index] <= 0.0);
+    let is_known = |index: &usize| seeds.seeds[*index] == Seed::Receiver;
+    for hole in holes
+        .iter()
+        .filter(|hole| hole.len() <= LARGEST_HOLE && !hole.iter().any(is_known))
+    {
+        for index in hole {
+            nearer[*index] = OF_STEP;
+        }
+    }
+    nearer
+}
+
 /// Of each pixel, whether most of the pixels around it are likelier the place's.
 fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
-    let is_like = |color| colors.likelier(color).is_some_and(|likelier| likelier < -LIKE_PLACE);
+    let is_like = |color| {
+        colors
+            .likelier(color)
+            .is_some_and(|likelier| likelier < -LIKE_PLACE)
+    };
     let is_like: Vec<bool> = plate.pixels.iter().map(|color| is_like(*color)).collect();
     let around = |at: IVec2| {
-        let square = (-AROUND_PX..=AROUND_PX).flat_map(move |y| (-AROUND_PX..=AROUND_PX).map(move |x| at + IVec2::new(x, y)));
+        let square = (-AROUND_PX..=AROUND_PX)
+            .flat_map(move |y| (-AROUND_PX..=AROUND_PX).map(move |x| at + IVec2::new(x, y)));
         square.filter_map(|at| index_in(size_px, at))
     };
     let most = |at: IVec2| 2 * around(at).filter(|index| is_like[*index]).count() > around(at).count();
@@ -131,12 +155,16 @@ fn distances(seeds: &Seeds, (plate, colors): (&Codes, &Colors), from: Seed) -> V
     }
     while let Some((Reverse(distance), at)) = open.pop() {
         let at = IVec2::from_array(at);
-        let Some(index) = index_in(seeds.size_px, at) else { continue };
+        let Some(index) = index_in(seeds.size_px, at) else {
+            continue;
+        };
         if distance > units(distances[index]) {
             continue;
         }
         for step in STEPS {
-            let Some(other) = index_in(seeds.size_px, at + step) else { continue };
+            let Some(other) = index_in(seeds.size_px, at + step) else {
+                continue;
+            };
             let farther = distances[index] + cost((plate, colors), [index, other], from);
             if farther < distances[other] {
                 distances[other] = farther;
@@ -162,7 +190,11 @@ fn cost((plate, colors): (&Codes, &Colors), [from, to]: [usize; 2], of: Seed) ->
 }
 
 /// Distances as whole numbers, which can be ordered.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "no more than the farthest")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "no more than the farthest"
+)]
 fn units(distance: f32) -> u32 {
     (distance * 1e6) as u32
 }

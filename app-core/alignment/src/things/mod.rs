@@ -9,7 +9,7 @@ mod colors;
 mod grown;
 mod seeds;
 
-use glam::IVec2;
+use glam::{DVec2, IVec2};
 
 use crate::lights::Compared;
 use crate::picture::{Color, Level, Mask, Picture, Pyramid, index_in, places};
@@ -18,9 +18,9 @@ use crate::raster::{Coverage, Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
+use app_scene::scene::Light;
 use app_scene::things::Mark;
 use glam::DMat4;
-use app_scene::scene::Light;
 use grown::Grown;
 use seeds::{Seed, Seeds};
 
@@ -34,6 +34,8 @@ const UNLIKE_CODES: f32 = 12.0;
 /// A thing is before the toy if at least so many pixels of the level where the toy should be show it, and so many beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
+/// The same of what the frame alone shows.
+const LEAST_IN_FRAME: usize = 12;
 /// And that part of where it would be before the toy.
 const PART_BEFORE: f32 = 0.04;
 /// What a plate shows differs from the model by as much around what is wrong in it, in plates; it is wrong for some pixels more.
@@ -65,12 +67,59 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
     let seeds = Seeds::found(&compared, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
-    if grown.is_none() && wrong.is_none() {
+    let in_frame = toy.before_in_frame(&seeds, &frame);
+    if grown.is_none() && wrong.is_none() && in_frame.is_none() {
         return None;
     }
-    let before = grown.as_ref().map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
+    let before = grown
+        .as_ref()
+        .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
     let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared));
-    Some(sight.marks(level, grown.as_ref(), &before, wrong.as_ref()))
+    let found = Found {
+        grown,
+        before,
+        wrong,
+        in_frame,
+    };
+    Some(sight.marks(level, &found))
+}
+
+/// What is found in a level.
+struct Found {
+    /// Things that plate and frame show, and of each whether it is before the toy.
+    grown: Option<Grown>,
+    before: Vec<bool>,
+    /// Where the plate is wrong.
+    wrong: Option<Mask>,
+    /// Things before the toy that the frame alone shows, such as a hand.
+    in_frame: Option<(Grown, Vec<bool>)>,
+}
+
+impl Found {
+    /// At a place in pixels of the level, of what the plate shows.
+    fn at(&self, place: DVec2) -> Mark {
+        let thing = self
+            .grown
+            .as_ref()
+            .and_then(|grown| Some((grown, grown.at(place)?)));
+        match thing {
+            Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
+            Some(_) => Mark::Thing,
+            None if self
+                .wrong
+                .as_ref()
+                .is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) =>
+            {
+                Mark::WrongPlate
+            }
+            None => Mark::None,
+        }
+    }
+
+    fn is_before_in_frame(&self, place: DVec2) -> bool {
+        let grown = self.in_frame.as_ref();
+        grown.is_some_and(|(grown, before)| grown.at(place).is_some_and(|thing| before[thing]))
+    }
 }
 
 /// Where a level's plate is wrong: all that hangs together with seeds and differs from the model, and where the toy hides it what it grew to.
@@ -100,14 +149,20 @@ fn filled(mask: &Mask, size_px: IVec2) -> Mask {
     let mut filled = mask.clone();
     for group in seeds::groups(size_px, |index| !has(index)) {
         if !group.iter().any(|index| is_at_border(place_of(*index, size_px))) {
-            group.iter().for_each(|index| filled.mark(place_of(*index, size_px)));
+            group
+                .iter()
+                .for_each(|index| filled.mark(place_of(*index, size_px)));
         }
     }
     filled
 }
 
 /// The place of a pixel by its index.
-#[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a place in a picture")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "a place in a picture"
+)]
 fn place_of(index: usize, size_px: IVec2) -> IVec2 {
     IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x)
 }
@@ -116,28 +171,38 @@ impl Sight<'_> {
     fn level(&self) -> &Level {
         let levels = (0..=Pyramid::SMALLEST).map(|level| self.pyramid.level(level));
         let fits = |level: &&Level| level.frame.size_px.x * level.frame.size_px.y <= MOST_PIXELS;
-        levels.into_iter().find(fits).unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
+        levels
+            .into_iter()
+            .find(fits)
+            .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
     }
 
     /// In the largest level.
-    fn marks(&self, level: &Level, grown: Option<&Grown>, before: &[bool], wrong: Option<&Mask>) -> (IVec2, Vec<Mark>) {
+    fn marks(&self, level: &Level, found: &Found) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
         let size_px = largest.frame.size_px;
         let per_px = level.frame.size_px.as_dvec2() / size_px.as_dvec2();
         let toy = Toy::of(self, largest);
-        let codes = largest.plate.as_ref().map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let codes = largest
+            .plate
+            .as_ref()
+            .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
-            let is_wrong = wrong.is_some_and(|wrong| wrong.has(there.floor().as_ivec2()));
-            let found = grown.and_then(|grown| Some((grown.at(there)?, grown.is_like_place(there))));
-            let Some((thing, is_like_place)) = found else {
-                return if is_wrong { Mark::WrongPlate } else { Mark::None };
+            let Some([frame, plate]) = &codes else {
+                return Mark::None;
             };
-            if !before[thing] || is_like_place {
-                return Mark::Thing;
+            match found.at(there) {
+                Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
+                Mark::None if found.is_before_in_frame(there) && !toy.is_shown(at, frame) => {
+                    if is_shade(at, frame, plate) {
+                        Mark::Thing
+                    } else {
+                        Mark::BeforeToy
+                    }
+                }
+                mark => mark,
             }
-            let shows_toy = codes.as_ref().is_some_and(|[frame, plate]| toy.shows(at, frame, plate));
-            if shows_toy { Mark::None } else { Mark::BeforeToy }
         };
         (size_px, places(size_px).map(mark).collect())
     }
@@ -151,7 +216,11 @@ struct Codes {
 
 impl Codes {
     fn of(picture: &Picture) -> Self {
-        let code = |at| picture.get(at).map_or([f32::NAN; 3], |color| color.map(|linear| 255.0 * srgb_from_linear(linear)));
+        let code = |at| {
+            picture.get(at).map_or([f32::NAN; 3], |color| {
+                color.map(|linear| 255.0 * srgb_from_linear(linear))
+            })
+        };
         Self {
             size_px: picture.size_px,
             pixels: places(picture.size_px).map(code).collect(),
@@ -166,7 +235,9 @@ impl Codes {
 
 /// Largest difference of a channel.
 fn apart(a: Color, b: Color) -> f32 {
-    (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f32::max)
+    (0..3)
+        .map(|channel| (a[channel] - b[channel]).abs())
+        .fold(0.0, f32::max)
 }
 
 /// The toy in a level.
@@ -193,7 +264,9 @@ impl Toy {
 
     fn is_within(&self, at: IVec2) -> bool {
         let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
-        steps.iter().all(|step| self.coverage.at(at + WITHIN_PX * *step) >= 1.0)
+        steps
+            .iter()
+            .all(|step| self.coverage.at(at + WITHIN_PX * *step) >= 1.0)
     }
 
     /// Whether a pixel where the toy should be shows what the plate shows, and the toy should look otherwise.
@@ -201,7 +274,9 @@ impl Toy {
         let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
             return false;
         };
-        let is_unlike = self.expected(at).is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
+        let is_unlike = self
+            .expected(at)
+            .is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
         apart(frame, plate) < ALIKE_CODES && is_unlike
     }
 
@@ -209,6 +284,41 @@ impl Toy {
     fn hidden<'a>(&'a self, frame: &'a Codes, plate: &'a Codes) -> impl Iterator<Item = IVec2> + 'a {
         let covered = self.coverage.pixels().filter(|at| self.coverage.at(*at) >= 1.0);
         covered.filter(|at| self.is_hidden(*at, frame, plate))
+    }
+
+    /// Whether a pixel of the toy looks as it should.
+    fn is_as_expected(&self, at: IVec2, frame: &Codes) -> bool {
+        let colors = frame.get(at).zip(self.expected(at));
+        colors.is_some_and(|(frame, expected)| from_shaded(frame, expected) < UNLIKE_CODES)
+    }
+
+    /// Whether most pixels around one of the toy look as they should.
+    fn is_shown(&self, at: IVec2, frame: &Codes) -> bool {
+        let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
+        self.coverage.at(at) > 0.0 && around.filter(|at| self.is_as_expected(*at, frame)).count() >= 5
+    }
+
+    /// Things before the toy that a level's frame alone shows, of each whether it is one: none where no such thing is seen beside the toy,
+    /// or where the toy does not look otherwise than it should. `seeds` are of the plate.
+    fn before_in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<(Grown, Vec<bool>)> {
+        let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
+        let as_expected = within
+            .iter()
+            .copied()
+            .filter(|at| self.is_as_expected(*at, frame));
+        let of_toy = as_expected.filter_map(|at| index_in(seeds.size_px, at));
+        let seeds = seeds.in_frame(frame, of_toy);
+        let grown = Grown::from(&seeds, Seed::InFrame, frame)?;
+        let mut hidden = vec![0; grown.n_things()];
+        for at in within.into_iter().filter(|at| !self.is_as_expected(*at, frame)) {
+            if let Some(thing) = grown.of_pixel(at) {
+                hidden[thing] += 1;
+            }
+        }
+        let is_before =
+            |thing: usize| hidden[thing] >= LEAST_IN_FRAME && grown.n_seeds(thing) >= LEAST_BESIDE;
+        let before: Vec<bool> = (0..grown.n_things()).map(is_before).collect();
+        before.contains(&true).then_some((grown, before))
     }
 
     /// For each thing of a level, whether it is before the toy.
@@ -221,8 +331,11 @@ impl Toy {
                 hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
             }
         }
-        if std::env::var("DEBUG_THINGS").is_ok() { eprintln!("hidden {hidden:?} within {n_within:?} seeds {:?}", (0..grown.n_things()).map(|t| grown.n_seeds(t)).collect::<Vec<_>>()); }
-        let is_before = |thing: usize| hidden[thing] >= LEAST_BEFORE && hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32 && grown.n_seeds(thing) >= LEAST_BESIDE;
+        let is_before = |thing: usize| {
+            hidden[thing] >= LEAST_BEFORE
+                && hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32
+                && grown.n_seeds(thing) >= LEAST_BESIDE
+        };
         (0..grown.n_things()).map(is_before).collect()
     }
 
@@ -241,10 +354,24 @@ impl Toy {
     }
 }
 
+/// Whether most pixels around one are as in the plate, in less light: such as in the shadow of a thing.
+fn is_shade(at: IVec2, frame: &Codes, plate: &Codes) -> bool {
+    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
+    let colors = around.filter_map(|at| frame.get(at).zip(plate.get(at)));
+    colors
+        .filter(|(frame, plate)| from_shaded(*frame, *plate) < 0.5 * UNLIKE_CODES)
+        .count()
+        >= 5
+}
+
 /// How far a color is from another in less light, in codes.
 fn from_shaded(color: Color, lit: Color) -> f32 {
     let square: f32 = lit.iter().map(|code| code * code).sum();
     let product: f32 = lit.iter().zip(color).map(|(lit, code)| lit * code).sum();
-    let light = if square > 0.0 { (product / square).clamp(0.0, 1.0) } else { 1.0 };
+    let light = if square > 0.0 {
+        (product / square).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
     apart(color, lit.map(|code| light * code))
 }

@@ -2,10 +2,11 @@
 
 use glam::IVec2;
 
-use super::Codes;
-use super::colors::Colors;
+use super::colors::{Colors, median};
+use super::{Codes, UNLIKE_CODES, from_shaded};
 use crate::lights::Compared;
-use crate::picture::index_in;
+use crate::picture::{Color, index_in};
+use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Least difference from the model, in plates, that no light on a receiver explains; and most that shows a receiver.
 const UNEXPLAINED: f32 = 0.15;
@@ -16,6 +17,8 @@ const OF_NOISE: f32 = 4.0;
 const SHADOWED: f32 = 0.25;
 /// And no more from one that is known to be in the open.
 const OPEN: f32 = 0.02;
+/// A model that leaves less light of the plate tells nothing of it.
+const LEAST_LIGHT: f32 = 0.05;
 /// Of the nine pixels around a seed of a thing as many are seeds.
 const LEAST_AROUND: usize = 5;
 /// An open pixel shows a receiver if its colour is so much likelier the place's than a thing's, as a log, and that part of the place is of it.
@@ -23,7 +26,7 @@ const LIKE_PLACE: f32 = 1.5;
 const COMMON: f32 = 0.02;
 /// A group is of what the plate alone shows, if the frame's colours there are no likelier a thing's, as a log.
 const OF_PLACE: f32 = 1.0;
-/// And of what the frame alone shows, if the plate's are no likelier and the frame's are likelier by so much.
+/// And of what the frame alone shows, if the plate's are no likelier and the frame's are likelier by so much; skin is like wood.
 const OF_FRAME: [f32; 2] = [2.0, 1.5];
 /// Groups of seeds whose colours in the plate are not the receiver's: median of the log of how much likelier they are a thing's, from so many
 /// pixels; and for large groups.
@@ -39,6 +42,8 @@ pub(super) enum Seed {
     Thing,
     /// What the plate shows and the frame does not.
     WrongPlate,
+    /// What the frame shows and the plate does not.
+    InFrame,
 }
 
 /// Seeds of a level.
@@ -53,11 +58,17 @@ pub(super) struct Seeds {
 
 impl Seeds {
     /// `hidden`: where the plate shows in place of the toy.
-    pub(super) fn found(compared: &[Compared], hidden: impl Iterator<Item = IVec2>, (frame, plate): (&Codes, &Codes)) -> Self {
+    pub(super) fn found(
+        compared: &[Compared],
+        hidden: impl Iterator<Item = IVec2>,
+        (frame, plate): (&Codes, &Codes),
+    ) -> Self {
         let size_px = plate.size_px;
         let mut seeds = vec![Seed::None; plate.pixels.len()];
         for pixel in compared {
-            let Some(index) = index_in(size_px, pixel.at) else { continue };
+            let Some(index) = index_in(size_px, pixel.at) else {
+                continue;
+            };
             let noise = OF_NOISE * pixel.noise;
             if pixel.away() > UNEXPLAINED.max(noise) {
                 seeds[index] = Seed::Thing;
@@ -65,7 +76,9 @@ impl Seeds {
                 seeds[index] = Seed::Receiver;
             }
         }
-        let open = compared.iter().filter(|pixel| pixel.taken() < OPEN && pixel.changed() < EXPLAINED);
+        let open = compared
+            .iter()
+            .filter(|pixel| pixel.taken() < OPEN && pixel.changed() < EXPLAINED);
         let open = open.filter_map(|pixel| index_in(size_px, pixel.at));
         let mut found = Self {
             open: open.collect(),
@@ -79,7 +92,7 @@ impl Seeds {
             }
         }
         found.drop_lone();
-        found.tell(frame, plate);
+        found.tell(frame, &lit(compared, (frame, plate)), plate);
         found
     }
 
@@ -94,36 +107,51 @@ impl Seeds {
             around.filter(|at| self.get(*at) == Seed::Thing).count() < LEAST_AROUND
         };
         let kept = crate::picture::places(self.size_px).zip(&self.seeds);
-        let kept = kept.map(|(at, seed)| if *seed == Seed::Thing && is_lone(at) { Seed::None } else { *seed });
+        let kept = kept.map(|(at, seed)| {
+            if *seed == Seed::Thing && is_lone(at) {
+                Seed::None
+            } else {
+                *seed
+            }
+        });
         self.seeds = kept.collect();
     }
 
-    /// Leaves groups of seeds whose colours tell them from the place, each as what it is.
-    fn tell(&mut self, frame: &Codes, plate: &Codes) {
+    /// Leaves groups of seeds whose colours, in the frame without its shadow or in the plate, tell them from the place, each as what it is.
+    fn tell(&mut self, frame: &Codes, lit: &Codes, plate: &Codes) {
         let groups = groups(self.size_px, |index| self.seeds[index] == Seed::Thing);
         let receivers = self.of(Seed::Receiver);
         // A thing is told apart from all of the place, and grows against what the shadow falls on.
         let place: Vec<usize> = receivers.iter().chain(&self.open).copied().collect();
-        let of_place = |picture: &Codes| {
-            let seeds = groups.iter().flatten().copied();
-            Colors::of((picture, seeds), (plate, place.iter().copied()))
+        let seeds = |of: &'_ Codes| -> Vec<Color> {
+            groups.iter().flatten().map(|index| of.pixels[*index]).collect()
         };
-        let [in_frame, in_plate] = [of_place(frame), of_place(plate)];
+        let of_place = || place.iter().map(|index| plate.pixels[*index]);
+        let in_plate = Colors::of(seeds(plate).into_iter(), of_place());
+        let in_frame = Colors::of(seeds(lit).into_iter(), of_place());
         for group in &groups {
-            let [by_frame, by_plate] = [in_frame.median(frame, group), in_plate.median(plate, group)];
-            let seed = told([by_frame, by_plate], group.len());
-            if std::env::var("DEBUG_THINGS").is_ok() && group.len() >= 8 { eprintln!("group {} frame {by_frame:.2} plate {by_plate:.2} {seed:?} at {}", group.len(), IVec2::new(group[0] as i32 % self.size_px.x, group[0] as i32 / self.size_px.x)); }
+            let [by_frame, by_plate] = [in_frame.median(lit, group), in_plate.median(plate, group)];
+            let differs = median(
+                group
+                    .iter()
+                    .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index])),
+            );
+            let seed = told([by_frame, by_plate], differs, group.len());
             for index in group {
                 self.seeds[*index] = seed;
             }
         }
         self.colors = [Seed::Thing, Seed::WrongPlate].map(|seed| {
             let seeds = self.of(seed).into_iter();
-            Colors::of((plate, seeds), (plate, place.iter().copied()))
+            Colors::of(seeds.map(|index| plate.pixels[index]), of_place())
         });
         for index in &self.open {
             let color = plate.pixels[*index];
-            let is_like = |colors: &Colors| colors.likelier(color).is_none_or(|likelier| likelier < -LIKE_PLACE);
+            let is_like = |colors: &Colors| {
+                colors
+                    .likelier(color)
+                    .is_none_or(|likelier| likelier < -LIKE_PLACE)
+            };
             let is_common = in_plate.part_of_place(color) > COMMON;
             if self.seeds[*index] == Seed::None && is_common && self.colors.iter().all(is_like) {
                 self.seeds[*index] = Seed::Receiver;
@@ -136,23 +164,75 @@ impl Seeds {
     fn colors_against(&self, receivers: &[usize], plate: &Codes) -> [Colors; 2] {
         [Seed::Thing, Seed::WrongPlate].map(|seed| {
             let seeds = self.of(seed).into_iter();
-            Colors::of((plate, seeds), (plate, receivers.iter().copied()))
+            Colors::of(
+                seeds.map(|index| plate.pixels[index]),
+                receivers.iter().map(|index| plate.pixels[*index]),
+            )
         })
+    }
+
+    /// The same for what the frame shows and the plate does not: against the place, and against the toy where a pixel looks as it should.
+    pub(super) fn in_frame(&self, frame: &Codes, toy: impl Iterator<Item = usize>) -> Self {
+        let keep = |seed: &Seed| match seed {
+            Seed::InFrame | Seed::Receiver => *seed,
+            Seed::None | Seed::Thing | Seed::WrongPlate => Seed::None,
+        };
+        let mut seeds: Vec<Seed> = self.seeds.iter().map(keep).collect();
+        for index in toy {
+            seeds[index] = Seed::Receiver;
+        }
+        let mut found = Self {
+            seeds,
+            open: Vec::new(),
+            colors: self.colors.clone(),
+            ..*self
+        };
+        let of = |kind: Seed| found.of(kind).into_iter().map(|index| frame.pixels[index]);
+        let colors = Colors::of(of(Seed::InFrame), of(Seed::Receiver));
+        found.colors = [colors, Colors::default()];
+        found
     }
 
     /// Indices of the seeds of a kind.
     pub(super) fn of(&self, kind: Seed) -> Vec<usize> {
         let seeds = self.seeds.iter().enumerate();
-        seeds.filter(|(_, seed)| **seed == kind).map(|(index, _)| index).collect()
+        seeds
+            .filter(|(_, seed)| **seed == kind)
+            .map(|(index, _)| index)
+            .collect()
     }
 }
 
-/// What a group of seeds is of; by how much likelier its colours in frame and plate are its own than the place's.
-fn told([by_frame, by_plate]: [f32; 2], n_seeds: usize) -> Seed {
+/// What the frame would show without the toy's shadow, if it shows a receiver.
+fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
+    let mut lit = frame.pixels.clone();
+    for pixel in compared {
+        if let Some(index) = index_in(plate.size_px, pixel.at) {
+            lit[index] = [0, 1, 2].map(|channel| {
+                let plate = linear_from_srgb(plate.pixels[index][channel] / 255.0);
+                let light = pixel.ratio[channel] / pixel.model[channel].max(LEAST_LIGHT);
+                255.0 * srgb_from_linear((plate * light).min(1.0))
+            });
+        }
+    }
+    Codes {
+        size_px: plate.size_px,
+        pixels: lit,
+    }
+}
+
+/// What a group of seeds is of; by how much likelier its colours in frame and plate are its own than the place's, and by how many codes the
+/// frame differs from the plate in less light.
+fn told([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
     let passes = |(least, n): (f32, usize)| by_plate > least && n_seeds >= n;
-    if by_plate < OF_FRAME[0] && by_frame > by_plate + OF_FRAME[1] || !(passes(TOLD) || passes(TOLD_LARGE)) {
+    let is_of_one = differs > UNLIKE_CODES;
+    let is_of_frame =
+        differs > 0.5 * UNLIKE_CODES && by_plate < OF_FRAME[0] && by_frame > by_plate + OF_FRAME[1];
+    if is_of_frame {
+        Seed::InFrame
+    } else if !(passes(TOLD) || passes(TOLD_LARGE)) {
         Seed::None
-    } else if by_frame < OF_PLACE {
+    } else if is_of_one && by_frame < OF_PLACE {
         Seed::WrongPlate
     } else {
         Seed::Thing
@@ -176,7 +256,9 @@ pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<u
             #[allow(clippy::cast_possible_truncation, reason = "a place in a picture")]
             let at = IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x);
             for step in super::grown::STEPS {
-                let Some(other) = index_in(size_px, at + step) else { continue };
+                let Some(other) = index_in(size_px, at + step) else {
+                    continue;
+                };
                 if !is_known[other] && is_in(other) {
                     is_known[other] = true;
                     group.push(other);

@@ -9,7 +9,7 @@ pub use crate::gpu::pass_run::{PassGroup, PassRun, PassTime};
 pub use crate::gpu::stages::{Clock, StageTime};
 pub use crate::gpu::work::Work;
 pub use crate::plan::{Change, SkippedWork};
-pub use warning::{Mismatch, Outlier, UnseenShadow, Warning};
+pub use warning::{Mismatch, Outlier, Thing, UnseenShadow, Warning};
 
 /// The report of one frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]

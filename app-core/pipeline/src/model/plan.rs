@@ -172,7 +172,13 @@ impl Plan {
         let sizes = |plan: &Self| {
             let counts = [plan.n_lights, plan.n_ambient_directions];
             let boxes_px = [plan.toy_box.size_px, plan.physical_box.size_px];
-            (plan.region.size_px, boxes_px, plan.ambient_px, counts, plan.has_things)
+            (
+                plan.region.size_px,
+                boxes_px,
+                plan.ambient_px,
+                counts,
+                plan.has_things,
+            )
         };
         sizes(self) == sizes(other) && self.self_shadow == other.self_shadow
     }

@@ -311,9 +311,9 @@ impl Stage {
             (Mark::BeforeToy, Thing::BeforeToy),
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
-        let told = told.into_iter().filter(move |(mark, _)| {
-            things.is_some_and(|things| things.given().count(*mark) > 0)
-        });
+        let told = told
+            .into_iter()
+            .filter(move |(mark, _)| things.is_some_and(|things| things.given().count(*mark) > 0));
         told.map(|(_, thing)| Warning::Thing(thing))
     }
 

@@ -12,4 +12,5 @@ mod reuse;
 mod scale;
 mod shaders;
 mod still;
+mod things;
 mod warnings;

@@ -1,0 +1,119 @@
+//! Things beside the toy are found where they stand, told apart from a plate that is wrong, and none is found where none is.
+
+use std::sync::Arc;
+
+use app_core::alignment::Observer;
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Scene};
+use app_core::things::{Mark, Things};
+use glam::UVec2;
+
+use super::bundled::SESSION;
+
+/// A rectangle of the bundled picture: its first pixel, and that after its last.
+type Rect = [UVec2; 2];
+
+/// In the shadow, clear of the toy.
+const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
+/// Over the toy's forelegs, and to both sides of them.
+const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
+const TEAL: [u8; 3] = [20, 120, 130];
+
+fn painted(image: &Image, [first, end]: Rect) -> Image {
+    let mut image = image.clone();
+    for y in first.y..end.y {
+        for x in first.x..end.x {
+            let at = 4 * (y * image.width_px + x) as usize;
+            // Not of one code, as no thing is.
+            let grain = ((7 * x + 13 * y) % 5) as u8;
+            for (code, teal) in image.rgba8[at..at + 3].iter_mut().zip(TEAL) {
+                *code = teal + grain;
+            }
+        }
+    }
+    image
+}
+
+/// What is found of a painted rectangle.
+struct Found {
+    things: Option<Things>,
+    rect: Rect,
+}
+
+impl Found {
+    /// Of one that the frame shows, the plate, or both.
+    fn of([in_frame, in_plate]: [bool; 2], rect: Rect) -> Self {
+        let (scene, input) = &*SESSION;
+        let (mut scene, mut input) = (Scene::clone(scene), FrameInput::clone(input));
+        if in_frame {
+            let image = painted(input.image.rgba(), rect);
+            input = input.with_image(Arc::new(image));
+        }
+        if in_plate {
+            let plate = painted(&scene.plates[0].image, rect);
+            scene.plates[0].image = Arc::new(plate);
+        }
+        let things = Observer::default().observed(&scene, &input).unwrap().things;
+        Self { things, rect }
+    }
+
+    fn size(&self) -> f64 {
+        let [first, end] = self.rect;
+        f64::from((end - first).element_product())
+    }
+
+    /// The part of it with a mark.
+    fn part(&self, mark: Mark) -> f64 {
+        let Some(things) = &self.things else { return 0.0 };
+        let [first, end] = self.rect;
+        let width_px = things.size_px().x;
+        let pixels =
+            (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| (y * width_px + x) as usize));
+        pixels.filter(|at| things.marks()[*at] == mark).count() as f64 / self.size()
+    }
+
+    /// What has the mark beyond it, over its size.
+    fn beyond(&self, mark: Mark) -> f64 {
+        let all = self.things.as_ref().map_or(0, |things| things.count(mark));
+        all as f64 / self.size() - self.part(mark)
+    }
+}
+
+#[test]
+fn a_thing_in_the_shadow_is_found() {
+    let found = Found::of([true, true], IN_SHADOW);
+    let [of_it, beyond] = [found.part(Mark::Thing), found.beyond(Mark::Thing)];
+    assert!(
+        of_it > 0.9 && beyond < 0.2,
+        "{of_it:.2} of it, {beyond:.2} beyond"
+    );
+}
+
+#[test]
+fn a_thing_before_the_toy_is_found() {
+    let found = Found::of([true, true], OVER_LEGS);
+    let [of_it, beyond] = [found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
+    assert!(
+        of_it > 0.9 && beyond < 0.2,
+        "{of_it:.2} of it, {beyond:.2} beyond"
+    );
+}
+
+#[test]
+fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
+    let found = Found::of([false, true], IN_SHADOW);
+    let [of_it, beyond] = [found.part(Mark::WrongPlate), found.beyond(Mark::WrongPlate)];
+    let thing = found.part(Mark::Thing);
+    // It is taken for wrong a little beyond what is seen.
+    let is_found = of_it > 0.9 && beyond < 0.5 && thing == 0.0;
+    assert!(
+        is_found,
+        "{of_it:.2} of it, {beyond:.2} beyond, {thing:.2} a thing"
+    );
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is() {
+    let found = Found::of([false, false], IN_SHADOW);
+    assert!(found.things.is_none());
+}

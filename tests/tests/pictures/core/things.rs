@@ -1,0 +1,100 @@
+//! Things that stand in the picture stay as the camera saw them, before the toy or behind it; a plate that is wrong is not used.
+
+use app_core::frame::FrameInput;
+use app_core::preset::Preset;
+use app_core::scene::Scene;
+use app_core::things::{Mark, Things};
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::frame::{Thing, Warning};
+use app_pipeline::readback::Map;
+use glam::UVec2;
+
+use super::bundled::{core, first_input, picture_of, scene};
+
+/// Pixels of the small picture: its first, and that after its last.
+type Rect = [UVec2; 2];
+
+/// Where the shadow falls, clear of the toy.
+const IN_SHADOW: Rect = [UVec2::new(95, 50), UVec2::new(123, 76)];
+/// Over what the toy covers in either pose.
+const OVER_TOY: Rect = [UVec2::new(56, 40), UVec2::new(72, 56)];
+
+fn with(input: &FrameInput, marked: &[(Mark, Rect)]) -> FrameInput {
+    let image = input.image.rgba();
+    let size_px = UVec2::new(image.width_px, image.height_px);
+    let mut marks = vec![Mark::None; size_px.element_product() as usize];
+    for (mark, rect) in marked {
+        for at in pixels(*rect) {
+            marks[(at.y * size_px.x + at.x) as usize] = *mark;
+        }
+    }
+    let things = Things::new(size_px, marks, input.camera).unwrap();
+    input.clone().with_things(Some(things))
+}
+
+fn pixels([first, end]: Rect) -> impl Iterator<Item = UVec2> {
+    (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| UVec2::new(x, y)))
+}
+
+/// Largest difference of codes between a picture and the camera's, over a rectangle.
+fn apart(picture: &[u8], input: &FrameInput, rect: Rect) -> u8 {
+    let image = input.image.rgba();
+    let codes = pixels(rect).flat_map(|at| {
+        let index = 4 * (at.y * image.width_px + at.x) as usize;
+        (index..index + 3).map(|index| picture[index].abs_diff(image.rgba8[index]))
+    });
+    codes.max().unwrap()
+}
+
+fn staged() -> (Scene, FrameInput) {
+    (scene(), first_input())
+}
+
+#[test]
+fn things_stay_as_the_camera_saw_them() {
+    let (scene, input) = staged();
+    let mut core = core();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let without = picture_of(&mut core, &input);
+    for rect in [IN_SHADOW, OVER_TOY] {
+        assert!(apart(&without, &input, rect) > 10, "nothing changes in {rect:?}");
+    }
+    let marked = with(&input, &[(Mark::Thing, IN_SHADOW), (Mark::BeforeToy, OVER_TOY)]);
+    let with_things = picture_of(&mut core, &marked);
+    for rect in [IN_SHADOW, OVER_TOY] {
+        assert_eq!(apart(&with_things, &input, rect), 0, "{rect:?}");
+    }
+    // The toy is drawn over a thing that is not before it.
+    let behind = picture_of(&mut core, &with(&input, &[(Mark::Thing, OVER_TOY)]));
+    assert!(apart(&behind, &input, OVER_TOY) > 10);
+}
+
+#[test]
+fn a_scene_is_learned_anew_once_things_are_known() {
+    let (scene, input) = staged();
+    let marked = with(&input, &[(Mark::Thing, IN_SHADOW)]);
+    let mut core = core();
+    core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    picture_of(&mut core, &input);
+    let later = picture_of(&mut core, &marked);
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    assert!(later == picture_of(&mut core, &marked));
+}
+
+#[test]
+fn a_wrong_plate_is_estimated() {
+    let (scene, input) = staged();
+    let mut core = core();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let report = core
+        .frame(&with(&input, &[(Mark::WrongPlate, IN_SHADOW)]))
+        .unwrap();
+    assert!(report.warnings.contains(&Warning::Thing(Thing::InPlateAlone)));
+    let origin_px = core.plan().unwrap().region.origin_px;
+    let plate = core.read_map(Map::Plate).unwrap().unwrap();
+    let is_in = |at: UVec2| at.cmpge(IN_SHADOW[0]).all() && at.cmplt(IN_SHADOW[1]).all();
+    for (index, texel) in (0..).zip(&plate.texels) {
+        let at = origin_px + UVec2::new(index % plate.width, index / plate.width);
+        assert_eq!(texel[3] < 1.0, is_in(at), "{at}");
+    }
+}
