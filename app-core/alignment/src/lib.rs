@@ -248,24 +248,13 @@ impl Aligner {
         let seen = self.on_laid_receivers(seen, input)?;
         self.lights = Some(match kept {
             Some(kept) if self.are_shadows_withheld => kept,
-            Some(kept) => self.watch_lights(kept, &seen)?,
-            None => self.find_lights(given, &seen)?,
+            kept => self.look_at_lights(kept, given, &seen)?,
         });
-        self.things = self.things_beside(&seen)?;
         if seen.view.is_trusted(MOST_OUTLINE_PX) {
             self.held = Some(seen.view.world_from_object);
         }
         self.view = Some(seen.view);
         Ok(self.aligned(input))
-    }
-
-    /// Things that stand beside the toy, in the lights that are in use.
-    fn things_beside(&self, seen: &Seen) -> Result<Option<Things>, ToyError> {
-        // A shadow that is withheld tells of none.
-        let lights = self.lights.as_ref().filter(|_| !self.are_shadows_withheld);
-        lights.map_or(Ok(None), |lights| {
-            seen.photograph.things(&self.scene, &seen.input, lights.in_use())
-        })
     }
 
     /// The view with receivers under the toy, where it is a guess where they are and the picture shows the toy.

@@ -140,6 +140,36 @@ impl Aligner {
         Ok(kept)
     }
 
+    /// The lights in a view, and things that stand there beside the toy, which tell nothing of them.
+    pub(super) fn look_at_lights(
+        &mut self,
+        kept: Option<KeptLights>,
+        given: Arc<[Light]>,
+        seen: &Seen,
+    ) -> Result<KeptLights, ToyError> {
+        let known: Arc<[Light]> = kept
+            .as_ref()
+            .map_or(Arc::clone(&given), |kept| kept.in_use().into());
+        let things = if self.are_shadows_withheld {
+            None
+        } else {
+            seen.photograph.things(&self.scene, &seen.input, &known)?
+        };
+        let clear = things.as_ref().map(|things| seen.clear_of(things));
+        let looked_at = clear.as_ref().unwrap_or(seen);
+        let lights = match kept {
+            Some(kept) => self.watch_lights(kept, looked_at)?,
+            None => self.find_lights(given, looked_at)?,
+        };
+        self.things = if self.are_shadows_withheld || lights.in_use() == &*known {
+            things
+        } else {
+            seen.photograph
+                .things(&self.scene, &seen.input, lights.in_use())?
+        };
+        Ok(lights)
+    }
+
     /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
     /// light; none where they do not explain it as well.
     fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {

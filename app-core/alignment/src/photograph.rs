@@ -13,7 +13,7 @@ use super::{lights, pose, things};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
+use app_scene::scene::{Camera, Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
@@ -65,6 +65,15 @@ impl Photograph {
             self.pyramid = pyramid;
         }
         self
+    }
+
+    /// Of which nothing is known where things stand or the plate is wrong.
+    pub(super) fn clear_of(&self, things: &Things) -> Self {
+        Self {
+            pyramid: self.pyramid.clear_of(things.marks()),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        }
     }
 
     /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
@@ -281,7 +290,12 @@ impl Photograph {
             lights,
             world_from_camera: &input.camera.world_from_camera,
         });
-        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, input.camera)))
+        // Of the largest level, which may be smaller than the picture.
+        let camera = Camera {
+            intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
+            ..input.camera
+        };
+        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
     }
 
     /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.

@@ -4,6 +4,7 @@ use glam::{DVec2, IVec2, UVec2};
 
 use app_scene::geometry::color::{linear_of_codes, linear_per_srgb};
 use app_scene::scene::{Image, Intrinsics};
+use app_scene::things::Mark;
 
 /// Index of a place within a rectangle of a size; none outside it.
 pub(super) fn index_in(size_px: IVec2, place: IVec2) -> Option<usize> {
@@ -185,6 +186,21 @@ impl Pyramid {
             levels.push(levels[above].halved());
         }
         Some(Self { levels, ..*self })
+    }
+
+    /// Without what is known of marked pixels of the largest level, in whichever picture.
+    pub(super) fn clear_of(&self, marks: &[Mark]) -> Self {
+        let mut level = self.levels[0].clone();
+        for (pixel, mark) in level.frame.pixels.iter_mut().zip(marks) {
+            if *mark != Mark::None {
+                *pixel = UNKNOWN;
+            }
+        }
+        let mut levels = vec![level];
+        for above in 0..Self::SMALLEST {
+            levels.push(levels[above].halved());
+        }
+        Self { levels, ..*self }
     }
 
     /// Pixels of the photograph in one of the largest level.

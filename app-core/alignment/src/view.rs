@@ -7,6 +7,7 @@ use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Scene};
+use app_scene::things::Things;
 
 /// A view with its photograph.
 pub(super) struct Seen {
@@ -40,6 +41,17 @@ impl Seen {
             photograph: Photograph::new(scene, &input, None).with_plate_spread(view.plate_spread_px),
             view,
             input,
+        }
+    }
+}
+
+impl Seen {
+    /// The same view, of which nothing is known where things stand or the plate is wrong.
+    pub(super) fn clear_of(&self, things: &Things) -> Self {
+        Self {
+            view: self.view.clone(),
+            photograph: self.photograph.clear_of(things),
+            input: self.input.clone(),
         }
     }
 }

@@ -34,6 +34,8 @@ const UNLIKE_CODES: f32 = 12.0;
 /// A thing is before the toy if at least so many pixels of the level where the toy should be show it, and so many beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
+/// One that is not before the toy has at least so many seeds: fewer are what a camera's own processing leaves beside it.
+const LEAST_ALONE: usize = 60;
 /// The same of what the frame alone shows.
 const LEAST_IN_FRAME: usize = 12;
 /// And that part of where it would be before the toy.
@@ -104,15 +106,15 @@ impl Found {
             .and_then(|grown| Some((grown, grown.at(place)?)));
         match thing {
             Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
-            Some(_) => Mark::Thing,
-            None if self
+            Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => Mark::Thing,
+            _ if self
                 .wrong
                 .as_ref()
                 .is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) =>
             {
                 Mark::WrongPlate
             }
-            None => Mark::None,
+            _ => Mark::None,
         }
     }
 

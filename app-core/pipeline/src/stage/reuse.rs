@@ -311,9 +311,13 @@ impl Stage {
             (Mark::BeforeToy, Thing::BeforeToy),
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
-        let told = told
-            .into_iter()
-            .filter(move |(mark, _)| things.is_some_and(|things| things.given().count(*mark) > 0));
+        let count = move |mark| things.map_or(0, |things| things.given().count(mark));
+        // Beside a thing before the toy there is mostly its shadow.
+        let is_told = move |mark: Mark| match mark {
+            Mark::Thing => count(mark) > count(Mark::BeforeToy),
+            _ => count(mark) > 0,
+        };
+        let told = told.into_iter().filter(move |(mark, _)| is_told(*mark));
         told.map(|(_, thing)| Warning::Thing(thing))
     }
 

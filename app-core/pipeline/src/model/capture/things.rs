@@ -68,9 +68,7 @@ impl Pass {
         let Some(alone) = &targets.alone else { return };
         recorder.copy(marks, alone);
         let [view, codes] = things.resources();
-        let groups = [
-            recorder.bind(&self.mark, GROUP_PASS, &[view, codes, (&alone.view).into()]),
-        ];
+        let groups = [recorder.bind(&self.mark, GROUP_PASS, &[view, codes, (&alone.view).into()])];
         recorder.fullscreen(&self.mark, &groups, &[&marks.view]);
     }
 
@@ -82,9 +80,7 @@ impl Pass {
         photographed: &TextureView,
     ) {
         let draw = &self.forget_plate;
-        let groups = [
-            recorder.bind(draw, GROUP_PASS, &things.resources()),
-        ];
+        let groups = [recorder.bind(draw, GROUP_PASS, &things.resources())];
         recorder.fullscreen_onto(draw, &groups, &[Some(loaded(photographed))]);
     }
 }
