@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::error;
+use super::error::{self, AlignError};
 use super::photograph::Photograph;
-use crate::AlignError;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 use app_scene::things::Things;

@@ -23,14 +23,6 @@ pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
 const RESTING: f64 = 0.05;
 /// Found lights are applied where the loss falls to less than this part of the given lights'.
 const LIGHT_GAIN: f64 = 0.96;
-/// And where one of them turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
-/// nearer or farther by more, as a logarithm.
-const LEAST_TURN: f64 = 0.06;
-const LEAST_TURN_RAD: f64 = 0.0015;
-const LEAST_GROWTH: f64 = 0.15;
-const LEAST_DISTANCE: f64 = 0.1;
-/// A direction is told where it turned by as many deviations.
-const TOLD: f64 = 3.0;
 
 /// Of a bound, by which what lies on it may be beyond it for rounding.
 const ROUNDING: f64 = 1e-6;
@@ -473,29 +465,5 @@ impl DiscoveredLight {
         self.direction_in_world = direction.unwrap_or(self.direction_in_world);
         self.distance_m = self.light.distance_m_from(place_in_world);
         self.angular_radius_rad = self.light.angular_radius_rad_from(place_in_world);
-    }
-}
-
-impl FoundLight {
-    /// Whether it was found elsewhere by enough to show, and by more than noise.
-    fn is_moved(&self) -> bool {
-        let least_rad = (LEAST_TURN * self.given_spread)
-            .max(LEAST_TURN_RAD)
-            .max(TOLD * self.deviation_rad);
-        let growth = (self.spread - self.given_spread).abs();
-        self.turned_rad > least_rad
-            || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
-            || self.distance_ratio.ln().abs() > LEAST_DISTANCE
-    }
-
-    fn report(&self, is_applied: bool) -> LightAlignment {
-        LightAlignment {
-            is_applied,
-            is_moved: self.is_moved(),
-            turned_rad: self.turned_rad,
-            distance_ratio: self.distance_ratio,
-            size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
-            deviation_rad: self.deviation_rad,
-        }
     }
 }

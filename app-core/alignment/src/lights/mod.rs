@@ -33,7 +33,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
-use super::report::{AssumedLight, DiscoveredLight, LightDeviation, PoseDeviation};
+use super::report::{AssumedLight, DiscoveredLight, LightAlignment, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
@@ -60,6 +60,15 @@ const N_SEARCH_POINTS: usize = 7;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
 const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
 
+/// A light is elsewhere where it turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
+/// nearer or farther by more, as a logarithm.
+const LEAST_TURN: f64 = 0.06;
+const LEAST_TURN_RAD: f64 = 0.0015;
+const LEAST_GROWTH: f64 = 0.15;
+const LEAST_DISTANCE: f64 = 0.1;
+/// A direction is told where it turned by as many deviations.
+const TOLD: f64 = 3.0;
+
 /// Lights that were found, and how they were judged.
 pub(super) struct Found {
     /// In the order that they were given in.
@@ -82,6 +91,30 @@ pub(super) struct FoundLight {
     pub(super) spread: f64,
     /// One deviation of the direction, by noise alone.
     pub(super) deviation_rad: f64,
+}
+
+impl FoundLight {
+    /// Whether it was found elsewhere by enough to show, and by more than noise.
+    pub(super) fn is_moved(&self) -> bool {
+        let least_rad = (LEAST_TURN * self.given_spread)
+            .max(LEAST_TURN_RAD)
+            .max(TOLD * self.deviation_rad);
+        let growth = (self.spread - self.given_spread).abs();
+        self.turned_rad > least_rad
+            || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
+            || self.distance_ratio.ln().abs() > LEAST_DISTANCE
+    }
+
+    pub(super) fn report(&self, is_applied: bool) -> LightAlignment {
+        LightAlignment {
+            is_applied,
+            is_moved: self.is_moved(),
+            turned_rad: self.turned_rad,
+            distance_ratio: self.distance_ratio,
+            size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
+            deviation_rad: self.deviation_rad,
+        }
+    }
 }
 
 /// Finds the lights around those given, no farther from them than they are uncertain; none where too little of a receiver shows their shadows, where one of them stands in the

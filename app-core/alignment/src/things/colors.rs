@@ -1,6 +1,6 @@
 //! How likely colours of the plate are a thing's, and how likely the receiver's.
 
-use super::Codes;
+use super::codes::Codes;
 use crate::picture::Color;
 
 /// Bins along each channel.

@@ -7,14 +7,12 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec2, IVec2};
 
-use super::Codes;
-use super::apart;
+use super::codes::{Codes, apart};
 use super::colors::Colors;
-use super::seeds::{Seed, Seeds, groups};
+use super::groups::{STEPS, groups};
+use super::seeds::{Seed, Seeds};
 use crate::picture::{index_in, places};
 
-/// Neighbours of a pixel.
-pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
 /// Cost of a step: for itself, for each code that the plate changes by, and for each part of a log likelihood that speaks against it.
 const OF_STEP: f32 = 0.3;
 const OF_CODE: f32 = 1.0 / 6.0;

@@ -3,16 +3,19 @@
 //! **Seeds** are pixels that no light on a receiver explains, where a change should show (`lights::compare`): frame and plate are alike
 //! there though a shadow should fall, or differ though none should. From them a thing **grows** over the plate, along colours that are
 //! its own and not the receiver's and to the next edge (`grown`), against what is known to show the receiver. What frame and plate show
-//! alike where the toy should be is **before the toy** (`front`).
+//! alike where the toy should be is **before the toy**; what the plate alone shows makes the plate wrong; and what the frame alone shows
+//! matters where it hides the toy.
 
+mod codes;
 mod colors;
+mod groups;
 mod grown;
 mod seeds;
 
-use glam::{DVec2, IVec2};
+use glam::{DMat4, DVec2, IVec2};
 
 use crate::lights::Compared;
-use crate::picture::{Color, Level, Mask, Picture, Pyramid, index_in, places};
+use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
 use crate::receivers::SeenReceiver;
@@ -20,7 +23,8 @@ use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::Light;
 use app_scene::things::Mark;
-use glam::DMat4;
+use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
+use groups::{groups, place_of};
 use grown::Grown;
 use seeds::{Seed, Seeds};
 
@@ -28,9 +32,8 @@ use seeds::{Seed, Seeds};
 const MOST_PIXELS: i32 = 150_000;
 /// Pixels of a level within the toy's outline where something before it may be told.
 const WITHIN_PX: i32 = 2;
-/// Codes up to which frame and plate are alike, and from which two colours are not.
+/// Codes up to which frame and plate are alike.
 const ALIKE_CODES: f32 = 5.0;
-const UNLIKE_CODES: f32 = 12.0;
 /// A thing is before the toy if at least so many pixels of the level where the toy should be show it, and so many beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
@@ -149,7 +152,7 @@ fn filled(mask: &Mask, size_px: IVec2) -> Mask {
     let last = size_px - 1;
     let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
     let mut filled = mask.clone();
-    for group in seeds::groups(size_px, |index| !has(index)) {
+    for group in groups(size_px, |index| !has(index)) {
         if !group.iter().any(|index| is_at_border(place_of(*index, size_px))) {
             group
                 .iter()
@@ -157,16 +160,6 @@ fn filled(mask: &Mask, size_px: IVec2) -> Mask {
         }
     }
     filled
-}
-
-/// The place of a pixel by its index.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    reason = "a place in a picture"
-)]
-fn place_of(index: usize, size_px: IVec2) -> IVec2 {
-    IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x)
 }
 
 impl Sight<'_> {
@@ -208,38 +201,6 @@ impl Sight<'_> {
         };
         (size_px, places(size_px).map(mark).collect())
     }
-}
-
-/// A picture in sRGB codes, 0 to 255; not a number where nothing is known.
-struct Codes {
-    size_px: IVec2,
-    pixels: Vec<Color>,
-}
-
-impl Codes {
-    fn of(picture: &Picture) -> Self {
-        let code = |at| {
-            picture.get(at).map_or([f32::NAN; 3], |color| {
-                color.map(|linear| 255.0 * srgb_from_linear(linear))
-            })
-        };
-        Self {
-            size_px: picture.size_px,
-            pixels: places(picture.size_px).map(code).collect(),
-        }
-    }
-
-    fn get(&self, at: IVec2) -> Option<Color> {
-        let color = self.pixels[index_in(self.size_px, at)?];
-        (!color[0].is_nan()).then_some(color)
-    }
-}
-
-/// Largest difference of a channel.
-fn apart(a: Color, b: Color) -> f32 {
-    (0..3)
-        .map(|channel| (a[channel] - b[channel]).abs())
-        .fold(0.0, f32::max)
 }
 
 /// The toy in a level.
@@ -364,16 +325,4 @@ fn is_shade(at: IVec2, frame: &Codes, plate: &Codes) -> bool {
         .filter(|(frame, plate)| from_shaded(*frame, *plate) < 0.5 * UNLIKE_CODES)
         .count()
         >= 5
-}
-
-/// How far a color is from another in less light, in codes.
-fn from_shaded(color: Color, lit: Color) -> f32 {
-    let square: f32 = lit.iter().map(|code| code * code).sum();
-    let product: f32 = lit.iter().zip(color).map(|(lit, code)| lit * code).sum();
-    let light = if square > 0.0 {
-        (product / square).clamp(0.0, 1.0)
-    } else {
-        1.0
-    };
-    apart(color, lit.map(|code| light * code))
 }

@@ -2,8 +2,9 @@
 
 use glam::IVec2;
 
+use super::codes::{Codes, UNLIKE_CODES, from_shaded};
 use super::colors::{Colors, median};
-use super::{Codes, UNLIKE_CODES, from_shaded};
+use super::groups::groups;
 use crate::lights::Compared;
 use crate::picture::{Color, index_in};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
@@ -237,35 +238,4 @@ fn told([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
     } else {
         Seed::Thing
     }
-}
-
-/// Indices of pixels that hang together.
-pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
-    let n_pixels = (size_px.x * size_px.y) as usize;
-    let mut is_known = vec![false; n_pixels];
-    let mut groups = Vec::new();
-    for first in 0..n_pixels {
-        if is_known[first] || !is_in(first) {
-            continue;
-        }
-        is_known[first] = true;
-        let mut group = vec![first];
-        let mut next = 0;
-        while let Some(index) = group.get(next).copied() {
-            next += 1;
-            #[allow(clippy::cast_possible_truncation, reason = "a place in a picture")]
-            let at = IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x);
-            for step in super::grown::STEPS {
-                let Some(other) = index_in(size_px, at + step) else {
-                    continue;
-                };
-                if !is_known[other] && is_in(other) {
-                    is_known[other] = true;
-                    group.push(other);
-                }
-            }
-        }
-        groups.push(group);
-    }
-    groups
 }

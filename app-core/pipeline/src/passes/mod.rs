@@ -13,7 +13,7 @@ pub(crate) mod pictures;
 pub mod plate;
 pub(crate) mod present;
 pub(crate) mod screen;
-pub(crate) mod things;
+pub(crate) mod thing_marks;
 pub(crate) mod toy_mesh;
 
 use crate::gpu::Shader;

@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::{Buffer, Gpu, Mat3Columns, Mirrors, Render, TextureView, mirrors, n_pixels, shared_struct};
-use crate::passes::things::Things;
+use crate::passes::thing_marks::Things;
 use app_scene::camera_frame::YcbcrEncoding;
 
 /// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.

@@ -25,7 +25,7 @@ use crate::gpu::{Gpu, GpuError, Recorder, Texture, n_pixels};
 use crate::passes::pictures::{ComposedFrame, Frame, Pictures, RegionOverlay};
 use crate::passes::present;
 use crate::passes::present::OUTPUT_FORMAT;
-use crate::passes::things::Things;
+use crate::passes::thing_marks::Things;
 use crate::passes::toy_mesh::{Casting, ToyMesh};
 use crate::plan::{Change, FrameDelta, SkippedWork};
 use crate::plates::store::PlateStore;

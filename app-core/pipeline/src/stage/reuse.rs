@@ -22,7 +22,7 @@ use crate::model::state::SceneState;
 use crate::model::state::grids::{grids_over, holds};
 use crate::passes::globals::{Globals, globals};
 use crate::passes::plate::PlateViews;
-use crate::passes::things::Things;
+use crate::passes::thing_marks::Things;
 use crate::plan::{Change, SceneFacts};
 use crate::plates::choice::{covered_fraction, exposed};
 use crate::plates::exposure::match_frame;

@@ -9,7 +9,7 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
 use crate::model::plan::Plan;
 use crate::passes::plate::FINE_FORMAT;
-use crate::passes::things::{CODE_BEFORE_TOY, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView};
+use crate::passes::thing_marks::{CODE_BEFORE_TOY, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView};
 
 pub(crate) const SHADER: Shader = shader!(
     "capture/things",

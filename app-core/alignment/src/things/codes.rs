@@ -1,0 +1,53 @@
+//! Pictures in sRGB codes, in which differences are about as large as they look.
+
+use glam::IVec2;
+
+use crate::picture::{Color, Picture, index_in, places};
+use app_scene::geometry::color::srgb_from_linear;
+
+/// Two colours are unlike from so many codes on.
+pub(super) const UNLIKE_CODES: f32 = 12.0;
+
+/// A picture in sRGB codes, 0 to 255; not a number where nothing is known.
+pub(super) struct Codes {
+    pub(super) size_px: IVec2,
+    pub(super) pixels: Vec<Color>,
+}
+
+impl Codes {
+    pub(super) fn of(picture: &Picture) -> Self {
+        let code = |at| {
+            picture.get(at).map_or([f32::NAN; 3], |color| {
+                color.map(|linear| 255.0 * srgb_from_linear(linear))
+            })
+        };
+        Self {
+            size_px: picture.size_px,
+            pixels: places(picture.size_px).map(code).collect(),
+        }
+    }
+
+    pub(super) fn get(&self, at: IVec2) -> Option<Color> {
+        let color = self.pixels[index_in(self.size_px, at)?];
+        (!color[0].is_nan()).then_some(color)
+    }
+}
+
+/// Largest difference of a channel.
+pub(super) fn apart(a: Color, b: Color) -> f32 {
+    (0..3)
+        .map(|channel| (a[channel] - b[channel]).abs())
+        .fold(0.0, f32::max)
+}
+
+/// How far a color is from another in less light, in codes.
+pub(super) fn from_shaded(color: Color, lit: Color) -> f32 {
+    let square: f32 = lit.iter().map(|code| code * code).sum();
+    let product: f32 = lit.iter().zip(color).map(|(lit, code)| lit * code).sum();
+    let light = if square > 0.0 {
+        (product / square).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
+    apart(color, lit.map(|code| light * code))
+}

@@ -1,0 +1,48 @@
+//! Pixels that hang together.
+
+use glam::IVec2;
+
+use crate::picture::index_in;
+
+/// Neighbours of a pixel.
+pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+
+/// Indices of pixels that hang together.
+pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let n_pixels = (size_px.x * size_px.y) as usize;
+    let mut is_known = vec![false; n_pixels];
+    let mut groups = Vec::new();
+    for first in 0..n_pixels {
+        if is_known[first] || !is_in(first) {
+            continue;
+        }
+        is_known[first] = true;
+        let mut group = vec![first];
+        let mut next = 0;
+        while let Some(index) = group.get(next).copied() {
+            next += 1;
+            let at = place_of(index, size_px);
+            for step in STEPS {
+                let Some(other) = index_in(size_px, at + step) else {
+                    continue;
+                };
+                if !is_known[other] && is_in(other) {
+                    is_known[other] = true;
+                    group.push(other);
+                }
+            }
+        }
+        groups.push(group);
+    }
+    groups
+}
+
+/// The place of a pixel by its index.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "a place in a picture"
+)]
+pub(super) fn place_of(index: usize, size_px: IVec2) -> IVec2 {
+    IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x)
+}
