@@ -5,18 +5,20 @@
 //! has a peak for each thing that such pixels show. The one at no light at all is "nothing has changed", which is no shadow; the largest
 //! of the others starts the fit, and a mixture of three classes ends it: the receiver, what has not changed, and anything else.
 
-use glam::{DMat4, IVec2};
+use glam::{DMat4, DVec2, IVec2};
 
 use super::backdrop::QUADRATIC;
 use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
 use crate::picture::{Color, Level, index_in, noise_deviation, places};
-use crate::raster::Rasterizer;
+use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::Light;
 
+/// What is looked at around toy and shadows, over their size.
+const BEYOND: f64 = 0.3;
 /// Part of a light that is hidden from where it tells what the light gives.
 const HIDDEN: f32 = 0.7;
 /// Part of every light up to which a pixel is in the open.
@@ -84,8 +86,12 @@ pub(crate) fn compare(
         .map(|light| Lamp::new(light, &camera_from_world, shape.centre));
     let lamps = lamps.collect::<Option<Vec<_>>>()?;
     let mut raster = Rasterizer::default();
-    let mut shadows = Shadows::new(&mut raster, (shape, receivers), level, None);
-    if shadows.pixels.len() < LEAST_PIXELS || lamps.is_empty() {
+    if lamps.is_empty() {
+        return None;
+    }
+    let rect = around(&mut raster, (shape, receivers), level, &lamps);
+    let mut shadows = Shadows::within(&mut raster, (shape, receivers), level, Some(rect));
+    if shadows.pixels.len() < LEAST_PIXELS {
         return None;
     }
     let taken = shadows.taken_of_all(&mut raster, &lamps);
@@ -102,6 +108,25 @@ pub(crate) fn compare(
         mixture.classify(mixture.deviation());
     }
     Some(mixture.compared)
+}
+
+/// The pixels around toy and shadows, with some of the place that neither reaches.
+fn around(
+    raster: &mut Rasterizer,
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    level: &Level,
+    lamps: &[Lamp],
+) -> [IVec2; 2] {
+    let [mut low, mut high] = Shadows::around(raster, (shape, receivers), level, lamps);
+    for point in project(shape.points.iter().copied(), &level.intrinsics) {
+        let at = point
+            .truncate()
+            .clamp(DVec2::ZERO, level.frame.size_px.as_dvec2())
+            .as_ivec2();
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let beyond = ((high - low).as_dvec2() * BEYOND).as_ivec2();
+    [low.saturating_sub(beyond), high.saturating_add(beyond)]
 }
 
 /// Median of frame over plate in the open, for each channel; none where nothing is.
