@@ -12,7 +12,7 @@ use super::motion::Measured;
 use super::paint::{Light, Lit, Paint};
 use super::placement::Placement;
 use super::settle::{LEAST_EVIDENCE, Misfit};
-use super::sightings::Sighting;
+use super::sightings::{Sighting, cell_px};
 use super::{Search, enough};
 use crate::picture::Pyramid;
 use crate::report::{PoseAlignment, most_model_px};
@@ -70,6 +70,9 @@ pub(crate) fn adapt(
         let Some(field) = eye.field(skin, (&now, &displacements_m)) else {
             return Ok(None);
         };
+        if round > 0 && field.evidence < 0.0 {
+            return Ok(None);
+        }
         displacements_m = field.displacements_m;
         now = displaced(&displacements_m)?;
     }
@@ -140,6 +143,7 @@ impl<'a> Eye<'a> {
         let sightings = Sighting::all(&measured, (&surface.0, displacements_m), k);
         let camera = Camera {
             alike_px: AS_A_RULE * most_model_px(0.0) + OF_SPREAD * self.optics.spread_px,
+            cell_px: cell_px(measured.len()),
             pixel_m: skin.shape.centre.length() / k.fx_px,
         };
         Field::found(skin, &sightings, camera)

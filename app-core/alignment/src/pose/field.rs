@@ -12,7 +12,7 @@ use glam::DVec3;
 use nalgebra::{DMatrix, DVector};
 
 use super::settle::{ALIKE, OFFSET_PX};
-use super::sightings::{CELL_PX, Sighting};
+use super::sightings::Sighting;
 use crate::robust;
 use crate::shape::Shape;
 
@@ -57,6 +57,8 @@ pub(super) struct Camera {
     pub(super) alike_px: f64,
     /// Side of a pixel at the toy's distance.
     pub(super) pixel_m: f64,
+    /// Side of the squares of a sighting.
+    pub(super) cell_px: f64,
 }
 
 /// A field, by its displacement of each point of the surface in camera space.
@@ -77,6 +79,9 @@ struct Prior {
 impl Field {
     /// The field that makes an outline most likely; none where nothing of it is seen.
     pub(super) fn found(skin: Skin<'_>, sightings: &[Sighting], camera: Camera) -> Option<Self> {
+        if sightings.is_empty() {
+            return None;
+        }
         let process = Process::new(skin, sightings, camera);
         let far_px = FAR * median(process.offsets.iter()).max(LEAST_MEDIAN_PX);
         let near: Vec<f64> = weights(&process.offsets, far_px);
@@ -107,6 +112,7 @@ struct Process<'a> {
     offsets: DVector<f64>,
     /// Covariance of what is no field but the camera's, in square pixels.
     common: DMatrix<f64>,
+    cell_px: f64,
     lengths_m: [f64; LENGTHS.len()],
     /// For each length, covariance of the offsets by a field with a deviation of one metre.
     unit: [DMatrix<f64>; LENGTHS.len()],
@@ -120,6 +126,7 @@ impl<'a> Process<'a> {
             offsets: DVector::from_iterator(sightings.len(), sightings.iter().map(|one| one.offset_px)),
             common: common(sightings, camera.alike_px),
             unit: lengths_m.map(|length_m| unit(skin, sightings, length_m)),
+            cell_px: camera.cell_px,
             lengths_m,
             skin,
             sightings,
@@ -156,7 +163,7 @@ impl<'a> Process<'a> {
 
     /// Logarithm of how much likelier the offsets are with a field; neighbouring pieces count once.
     fn evidence(&self, robust: &[f64], prior: Prior) -> Option<f64> {
-        let noise = self.noise(robust, (ALIKE / CELL_PX).max(1.0));
+        let noise = self.noise(robust, (ALIKE / self.cell_px).max(1.0));
         let (with, _) = explained(&noise + self.covariance(prior), &self.offsets)?;
         let (without, _) = explained(noise, &self.offsets)?;
         Some(with - without)

@@ -9,8 +9,9 @@ use crate::raster::project;
 use crate::shape::Shape;
 use app_scene::scene::Intrinsics;
 
-/// Pieces in squares of that side, in pixels, are one.
-pub(super) const CELL_PX: f64 = 4.0;
+/// Pieces in squares of that side, in pixels, are one; in larger ones where an outline is longer than that many of them.
+const CELL_PX: f64 = 4.0;
+const MOST_CELLS: f64 = 400.0;
 /// A piece lies on the outline of the surface no farther from it, in pixels.
 const ON_EDGE_PX: f64 = 1.5;
 /// What a piece is displaced by besides, in pixels: no field is as rough as a surface may be.
@@ -40,6 +41,11 @@ impl Piece<'_> {
     }
 }
 
+/// Side of the squares that so many pieces are put together in, in pixels.
+pub(super) fn cell_px(n_pieces: usize) -> f64 {
+    CELL_PX.max(n_pieces as f64 / MOST_CELLS)
+}
+
 impl Sighting {
     /// Of an outline that was measured with a shape whose points were displaced.
     pub(super) fn all(
@@ -47,7 +53,7 @@ impl Sighting {
         (shape, displacements_m): (&Shape, &[DVec3]),
         k: &Intrinsics,
     ) -> Vec<Self> {
-        let rims = Rims::new(shape, k);
+        let (rims, cell_px) = (Rims::new(shape, k), cell_px(measured.len()));
         let mut cells: BTreeMap<[i64; 3], Vec<Piece<'_>>> = BTreeMap::new();
         for measured in measured {
             let element = &measured.element;
@@ -56,7 +62,7 @@ impl Sighting {
             };
             let (_, per_m) = element.rim(k);
             let row = ends.map(|(point, part)| (point, part * per_m));
-            let [x, y] = (element.at_px / CELL_PX).floor().as_i64vec2().to_array();
+            let [x, y] = (element.at_px / cell_px).floor().as_i64vec2().to_array();
             let piece = Piece { measured, row };
             cells.entry([y, x, side(element.normal)]).or_default().push(piece);
         }
