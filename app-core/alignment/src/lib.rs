@@ -3,12 +3,13 @@
 //! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
 //! the picture at once. The **table** beside the toy gives the camera (`camera`), since plates say what it looks like. Frame against
 //! plate is the best segmentation there is: the **outline** of the toy gives its pose, and its feet stand on the table (`pose`); the
-//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
+//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`). Where the outline shows that the toy
+//! is not quite its **model**, the model is displaced to have the toy's (`adapted`).
 //! Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
-//! physical pose ─► shape ─────────────┴► pose ─► lights ─► things ─► Alignment
+//! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
 //! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
@@ -25,6 +26,7 @@
 
 #![forbid(unsafe_code)]
 
+mod adapted;
 mod camera;
 mod directions;
 mod error;
@@ -58,6 +60,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::probe::ProbeReport;
+use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
 use app_scene::things::Things;
@@ -75,7 +78,7 @@ pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
-    LightDeviation, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
+    LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
 };
 pub use warning::AlignmentWarning;
 
@@ -98,7 +101,7 @@ pub struct Alignment {
     /// The lights; none where those that were given stay.
     pub lights: Option<Arc<[Light]>>,
     /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
-    /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
+    /// light than before, its toy was adapted, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
     /// first frame is the one that the [`Aligner`] was made with.
     pub scene: Option<Arc<Scene>>,
     /// Things that stand in the picture beside the toy; none where nothing tells of any.
@@ -162,6 +165,8 @@ pub struct Aligner {
     /// Whether the scene's plates are in another light than they were taken in.
     is_relit: bool,
     are_shadows_withheld: bool,
+    /// Once it was adapted.
+    model: Option<ModelAlignment>,
     /// Once it was needed.
     probe: Option<ProbeReport>,
 }
@@ -183,6 +188,7 @@ impl Aligner {
             things: None,
             is_relit: false,
             are_shadows_withheld: false,
+            model: None,
             probe: None,
         }
     }
@@ -245,6 +251,7 @@ impl Aligner {
             Some(view) => Seen::again(&self.scene, view, input),
             None => self.see(input, kept.as_ref())?,
         };
+        let seen = self.with_adapted_model(seen)?;
         let seen = self.on_laid_receivers(seen, input)?;
         self.lights = Some(match kept {
             Some(kept) if self.are_shadows_withheld => kept,
@@ -255,6 +262,28 @@ impl Aligner {
         }
         self.view = Some(seen.view);
         Ok(self.aligned(input))
+    }
+
+    /// The view with the model adapted to the toy, in the first that shows that it is not quite this one. The pose stays where it was
+    /// found.
+    fn with_adapted_model(&mut self, mut seen: Seen) -> Result<Seen, ToyError> {
+        let Some(pose) = &mut seen.view.report else {
+            return Ok(seen);
+        };
+        let is_near = pose.shown_px() <= MOST_ADAPTED_PX;
+        if self.model.is_some() || !is_near || !pose::is_doubtful(pose) {
+            return Ok(seen);
+        }
+        if let Some(adapted) = seen
+            .photograph
+            .adapted(&self.scene, &seen.view.world_from_object)?
+        {
+            let [_, outline_px] = adapted.report.outlines_px;
+            (pose.given_outline_px, pose.outline_px) = (outline_px, outline_px);
+            Arc::make_mut(&mut self.scene).toy = adapted.toy;
+            self.model = Some(adapted.report);
+        }
+        Ok(seen)
     }
 
     /// The view with receivers under the toy, where it is a guess where they are and the picture shows the toy.
@@ -392,6 +421,7 @@ impl Aligner {
             world_scale: self.ratio.report(Unknown::WorldScale),
             camera: view.and_then(|view| view.camera_report),
             pose: view.and_then(|view| view.report),
+            model: self.model,
             lights: lights.map_or(Vec::new(), |lights| lights.report.clone()),
             light_errors: lights.and_then(|lights| lights.errors),
             discovered: discovered
@@ -412,9 +442,11 @@ impl Aligner {
         let off_receiver = report.pose.and_then(|pose| pose.off_receiver());
         let off_receiver = off_receiver
             .map(|Stand { height_m, lean_rad }| AlignmentWarning::OffReceiver { height_m, lean_rad });
-        let differs = report.pose.filter(|pose| off.is_none() && !pose.is_of_model);
+        let is_other = |pose: &PoseAlignment| !pose.is_of_model || self.model.is_some();
+        let differs = report.pose.filter(|pose| off.is_none() && is_other(pose));
         let differs = differs.map(|pose| AlignmentWarning::ModelDiffers {
             model_px: pose.model_px,
+            displaced_m: self.model.map(|model| model.displaced_m),
         });
         let none = report.no_light.filter(|_| applied.is_none());
         let none = none.map(|reason| AlignmentWarning::LightNotFound { reason });

@@ -68,8 +68,12 @@ impl Photograph {
         }
     }
 
+    pub(super) fn pyramid(&self) -> &Pyramid {
+        &self.pyramid
+    }
+
     /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
-    fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
+    pub(super) fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
         (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
     }
 

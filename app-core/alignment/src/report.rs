@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::{Serialize, Serializer};
 
 use crate::no_light::NoLight;
+use crate::pose::Adapted;
 use crate::probe::ProbeReport;
 use app_scene::lens::Distortion;
 use app_scene::scene::Light;
@@ -22,6 +23,8 @@ pub struct AlignmentReport {
     pub camera: Option<CameraAlignment>,
     /// The toy's pose; none where too little of its outline is seen.
     pub pose: Option<PoseAlignment>,
+    /// The toy's model, adapted to its outline; none where it is as given.
+    pub model: Option<ModelAlignment>,
     /// The lights, in the order of the list; empty where they were not found: none or more than four are listed, there is no plate,
     /// the toy's pose is not known well enough, or the picture shows too little of their shadows.
     pub lights: Vec<LightAlignment>,
@@ -78,7 +81,7 @@ pub struct PoseAlignment {
     /// Root mean square distance from the outline, as given or as held, to that in the picture, in pixels; a piece that is far off
     /// counts as two pixels.
     pub given_outline_px: f64,
-    /// The same for the pose that was found.
+    /// The same for the pose that was found. Where the model was adapted in this view, both are by the adapted one.
     pub outline_px: f64,
     /// One deviation of what was found: by how much parts of the outline pull against one another, and by how much they misfit.
     pub deviation: PoseDeviation,
@@ -86,12 +89,50 @@ pub struct PoseAlignment {
     pub size_ratio: f64,
     /// What the outline of the toy's model is off by along some centimetres of it where it was found, in pixels: the root mean square.
     pub model_px: f64,
-    /// Whether that is what the pictures of cameras let it be off by: else the model is not quite this toy.
+    /// Whether that is what the pictures of cameras let it be off by: else the model, before it was adapted, is not quite this toy.
     pub is_of_model: bool,
     /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,
     /// How the toy, where it is shown, is on the receiver that it was given on; none where it is given above all of them.
     pub stand: Option<Stand>,
+}
+
+/// The toy's model in another shape: a smooth displacement along its normals, by which its outline is that of the toy.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ModelAlignment {
+    /// Root mean square of the displacements, in metres: of the points that are displaced at all.
+    pub displaced_m: f64,
+    /// The largest of them.
+    pub most_displaced_m: f64,
+    /// Pieces of the outline that tell it, each about a pixel long.
+    pub n_pieces: usize,
+    /// Root mean square distance of the outline with the model as given, and as adapted, in pixels; a piece that is far off counts as
+    /// half a pixel.
+    pub outlines_px: [f64; 2],
+    /// Logarithm of how much likelier the picture is with it.
+    pub evidence: f64,
+}
+
+impl ModelAlignment {
+    pub(crate) fn new(found: &Adapted, picture_px: f64) -> Self {
+        let most_m = found
+            .displacements_m
+            .iter()
+            .fold(0.0, |most: f64, one| most.max(one.length()));
+        // Where no outline tells anything, nothing is displaced.
+        let told = found
+            .displacements_m
+            .iter()
+            .filter(|one| one.length() > TOLD * most_m);
+        let squares: Vec<f64> = told.map(|one| one.length_squared()).collect();
+        Self {
+            displaced_m: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
+            most_displaced_m: most_m,
+            n_pieces: found.n_pieces,
+            outlines_px: found.outlines_px.map(|outline_px| picture_px * outline_px),
+            evidence: found.evidence,
+        }
+    }
 }
 
 /// How a toy is on a plane that it may stand on.
@@ -126,6 +167,9 @@ impl PoseAlignment {
         }
     }
 }
+
+/// Points that are displaced by less, over the most that any is, count as not displaced.
+const TOLD: f64 = 0.01;
 
 /// A model whose outline is off by more, along some centimetres of it, is not the toy, in pixels: the softer a picture, the more it may be.
 ///

@@ -8,7 +8,7 @@ use super::picture::Level;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::geometry::edges::Faces;
 use app_scene::scene::Scene;
-use app_scene::toy::{PosedMesh, ToyError};
+use app_scene::toy::{PosedMesh, Toy, ToyError};
 
 /// Welded vertices, and triangles of which those that face an eye cover all that the toy covers.
 #[derive(Clone, Debug)]
@@ -30,9 +30,7 @@ impl Shape {
         let mut posed = PosedMesh::default();
         toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
         let shadow = toy.shadow_indices();
-        let mut used = shadow.indices.clone();
-        used.sort_unstable();
-        used.dedup();
+        let used = Self::vertices(toy);
         let mut places = vec![0; posed.positions.len()];
         for (place, vertex) in (0..).zip(&used) {
             places[*vertex as usize] = place;
@@ -53,6 +51,14 @@ impl Shape {
             radius_m: 0.5 * (bounds.max - bounds.min).length(),
             points,
         })
+    }
+
+    /// The toy's vertices that its points are, in their order.
+    pub(super) fn vertices(toy: &Toy) -> Vec<u32> {
+        let mut used = toy.shadow_indices().indices.clone();
+        used.sort_unstable();
+        used.dedup();
+        used
     }
 
     /// The same shape, merged in cells of a side in pixels of a level, at the distance of its middle.

@@ -26,6 +26,8 @@ pub enum AlignmentWarning {
     ModelDiffers {
         /// Root mean square of what it is off by along some centimetres, in pixels.
         model_px: f64,
+        /// Root mean square of what the model was displaced by, in metres, to have the toy's; none where it is shown as it is given.
+        displaced_m: Option<f64>,
     },
     /// No light was found by the toy's shadow.
     LightNotFound {
@@ -85,10 +87,20 @@ impl fmt::Display for AlignmentWarning {
                     lean_rad.to_degrees()
                 )
             }
-            Self::ModelDiffers { model_px } => write!(
-                f,
-                "the toy's outline differs from that of its model by {model_px:.1} pixels: the model is not quite this toy, and its rim will show it"
-            ),
+            Self::ModelDiffers {
+                model_px,
+                displaced_m,
+            } => {
+                write!(f, "the toy's outline differs from that of its model by {model_px:.1} pixels: ")?;
+                match displaced_m {
+                    Some(displaced_m) => write!(
+                        f,
+                        "the model was adapted to it by {:.1} mm, where the outline tells it",
+                        1e3 * displaced_m
+                    ),
+                    None => f.write_str("the model is not quite this toy, and its rim will show it"),
+                }
+            }
             Self::FocalLengthNotTold => f.write_str(
                 "the focal length was asked for, but toy and shadow do not tell it: that given is taken",
             ),

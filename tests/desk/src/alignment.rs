@@ -323,14 +323,20 @@ impl Alignments {
         scene
     }
 
-    /// The scene from a frame on: its plates in another light, once lights were moved.
+    /// The scene from a frame on: its plates in another light, once lights were moved, or its toy in another shape.
     #[must_use]
-    pub fn relit_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
-        let plates = &self.of(index)?.alignment.scene.as_ref()?.plates;
+    pub fn changed_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
+        let now = self.of(index)?.alignment.scene.as_ref()?;
         // Cameras alone are corrected in the scene from its begin on.
-        let mut pairs = plates.iter().zip(&given.plates);
+        let mut pairs = now.plates.iter().zip(&given.plates);
         let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
-        is_relit.then(|| given.clone().with_plates(plates.clone()))
+        let is_changed = is_relit || !Arc::ptr_eq(&now.toy, &given.toy);
+        is_changed.then(|| {
+            given
+                .clone()
+                .with_plates(now.plates.clone())
+                .with_toy(Arc::clone(&now.toy))
+        })
     }
 
     /// Lights that the core is given with the last frame.

@@ -312,8 +312,8 @@ impl<'a> Run<'a> {
         if self.frames.is_empty() {
             self.set_scene(shot.alignments.scene(scene))?;
         }
-        if let Some(relit) = shot.alignments.relit_scene(scene, shot.index) {
-            self.set_scene(relit)?;
+        if let Some(changed) = shot.alignments.changed_scene(scene, shot.index) {
+            self.set_scene(changed)?;
         }
         let (mut entry, picture) = self.make(shot)?;
         if let Some(truth) = &shot.truth {

@@ -7,6 +7,7 @@ mod bundled;
 mod discovery;
 mod focal_length;
 mod lens_found;
+mod model;
 mod moved_lights;
 mod plate_taker;
 mod pose_filter;

@@ -23,7 +23,7 @@ const N_ROUNDS: usize = 8;
 /// A step that moves the toy by less, over its radius, is the last: a thousandth of a pixel.
 const LAST_STEP: f64 = 2e-5;
 /// The band is wider by as much on either side than an edge of that spread needs, in pixels, so that poses some pixels apart can be compared.
-const COMPARED_PX: f64 = 1.0;
+pub(super) const COMPARED_PX: f64 = 1.0;
 /// Feet that are given nearer to the plane, in metres, are given on it: about the deviation of feet that stand.
 const ON_PLANE_M: f64 = 2e-4;
 /// An outline is met if its loss is less, in square pixels, and by how much more for each pixel of spread. Right outlines came to .04 in
@@ -153,7 +153,7 @@ impl Search<'_> {
         best.or_else(|| is_likely(&on_plane).then_some(on_plane))
     }
 
-    fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
+    pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
         let posed = self.posed(placement, None);
         paint.light(placement, self.pyramid.level(0), &posed.coverage)
     }

@@ -121,6 +121,26 @@ pub(super) fn measure(
     measured.collect()
 }
 
+/// The same, trusted by how well its step explains the pixels of each piece, whatever it is that a piece shows.
+pub(super) fn measure_explained(
+    beside: &Beside<'_>,
+    elements: &[Element],
+    optics: Optics,
+    half_px: f64,
+) -> Vec<Measured> {
+    let edges = Edges::new(beside, elements, half_px);
+    let pieces = edges.pieces(optics);
+    let measured = elements.iter().zip(&pieces).filter_map(|(element, piece)| {
+        let measured = piece.measured(element)?;
+        let precision = 1.0 / (1.0 / measured.precision + piece.unexplained_px2());
+        Some(Measured {
+            precision,
+            ..measured
+        })
+    });
+    measured.collect()
+}
+
 /// The pixels beside an outline, each with what it would show of toy and background alone.
 struct Edges<'a> {
     coverage: &'a Coverage,
@@ -296,6 +316,13 @@ impl Piece {
         let explained = self.slope_by_residual * self.slope_by_residual / self.slope2;
         let noise = self.n * 3.0 * f64::from(NOISE_CODES).powi(2);
         Some((self.residual2 - explained).max(0.0) / (self.contrast2 + noise))
+    }
+
+    /// Variance of the displacement by what it leaves unexplained.
+    fn unexplained_px2(&self) -> f64 {
+        let explained = self.slope_by_residual * self.slope_by_residual / self.slope2;
+        let left = (self.residual2 - explained).max(0.0);
+        left / ((3.0 * self.n - 1.0) * self.slope2)
     }
 
     fn measured(&self, element: &Element) -> Option<Measured> {

@@ -7,9 +7,11 @@
 //! They solve for the offset of the whole outline as well, and with the feet of the toy on their plane (`standing`) for its size
 //! (`settle`). Which of these poses the picture speaks for is one decision (`decide`).
 
+mod adapt;
 mod contour;
 mod decide;
 mod edge;
+mod field;
 mod lines;
 mod matte;
 mod motion;
@@ -20,6 +22,7 @@ mod placement;
 mod resting;
 mod settle;
 mod sides;
+mod sightings;
 mod standing;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
@@ -39,6 +42,7 @@ use placement::Placement;
 use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
+pub(super) use adapt::{Adapted, Surface, adapt, is_doubtful};
 pub(super) use paint::Paint;
 pub(super) use resting::find_resting;
 pub(super) use standing::{Ground, Plane, feet};

@@ -16,13 +16,13 @@ use app_scene::scene::Intrinsics;
 /// Right poses of disturbed starts have 10 and more, exact poses against those found from them at most 3.
 pub(super) const LEAST_EVIDENCE: f64 = 6.0;
 /// One deviation of how far the whole outline may be out of the toy, or within it, in pixels: by a halo, or a model that is too thin.
-const OFFSET_PX: f64 = 0.1;
+pub(super) const OFFSET_PX: f64 = 0.1;
 /// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and McClure 1987).
 const ROBUST: f64 = 3.0;
 const LEAST_ROBUST_PX: f64 = 0.1;
 const MOST_ROBUST_PX: f64 = 0.5;
 /// How many pieces along the outline err alike: halos, textures and the blocks of a compressed picture span some ten pixels.
-const ALIKE: f64 = 12.0;
+pub(super) const ALIKE: f64 = 12.0;
 /// One deviation of a step, over the toy's radius, which holds back what the outline does not determine (Levenberg 1944).
 pub(super) const STEP: f64 = 0.2;
 /// One deviation of the logarithm of the size: if it is held, and if it is looked for.

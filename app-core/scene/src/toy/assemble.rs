@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DAffine3;
 use gltf::json::mesh::{Mesh, Primitive};
@@ -50,14 +50,14 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     }
     Ok(Toy {
         file: file.to_owned(),
-        rig,
-        shadow_indices,
+        rig: Arc::new(rig),
+        shadow_indices: Arc::new(shadow_indices),
         casters: OnceLock::new(),
         geometries,
-        surfaces,
-        draws,
+        surfaces: surfaces.into(),
+        draws: Arc::new(draws),
         materials,
-        textures,
+        textures: textures.into(),
         warnings,
     })
 }

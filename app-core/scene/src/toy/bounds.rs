@@ -59,7 +59,7 @@ impl Toy {
 
     fn include_pose(&self, pose: &Pose, bounds: &mut Bounds) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::IDENTITY)?;
-        for surface in &self.surfaces {
+        for surface in self.surfaces.iter() {
             let geometry = &self.geometries[surface.geometry];
             let active = geometry.active_targets(self.rig.morph_weights(&rig_pose, surface.node));
             let mut fault = None;

@@ -15,6 +15,7 @@ use super::skin::{Influences, read_influences};
 use super::topology::{compacted, triangles, unwelded};
 
 /// A primitive in the space of its mesh.
+#[derive(Clone)]
 pub(super) struct Geometry {
     pub(super) positions: Vec<Vec3>,
     /// Absent where the file has none: every triangle is then flat, with three vertices of its own.
@@ -30,6 +31,7 @@ pub(super) struct Geometry {
 }
 
 /// Offsets of a morph target at full weight.
+#[derive(Clone)]
 pub(super) struct MorphTarget {
     positions: Option<Vec<Vec3>>,
     normals: Option<Vec<Vec3>>,

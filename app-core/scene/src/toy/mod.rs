@@ -7,6 +7,7 @@
 //! (`rig`), the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
 //!
 //! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
+//! [`Toy::displaced`] is the same toy with another shape, which every pose carries.
 //! A toy opens no file itself; pictures outside the file are left out with a warning.
 
 mod accessor;
@@ -17,6 +18,7 @@ mod check;
 mod clip;
 mod component;
 mod container;
+mod displaced;
 mod error;
 mod geometry;
 mod graph;
@@ -37,7 +39,7 @@ mod topology;
 mod track;
 
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 pub use bounds::Bounds;
 pub use casters::Caster;
@@ -58,14 +60,14 @@ use surface::{Draws, Surface};
 /// A toy's model: shape, appearance and animation from its file.
 pub struct Toy {
     file: String,
-    rig: Rig,
+    rig: Arc<Rig>,
     geometries: Vec<Geometry>,
-    surfaces: Vec<Surface>,
-    draws: Draws,
-    shadow_indices: ShadowIndices,
+    surfaces: Arc<[Surface]>,
+    draws: Arc<Draws>,
+    shadow_indices: Arc<ShadowIndices>,
     casters: OnceLock<Vec<Caster>>,
     materials: Vec<Material>,
-    textures: Vec<Texture>,
+    textures: Arc<[Texture]>,
     warnings: Vec<ToyWarning>,
 }
 

@@ -41,7 +41,7 @@ impl Toy {
         let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;
         out.positions.resize(self.n_vertices(), Vec3::ZERO);
         out.normals.resize(self.n_vertices(), Vec3::Y);
-        for surface in &self.surfaces {
+        for surface in self.surfaces.iter() {
             let geometry = &self.geometries[surface.geometry];
             let active = geometry.active_targets(self.rig.morph_weights(&rig_pose, surface.node));
             let vertices = surface.first_vertex..surface.first_vertex + geometry.positions.len();

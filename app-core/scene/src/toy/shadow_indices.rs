@@ -70,7 +70,7 @@ impl ShadowIndices {
 }
 
 /// For each vertex of the toy the first that coincides with it in every pose.
-fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
+pub(super) fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<u32> {
     let movements = movements(geometries);
     let mut firsts = HashMap::new();
     let keys = surfaces.iter().flat_map(|surface| {

@@ -20,6 +20,7 @@ pub(super) struct Skin {
 }
 
 /// The joints that the vertices of a primitive follow.
+#[derive(Clone)]
 pub(super) struct Influences {
     /// Joints of each vertex, a multiple of four.
     pub(super) n_per_vertex: usize,

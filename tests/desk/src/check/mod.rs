@@ -310,7 +310,8 @@ fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow
     let mut picture = Image::clone(given.image.rgba());
     overlay::receivers(&mut picture, scene, given);
     overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
-    overlay::outlines(&mut picture, &Outlines::of(scene, aligned)?, overlay::ALIGNED);
+    let shown = alignment.scene.as_deref().unwrap_or(scene);
+    overlay::outlines(&mut picture, &Outlines::of(shown, aligned)?, overlay::ALIGNED);
     gizmo::rays(
         &mut picture,
         (scene, given),

@@ -1,0 +1,156 @@
+//! The toy's model, adapted to the outline that the picture shows: a smooth field of displacements where the toy was found.
+//!
+//! Each round measures the outline of the model as it is displaced by then, as the codes beside it tell, and finds the field anew. What a
+//! camera does to an edge is found anew as well: a wrong model looks like a soft lens.
+
+use glam::DVec3;
+
+use super::decide::COMPARED_PX;
+use super::edge::{self, Optics};
+use super::field::{Camera, Field, Skin};
+use super::motion::Measured;
+use super::paint::{Light, Lit, Paint};
+use super::placement::Placement;
+use super::settle::{LEAST_EVIDENCE, Misfit};
+use super::sightings::{Sighting, cell_px};
+use super::{Search, enough};
+use crate::picture::Pyramid;
+use crate::report::{PoseAlignment, most_model_px};
+use crate::rigid_motion::RigidMotion;
+use crate::shape::Shape;
+use app_scene::scene::PoseUncertainty;
+use app_scene::toy::ToyError;
+
+/// Rounds; each brings the outline nearer by what its codes tell of what is left.
+const N_ROUNDS: usize = 4;
+/// What a camera displaces the outlines of right models by, as a rule, over the most that it does.
+const AS_A_RULE: f64 = 0.5;
+/// What it displaces them by for each pixel of spread: right models came to .1 to .3 px where they were spread by 2 px.
+const OF_SPREAD: f64 = 0.1;
+
+/// The model of a toy in another shape.
+pub(crate) struct Adapted {
+    /// Of each point, in camera space.
+    pub(crate) displacements_m: Vec<DVec3>,
+    /// Root mean square distance of the outline with the model as given, and as adapted, in pixels.
+    pub(crate) outlines_px: [f64; 2],
+    /// Pieces of the outline that were measured.
+    pub(crate) n_pieces: usize,
+    /// Logarithm of how much likelier the picture is with it.
+    pub(crate) evidence: f64,
+}
+
+/// The toy's surface where it is found, with its colours.
+pub(crate) type Surface = (Shape, Paint);
+
+/// Whether the outline is off by so much along some centimetres that another shape is tried: more than pictures of cameras are as a rule.
+pub(crate) fn is_doubtful(pose: &PoseAlignment) -> bool {
+    pose.model_px > AS_A_RULE * most_model_px(pose.spread_px)
+}
+
+/// The model whose outline is that of the picture; none where the picture does not speak for another one than that given. `displaced` is the
+/// surface with its points displaced in camera space.
+pub(crate) fn adapt(
+    (given, normals): (&Surface, &[DVec3]),
+    pyramid: &Pyramid,
+    displaced: impl Fn(&[DVec3]) -> Result<Surface, ToyError>,
+) -> Result<Option<Adapted>, ToyError> {
+    let skin = Skin {
+        shape: &given.0,
+        normals,
+    };
+    let as_given = vec![DVec3::ZERO; skin.shape.points.len()];
+    let mut displacements_m = as_given.clone();
+    let mut now = displaced(&as_given)?;
+    for round in 0..N_ROUNDS {
+        let eye = match round {
+            0 => Eye::sharp(&now, pyramid),
+            _ => Eye::new(&now, pyramid),
+        };
+        let Some(field) = eye.field(skin, (&now, &displacements_m)) else {
+            return Ok(None);
+        };
+        if round > 0 && field.evidence < 0.0 {
+            return Ok(None);
+        }
+        displacements_m = field.displacements_m;
+        now = displaced(&displacements_m)?;
+    }
+    // What the camera does is known best where the outline is met.
+    let eye = Eye::new(&now, pyramid);
+    let field = eye.field(skin, (given, &as_given));
+    let measured = [given, &now].map(|surface| eye.measured(surface));
+    let (Some(field), [Some(before), Some(after)]) = (field, measured) else {
+        return Ok(None);
+    };
+    let misfits = [&before, &after].map(|measured| Misfit::of(measured));
+    let evidence = field.evidence.min(misfits[1].likelier_than(&misfits[0]));
+    Ok((evidence >= LEAST_EVIDENCE).then(|| Adapted {
+        displacements_m,
+        outlines_px: misfits.map(|misfit| misfit.loss_px2.sqrt()),
+        n_pieces: after.len(),
+        evidence,
+    }))
+}
+
+/// What sees an outline.
+struct Eye<'a> {
+    pyramid: &'a Pyramid,
+    optics: Optics,
+    light: Option<Light>,
+}
+
+impl<'a> Eye<'a> {
+    /// With the optics and the light that explain a surface best.
+    fn new(surface: &Surface, pyramid: &'a Pyramid) -> Self {
+        let sharp = Self::sharp(surface, pyramid);
+        let posed = sharp.posed(surface, |posed| {
+            Optics::found(&posed.beside(pyramid.level(0)), &posed.elements)
+        });
+        let (optics, _) = posed;
+        Self { optics, ..sharp }
+    }
+
+    fn sharp((shape, paint): &Surface, pyramid: &'a Pyramid) -> Self {
+        let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
+        Self {
+            pyramid,
+            optics: Optics::default(),
+            light: search.light(paint, &in_place(shape)),
+        }
+    }
+
+    fn posed<T>(&self, (shape, paint): &Surface, of: impl FnOnce(&super::Posed<'_>) -> T) -> T {
+        let mut search = Search::new(shape, self.pyramid, &PoseUncertainty::default());
+        let light = self.light.as_ref();
+        of(&search.posed(&in_place(shape), light.map(|light| Lit { paint, light })))
+    }
+
+    /// Pieces of the outline of a surface; none where that is too little.
+    fn measured(&self, surface: &Surface) -> Option<Vec<Measured>> {
+        let half_px = COMPARED_PX + self.optics.half_px();
+        self.posed(surface, |posed| {
+            let beside = posed.beside(self.pyramid.level(0));
+            let measured = edge::measure_explained(&beside, &posed.elements, self.optics, half_px);
+            enough(measured, &posed.elements).map(|(measured, _)| measured)
+        })
+    }
+
+    /// The field of a skin whose points are displaced by now.
+    fn field(&self, skin: Skin<'_>, (surface, displacements_m): (&Surface, &[DVec3])) -> Option<Field> {
+        let k = &self.pyramid.level(0).intrinsics;
+        let measured = self.measured(surface)?;
+        let sightings = Sighting::all(&measured, (&surface.0, displacements_m), k);
+        let camera = Camera {
+            alike_px: AS_A_RULE * most_model_px(0.0) + OF_SPREAD * self.optics.spread_px,
+            cell_px: cell_px(measured.len()),
+            pixel_m: skin.shape.centre.length() / k.fx_px,
+        };
+        Field::found(skin, &sightings, camera)
+    }
+}
+
+/// A shape where it is.
+fn in_place(shape: &Shape) -> Placement {
+    Placement::of(RigidMotion::none(shape.centre, shape.radius_m))
+}

@@ -1,0 +1,270 @@
+//! A smooth field of displacements of a toy's surface, by those of its outline: a Gaussian process.
+//!
+//! What is displaced at one point is displaced alike near it: for the most part along the normals, on the same side of the toy. How far
+//! and over what length is what makes the picture most likely, of some tenths of a millimetre and some millimetres on a toy of 10 cm.
+//! The pose stays where it was found. What the outline asks for beyond it is the surface's, and ends where no outline is near.
+//!
+//! Source: Rasmussen and Williams 2006, sections 2.2 and 5.4; iteratively reweighted as by Geman and McClure 1987.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use nalgebra::{DMatrix, DVector};
+
+use super::settle::{ALIKE, OFFSET_PX};
+use super::sightings::Sighting;
+use crate::robust;
+use crate::shape::Shape;
+
+/// Deviations of the displacements that are tried, over the toy's radius: of a toy of 10 cm from .1 to 1.2 mm.
+const DEVIATIONS: [f64; 4] = [0.002, 0.004, 0.008, 0.016];
+/// Lengths over which they change that are tried, over the toy's radius: from 3 to 7 mm.
+const LENGTHS: [f64; 3] = [0.045, 0.065, 0.095];
+/// No shorter length is told by an outline, in pixels.
+const LEAST_LENGTH_PX: f64 = 4.0;
+/// Points that are farther apart, over the length, are displaced apart from one another.
+const APART: f64 = 4.0;
+/// Of the variance of a displacement, what is not along the normal: feet, ears and tails bend.
+const ANY_WAY: f64 = 0.2;
+/// What cameras displace outlines by is alike over so many pixels.
+const ALIKE_PX: f64 = 10.0;
+/// Displacements beyond that many medians of all are something else for the most part, such as a shadow beside the toy.
+const FAR: f64 = 3.0;
+/// The least such median, in pixels: that of an outline that is met.
+const LEAST_MEDIAN_PX: f64 = 0.1;
+/// Scale of the weights of what a field leaves over the median of that, and its bounds in pixels.
+const ROBUST: f64 = 3.0;
+const LEAST_ROBUST_PX: f64 = 0.15;
+const MOST_ROBUST_PX: f64 = 0.6;
+/// The least weight of what does not fit.
+const LEAST_WEIGHT: f64 = 1e-4;
+/// Rounds of reweighting, and in how many of them the lengths and deviations are looked for.
+const N_ROUNDS: usize = 4;
+const N_LOOKED_FOR: usize = 2;
+
+/// The surface that is displaced, in camera space.
+#[derive(Clone, Copy)]
+pub(super) struct Skin<'a> {
+    pub(super) shape: &'a Shape,
+    /// Of unit length for each point of the shape; zero where it has no outside.
+    pub(super) normals: &'a [DVec3],
+}
+
+/// What a camera makes of an outline, and how large its pixels are.
+#[derive(Clone, Copy)]
+pub(super) struct Camera {
+    /// One deviation of what it displaces the outline of a right model by, along some pixels.
+    pub(super) alike_px: f64,
+    /// Side of a pixel at the toy's distance.
+    pub(super) pixel_m: f64,
+    /// Side of the squares of a sighting.
+    pub(super) cell_px: f64,
+}
+
+/// A field, by its displacement of each point of the surface in camera space.
+pub(super) struct Field {
+    pub(super) displacements_m: Vec<DVec3>,
+    /// Logarithm of how much likelier the outline is with a field than without, whatever field that is: its freedoms are counted.
+    pub(super) evidence: f64,
+}
+
+/// How far and over what length surfaces are displaced.
+#[derive(Clone, Copy)]
+struct Prior {
+    deviation_m: f64,
+    /// Among those that are tried.
+    length: usize,
+}
+
+impl Field {
+    /// The field that makes an outline most likely; none where nothing of it is seen.
+    pub(super) fn found(skin: Skin<'_>, sightings: &[Sighting], camera: Camera) -> Option<Self> {
+        if sightings.is_empty() {
+            return None;
+        }
+        let process = Process::new(skin, sightings, camera);
+        let far_px = FAR * median(process.offsets.iter()).max(LEAST_MEDIAN_PX);
+        let near: Vec<f64> = weights(&process.offsets, far_px);
+        let mut robust = near.clone();
+        let mut prior = None;
+        for round in 0..N_ROUNDS {
+            let (best, pulls) = process.likeliest(&robust, prior.filter(|_| round >= N_LOOKED_FOR))?;
+            prior = Some(best);
+            let left = &process.offsets - process.covariance(best) * &pulls;
+            let scale_px = (ROBUST * median(left.iter())).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX);
+            let fitting = weights(&left, scale_px).into_iter().zip(&near);
+            robust = fitting
+                .map(|(weight, near)| weight.max(LEAST_WEIGHT) * near)
+                .collect();
+        }
+        let (prior, pulls) = process.likeliest(&robust, prior)?;
+        Some(Self {
+            displacements_m: process.displacements(&pulls, prior),
+            evidence: process.evidence(&robust, prior)?,
+        })
+    }
+}
+
+/// The outline, and how what is seen of it goes together.
+struct Process<'a> {
+    skin: Skin<'a>,
+    sightings: &'a [Sighting],
+    offsets: DVector<f64>,
+    /// Covariance of what is no field but the camera's, in square pixels.
+    common: DMatrix<f64>,
+    cell_px: f64,
+    lengths_m: [f64; LENGTHS.len()],
+    /// For each length, covariance of the offsets by a field with a deviation of one metre.
+    unit: [DMatrix<f64>; LENGTHS.len()],
+}
+
+impl<'a> Process<'a> {
+    fn new(skin: Skin<'a>, sightings: &'a [Sighting], camera: Camera) -> Self {
+        let lengths_m =
+            LENGTHS.map(|length| (length * skin.shape.radius_m).max(LEAST_LENGTH_PX * camera.pixel_m));
+        Self {
+            offsets: DVector::from_iterator(sightings.len(), sightings.iter().map(|one| one.offset_px)),
+            common: common(sightings, camera.alike_px),
+            unit: lengths_m.map(|length_m| unit(skin, sightings, length_m)),
+            cell_px: camera.cell_px,
+            lengths_m,
+            skin,
+            sightings,
+        }
+    }
+
+    fn covariance(&self, prior: Prior) -> DMatrix<f64> {
+        &self.unit[prior.length] * prior.deviation_m.powi(2)
+    }
+
+    /// What is no field, if neighbouring pieces err alike over as many as `alike` sightings.
+    fn noise(&self, robust: &[f64], alike: f64) -> DMatrix<f64> {
+        let mut noise = self.common.clone();
+        for (index, (one, weight)) in self.sightings.iter().zip(robust).enumerate() {
+            noise[(index, index)] += alike * one.variance_px2 / weight;
+        }
+        noise
+    }
+
+    /// The likeliest of all priors, or the given one, and how each offset pulls at the field with it.
+    fn likeliest(&self, robust: &[f64], given: Option<Prior>) -> Option<(Prior, DVector<f64>)> {
+        let noise = self.noise(robust, 1.0);
+        let priors: Vec<Prior> = match given {
+            Some(prior) => vec![prior],
+            None => priors(self.skin.shape.radius_m).collect(),
+        };
+        let tried = priors.into_iter().filter_map(|prior| {
+            let (likelihood, pulls) = explained(&noise + self.covariance(prior), &self.offsets)?;
+            Some((likelihood, prior, pulls))
+        });
+        let (_, prior, pulls) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((prior, pulls))
+    }
+
+    /// Logarithm of how much likelier the offsets are with a field; neighbouring pieces count once.
+    fn evidence(&self, robust: &[f64], prior: Prior) -> Option<f64> {
+        let noise = self.noise(robust, (ALIKE / self.cell_px).max(1.0));
+        let (with, _) = explained(&noise + self.covariance(prior), &self.offsets)?;
+        let (without, _) = explained(noise, &self.offsets)?;
+        Some(with - without)
+    }
+
+    /// The mean of the field at each point.
+    fn displacements(&self, pulls: &DVector<f64>, prior: Prior) -> Vec<DVec3> {
+        let mut pulled: BTreeMap<usize, DVec3> = BTreeMap::new();
+        for (sighting, pull) in self.sightings.iter().zip(pulls.iter()) {
+            for (point, px_per_m) in &sighting.row {
+                *pulled.entry(*point).or_default() += *pull * *px_per_m;
+            }
+        }
+        let (skin, length_m) = (self.skin, self.lengths_m[prior.length]);
+        let variance = prior.deviation_m.powi(2);
+        let at = |point: usize| {
+            let pulled = pulled.iter();
+            let sum: DVec3 = pulled
+                .map(|(other, pull)| skin.carried(point, *other, *pull, length_m))
+                .sum();
+            variance * sum
+        };
+        (0..skin.shape.points.len()).map(at).collect()
+    }
+}
+
+fn priors(radius_m: f64) -> impl Iterator<Item = Prior> {
+    let of_length = move |length| {
+        DEVIATIONS.into_iter().map(move |deviation| Prior {
+            deviation_m: deviation * radius_m,
+            length,
+        })
+    };
+    (0..LENGTHS.len()).flat_map(of_length)
+}
+
+impl Skin<'_> {
+    /// What a pull at one point moves another one by, if displacements have a deviation of one metre.
+    fn carried(&self, point: usize, other: usize, pull: DVec3, length_m: f64) -> DVec3 {
+        let points = &self.shape.points;
+        let square = (points[point] - points[other]).length_squared() / (length_m * length_m);
+        if square > APART * APART {
+            return DVec3::ZERO;
+        }
+        let (here, there) = (self.normals[point], self.normals[other]);
+        let same_side = 0.5 + 0.5 * here.dot(there);
+        let along = here * there.dot(pull) * (same_side * same_side);
+        (-0.5 * square).exp() * (ANY_WAY * pull + (1.0 - ANY_WAY) * along)
+    }
+}
+
+/// Logarithm of the likelihood of offsets with a covariance, but for a constant, and the inverse of that times them.
+fn explained(covariance: DMatrix<f64>, offsets: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
+    let factor = covariance.cholesky()?;
+    let pulls = factor.solve(offsets);
+    let roots: f64 = factor.l_dirty().diagonal().iter().map(|root| root.ln()).sum();
+    Some((-0.5 * offsets.dot(&pulls) - roots, pulls))
+}
+
+/// Halos, textures and the blocks of a compressed picture displace an outline along some pixels, and some of it all round.
+fn common(sightings: &[Sighting], alike_px: f64) -> DMatrix<f64> {
+    symmetric(sightings.len(), |a, b| {
+        let (one, other) = (&sightings[a], &sightings[b]);
+        let square = (one.at_px - other.at_px).length_squared() / (ALIKE_PX * ALIKE_PX);
+        let same_rim = one.normal.dot(other.normal).max(0.0);
+        OFFSET_PX * OFFSET_PX + alike_px * alike_px * same_rim * (-0.5 * square).exp()
+    })
+}
+
+fn unit(skin: Skin<'_>, sightings: &[Sighting], length_m: f64) -> DMatrix<f64> {
+    symmetric(sightings.len(), |a, b| {
+        let mut sum = 0.0;
+        for (one, px_per_m) in &sightings[a].row {
+            for (other, pull) in &sightings[b].row {
+                sum += px_per_m.dot(skin.carried(*one, *other, *pull, length_m));
+            }
+        }
+        sum
+    })
+}
+
+fn symmetric(n: usize, of: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(n, n);
+    for column in 0..n {
+        for row in column..n {
+            let value = of(row, column);
+            matrix[(row, column)] = value;
+            matrix[(column, row)] = value;
+        }
+    }
+    matrix
+}
+
+fn weights(offsets: &DVector<f64>, scale_px: f64) -> Vec<f64> {
+    let weight = |offset: &f64| robust::weight((offset / scale_px).powi(2));
+    offsets.iter().map(weight).collect()
+}
+
+/// Of absolute values; 0 where there are none.
+fn median<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    let mut values: Vec<f64> = values.map(|value| value.abs()).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,95 @@
+//! The same toy with another shape: vertices displaced at rest, so that every pose carries it.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::{DAffine3, DVec3};
+
+use super::Toy;
+use super::error::ToyError;
+use super::geometry::Geometry;
+use super::moment::Pose;
+use super::rig::RigPose;
+use super::shadow_indices::first_alike;
+use super::surface::Surface;
+
+impl Toy {
+    /// For each vertex the first that coincides with it in every pose: those of one are displaced alike, or the surface tears.
+    #[must_use]
+    pub fn first_alike(&self) -> Vec<u32> {
+        first_alike(&self.surfaces, &self.geometries)
+    }
+
+    /// This toy with its vertices displaced as much in a pose, in object space, and in every other pose with what moves them there;
+    /// normals follow the triangles. `displacements` has one for each vertex; those that it lacks stay, as do vertices that the pose
+    /// flattens. Triangles, materials and clips are those of this toy.
+    ///
+    /// # Errors
+    /// As [`Toy::pose`].
+    pub fn displaced(&self, pose: &Pose, displacements: &[DVec3]) -> Result<Self, ToyError> {
+        let rig_pose = self.rig_pose(pose, DAffine3::IDENTITY)?;
+        let geometries = self.geometries.iter().enumerate();
+        let geometries = geometries.map(|(index, geometry)| {
+            let drawn: Vec<&Surface> = self.surfaces.iter().filter(|s| s.geometry == index).collect();
+            displaced(geometry, &drawn, &rig_pose, displacements)
+        });
+        Ok(Self {
+            file: self.file.clone(),
+            rig: Arc::clone(&self.rig),
+            geometries: geometries.collect(),
+            surfaces: Arc::clone(&self.surfaces),
+            draws: Arc::clone(&self.draws),
+            shadow_indices: Arc::clone(&self.shadow_indices),
+            casters: OnceLock::new(),
+            materials: self.materials.clone(),
+            textures: Arc::clone(&self.textures),
+            warnings: self.warnings.clone(),
+        })
+    }
+}
+
+/// A geometry with each vertex moved by the mean of what those that draw it ask for.
+fn displaced(geometry: &Geometry, drawn: &[&Surface], pose: &RigPose, displacements: &[DVec3]) -> Geometry {
+    let mut out = geometry.clone();
+    for (vertex, position) in out.positions.iter_mut().enumerate() {
+        let in_mesh = drawn.iter().filter_map(|surface| {
+            let displacement = *displacements.get(surface.first_vertex + vertex)?;
+            let anchor_from_mesh = surface.anchor_from_mesh(geometry, vertex, pose);
+            let in_mesh = anchor_from_mesh.matrix3.inverse() * displacement;
+            in_mesh.is_finite().then_some(in_mesh)
+        });
+        let sum: DVec3 = in_mesh.sum();
+        if sum != DVec3::ZERO {
+            *position = (position.as_dvec3() + sum / drawn.len() as f64).as_vec3();
+        }
+    }
+    turn_normals(geometry, &mut out);
+    out
+}
+
+/// Turns the normals of a displaced geometry as far as the triangles around each turned.
+fn turn_normals(before: &Geometry, after: &mut Geometry) {
+    let Some(mut normals) = after.normals.take() else {
+        return;
+    };
+    let turned = face_normals(before).into_iter().zip(face_normals(after));
+    for (normal, (before, after)) in normals.iter_mut().zip(turned) {
+        if before != after {
+            *normal = (normal.as_dvec3() + after - before)
+                .as_vec3()
+                .normalize_or(*normal);
+        }
+    }
+    after.normals = Some(normals);
+}
+
+/// For each vertex the unit normal of the triangles that have it, by their areas; zero where they have none.
+fn face_normals(geometry: &Geometry) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; geometry.positions.len()];
+    for corners in geometry.triangles() {
+        let [a, b, c] = corners.map(|corner| geometry.positions[corner as usize].as_dvec3());
+        for corner in corners {
+            normals[*corner as usize] += (b - a).cross(c - a);
+        }
+    }
+    normals.into_iter().map(DVec3::normalize_or_zero).collect()
+}

@@ -1,0 +1,109 @@
+//! A model that is not quite the toy has the toy's outline after it was aligned.
+
+use std::sync::Arc;
+
+use app_core::alignment::{Aligner, AlignmentWarning};
+use app_core::scene::Scene;
+use app_core::toy::{Pose, PosedMesh, Toy};
+use glam::{DMat4, DVec3};
+
+use crate::bundled::SESSION;
+
+/// Amplitude and length of the waves that a model is off by, in metres.
+const WAVE_M: f64 = 6e-4;
+const WAVE_LENGTH_M: f64 = 0.025;
+
+fn positions(toy: &Toy, pose: &Pose) -> Vec<DVec3> {
+    let mut posed = PosedMesh::default();
+    toy.pose(pose, &DMat4::IDENTITY, &mut posed).unwrap();
+    posed.points().collect()
+}
+
+/// Displacement of a point of the toy's surface.
+fn wave(point: DVec3) -> DVec3 {
+    let turns = point * (std::f64::consts::TAU / WAVE_LENGTH_M);
+    WAVE_M
+        * DVec3::new(
+            (turns.y + 1.0).sin(),
+            (turns.z + 2.0).sin(),
+            (turns.x + turns.y).sin(),
+        )
+}
+
+/// The bundled scene with a model that is off by waves.
+fn wavy() -> Scene {
+    let scene = SESSION.0.clone();
+    let points = positions(&scene.toy, &scene.physical_pose).into_iter();
+    let displacements: Vec<DVec3> = points.map(wave).collect();
+    let toy = scene.toy.displaced(&scene.physical_pose, &displacements);
+    scene.with_toy(Arc::new(toy.unwrap()))
+}
+
+#[test]
+fn a_displaced_toy_is_displaced_in_every_pose() {
+    let (scene, pose) = (&SESSION.0, &SESSION.0.physical_pose);
+    let displaced = wavy().toy;
+    let pairs = positions(&scene.toy, pose)
+        .into_iter()
+        .zip(positions(&displaced, pose));
+    for (before, after) in pairs {
+        assert!((after - before - wave(before)).length() < 1e-6);
+    }
+    let clip = scene.toy.clip_ids().next().unwrap();
+    let moved = Pose::Clip { clip, time_secs: 1.0 };
+    let pairs = positions(&scene.toy, &moved)
+        .into_iter()
+        .zip(positions(&displaced, &moved));
+    for ((before, after), at_rest) in pairs.zip(positions(&scene.toy, pose)) {
+        // Joints turn it, and a mean of several of them shortens it.
+        let (length_m, of_wave_m) = ((after - before).length(), wave(at_rest).length());
+        assert!(length_m < of_wave_m + 1e-6 && length_m > 0.7 * of_wave_m - 1e-6);
+    }
+    assert_eq!(displaced.first_alike(), scene.toy.first_alike());
+    assert_eq!(displaced.shadow_indices(), scene.toy.shadow_indices());
+}
+
+#[test]
+fn a_model_that_is_off_has_the_toys_outline() {
+    let input = &SESSION.1;
+    let scene = wavy();
+    let mut aligner = Aligner::new(scene.clone());
+    let found = aligner.align(input).unwrap();
+    let model = found.report.model.unwrap();
+    assert!(model.outlines_px[1] < 0.75 * model.outlines_px[0], "{model:?}");
+    assert!(
+        model.displaced_m < WAVE_M && model.most_displaced_m < 3.0 * WAVE_M,
+        "{model:?}"
+    );
+    let is_told = |warning: &AlignmentWarning| matches!(warning, AlignmentWarning::ModelDiffers { displaced_m, .. } if *displaced_m == Some(model.displaced_m));
+    assert!(found.warnings.iter().any(is_told), "{:?}", found.warnings);
+
+    // Where it was displaced, it is nearer to the toy's own surface, along the displacement.
+    let adapted = &found.scene.unwrap().toy;
+    let pose = &scene.physical_pose;
+    let (given, truth) = (positions(&scene.toy, pose), positions(&SESSION.0.toy, pose));
+    let mut squares = [0.0; 2];
+    for ((given, truth), adapted) in given.iter().zip(truth).zip(positions(adapted, pose)) {
+        if let Some(along) = (adapted - *given)
+            .try_normalize()
+            .filter(|_| (adapted - *given).length() > 1e-4)
+        {
+            squares[0] += (truth - *given).dot(along).powi(2);
+            squares[1] += (truth - adapted).dot(along).powi(2);
+        }
+    }
+    assert!(squares[1] < 0.75 * squares[0], "{squares:?}");
+
+    // What is shown next is as it is.
+    let again = aligner.align(input).unwrap();
+    assert!(again.scene.is_none() && again.report == found.report);
+}
+
+#[test]
+fn an_exact_model_stays() {
+    let (scene, input) = &*SESSION;
+    let mut aligner = Aligner::new(scene.clone());
+    let found = aligner.align(input).unwrap();
+    assert_eq!(found.report.model, None);
+    assert!(Arc::ptr_eq(&aligner.scene().toy, &scene.toy));
+}
