@@ -47,6 +47,7 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod softness;
 mod view;
 mod warning;
 mod withheld;
@@ -58,6 +59,7 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
+use app_scene::sharpness::Sharpness;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use photograph::{MOST_OUTLINE_PX, Photograph};
@@ -97,6 +99,8 @@ pub struct Alignment {
     /// light than before, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
     /// first frame is the one that the [`Aligner`] was made with.
     pub scene: Option<Arc<Scene>>,
+    /// How soft the picture is.
+    pub sharpness: Sharpness,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -112,6 +116,7 @@ impl Alignment {
             world_from_object: input.world_from_object,
             lights: None,
             scene: None,
+            sharpness: input.sharpness,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }
@@ -125,7 +130,19 @@ impl Alignment {
             .with_camera(self.camera)
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
+            .with_sharpness(self.sharpness)
     }
+}
+
+/// Measures how soft a frame's picture is beside its plate and beside a sharp outline, its camera and its toy where they are given: what
+/// [`Aligner::align`] measures as well of those that it corrects.
+///
+/// # Errors
+/// As [`Aligner::align`].
+pub fn measure_sharpness(scene: &Scene, input: &FrameInput) -> Result<Sharpness, AlignError> {
+    error::check(scene, input)?;
+    let photograph = Photograph::new(scene, input, None);
+    Ok(photograph.sharpness_as_given(scene, &input.world_from_object)?)
 }
 
 /// Aligns the frames of one scene, one after the other.
@@ -320,6 +337,8 @@ impl Aligner {
         let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
         let found = photograph.pose(&self.scene, &input_seen, self.held)?;
         input_seen.world_from_object = found.world_from_object;
+        let outline_px = found.report.map(|pose| pose.spread_px);
+        let sharpness = photograph.sharpness(&self.scene, &found.world_from_object, outline_px)?;
         Ok(Seen {
             view: AlignedView {
                 image: input.image.clone(),
@@ -330,6 +349,7 @@ impl Aligner {
                 world_from_object: found.world_from_object,
                 plate_spread_px: found.plate_spread_px,
                 report: found.report,
+                sharpness,
             },
             photograph: photograph.with_plate_spread(found.plate_spread_px),
             input: input_seen,
@@ -424,6 +444,7 @@ impl Aligner {
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
+            sharpness: view.map_or(input.sharpness, |view| view.sharpness),
             report,
             warnings: warnings.collect(),
         }

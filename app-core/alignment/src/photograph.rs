@@ -9,11 +9,12 @@ use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
-use super::{lights, pose};
+use super::{lights, pose, softness};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
+use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::toy::ToyError;
 
 /// A pose whose outline stays farther from the picture's, in pixels, was not found.
@@ -96,6 +97,36 @@ impl Photograph {
         // The first view: a person may have put it there.
         let resting = self.pose_resting(input, &start, uncertainty);
         Ok(resting.filter(FoundPose::is_seen).unwrap_or(found))
+    }
+
+    /// How soft it is around a toy in its place, whose outline was found spread by so many pixels; none where it was not seen.
+    pub(super) fn sharpness(
+        &self,
+        scene: &Scene,
+        world_from_object: &DMat4,
+        outline_px: Option<f64>,
+    ) -> Result<Sharpness, ToyError> {
+        let shape = self.shape(scene, world_from_object)?;
+        let (level, picture_px) = (self.pyramid.level(0), self.pyramid.picture_px());
+        let outline_px = outline_px.map(|px| px / picture_px);
+        let in_level = softness::sharpness(level, &pose::covered(&shape, level), outline_px);
+        let in_picture = |spread: Spread| spread.times(picture_px * picture_px);
+        Ok(Sharpness {
+            plate_spread: in_picture(in_level.plate_spread),
+            outline_spread: in_picture(in_level.outline_spread),
+        })
+    }
+
+    /// The same where camera and pose stay as they are given.
+    pub(super) fn sharpness_as_given(
+        &self,
+        scene: &Scene,
+        world_from_object: &DMat4,
+    ) -> Result<Sharpness, ToyError> {
+        let start = self.start(scene, *world_from_object)?;
+        let outline_px = pose::spread_px(start.subject(), &self.pyramid);
+        let outline_px = outline_px.map(|px| px * self.pyramid.picture_px());
+        self.sharpness(scene, world_from_object, outline_px)
     }
 
     /// A toy where its pose is looked for from.

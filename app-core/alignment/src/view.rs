@@ -7,6 +7,7 @@ use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Scene};
+use app_scene::sharpness::Sharpness;
 
 /// A view with its photograph.
 pub(super) struct Seen {
@@ -27,6 +28,7 @@ pub(super) struct AlignedView {
     pub(super) world_from_object: DMat4,
     pub(super) plate_spread_px: f64,
     pub(super) report: Option<PoseAlignment>,
+    pub(super) sharpness: Sharpness,
 }
 
 impl Seen {

@@ -7,6 +7,7 @@ use glam::DMat4;
 use crate::camera_frame::CameraImage;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
+use crate::sharpness::Sharpness;
 
 /// A camera frame of the real, static toy, and the pose to show.
 ///
@@ -28,6 +29,8 @@ pub struct FrameInput {
     pub lights: Option<Arc<[Light]>>,
     /// What the platform estimates of the light, where it does. Alignment alone looks at it, and only where no light is listed.
     pub light_estimate: Option<LightEstimate>,
+    /// How soft the picture is, where that was measured: what is laid into it is made as soft. Alignment measures it.
+    pub sharpness: Sharpness,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
@@ -46,6 +49,7 @@ impl FrameInput {
             world_from_object,
             lights: None,
             light_estimate: None,
+            sharpness: Sharpness::SHARP,
             shown_pose: Pose::default(),
             effect: 1.0,
         }
@@ -93,6 +97,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets how soft the picture is.
+    #[must_use]
+    pub fn with_sharpness(mut self, sharpness: Sharpness) -> Self {
+        self.sharpness = sharpness;
+        self
+    }
+
     /// Sets the pose that the toy is shown in.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -117,6 +128,7 @@ impl FrameInput {
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
             light.check(&format!("lights[{index}]"))?;
         }
+        self.sharpness.check("sharpness")?;
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))
     }

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use app_core::alignment::{
-    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, RatioAlignment,
+    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, RatioAlignment, measure_sharpness,
 };
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
+use app_core::sharpness::Sharpness;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
 
@@ -99,12 +100,30 @@ pub struct Alignments {
     aligner: Option<Aligner>,
     first: usize,
     found: Vec<Aligned>,
+    /// How soft the frames are that stay as they were recorded.
+    as_given: Vec<Measured>,
     /// Plates whose camera was corrected, by their index.
     moved_plates: Vec<(usize, Camera)>,
     /// The receivers, where they were laid under the toy.
     laid_receivers: Option<Vec<Receiver>>,
     /// Of the lens, where it was looked for.
     lens: Option<LensAlignment>,
+}
+
+/// How soft a frame is.
+struct Measured {
+    index: usize,
+    input: FrameInput,
+    sharpness: Sharpness,
+}
+
+impl Measured {
+    /// Whether another frame is the same picture with the toy in the same place.
+    fn is_of(&self, input: &FrameInput) -> bool {
+        self.input.image.is(&input.image)
+            && self.input.camera == input.camera
+            && self.input.world_from_object == input.world_from_object
+    }
 }
 
 /// Of one frame.
@@ -192,6 +211,7 @@ impl Alignments {
             aligner: None,
             first: 0,
             found: Vec::new(),
+            as_given: Vec::new(),
             moved_plates: Vec::new(),
             laid_receivers: None,
             lens: None,
@@ -262,6 +282,9 @@ impl Alignments {
     /// When it cannot be aligned.
     pub fn align(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
         let is_known = self.of(index).is_some();
+        if self.aligner.is_none() {
+            return self.measure(scene, index, frame);
+        }
         let Some(aligner) = self.aligner.as_mut().filter(|_| !is_known) else {
             return Ok(());
         };
@@ -364,8 +387,36 @@ impl Alignments {
                 .alignment
                 .applied_to(&input)
                 .with_lights(aligned.lights(preset).or_else(|| input.lights.clone())),
-            None => input,
+            None => input.with_sharpness(self.sharpness_as_given(index)),
         }
+    }
+
+    /// Of a frame that stays as recorded; as sharp as pixels are where it was not measured.
+    fn sharpness_as_given(&self, index: usize) -> Sharpness {
+        let measured = self.as_given.iter().find(|measured| measured.index == index);
+        measured.map_or(Sharpness::SHARP, |measured| measured.sharpness)
+    }
+
+    /// Measures how soft a frame is that stays as recorded: once for each picture.
+    fn measure(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
+        if self.as_given.iter().any(|measured| measured.index == index) {
+            return Ok(());
+        }
+        let input = self.lights.input(frame);
+        let known = self.as_given.last().filter(|known| known.is_of(&input));
+        let sharpness = match known {
+            Some(known) => known.sharpness,
+            None => measure_sharpness(scene, &input).map_err(|reason| ReplayError::Align {
+                index,
+                reason: Box::new(reason),
+            })?,
+        };
+        self.as_given.push(Measured {
+            index,
+            input,
+            sharpness,
+        });
+        Ok(())
     }
 }
 

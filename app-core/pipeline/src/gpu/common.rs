@@ -41,6 +41,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "receiver_light",
     "self_shadow",
     "source",
+    "spread",
     "srgb",
     "tiles",
     "tint_cells",

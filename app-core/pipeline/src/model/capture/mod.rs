@@ -19,10 +19,11 @@ use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::Change;
+use crate::plan::{Change, FrameDelta};
 
 passes!(Plan:
-    gbuffer, validity, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
+    gbuffer, validity, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, tint, tint_fill,
+    appearance,
 );
 
 /// Rounds in which plate and light are estimated from one another.
@@ -51,7 +52,8 @@ impl CaptureTargets {
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         let has_photographed = !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some();
         // A finer plate will do where codes would.
-        has_photographed && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
+        let has_soft = !plan.is_softened || self.by_pass.soften.sharp().is_some();
+        has_photographed && has_soft && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
     }
 }
 
@@ -79,11 +81,17 @@ pub(crate) struct CapturePath<'a> {
 }
 
 impl CapturePath<'_> {
-    /// Learns what `change` asks for: nothing of a new pose.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, change: Change) {
+    /// Learns what a frame's differences ask for: nothing of a new pose.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
+        let change = delta.change;
         match change {
             Change::Pose => return,
-            Change::Picture => self.fit_intensities(recorder, false),
+            Change::Picture => {
+                if !delta.keeps_sharpness {
+                    self.sharpen(recorder);
+                }
+                self.fit_intensities(recorder, false);
+            }
             Change::View => self.learn_view(recorder),
             Change::Scene => self.learn_scene(recorder),
         }
@@ -99,6 +107,9 @@ impl CapturePath<'_> {
         if detail::is_needed(&self.region.plan) {
             passes.detail.encode(recorder, &self.detail_inputs(), &of.detail);
         }
+        if rim::is_needed(&self.region.plan) {
+            passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
+        }
         if is_view_new || !is_residual_next {
             let tints = &self.state.tints;
             passes.tint.encode(recorder, &self.tint_inputs(), tints);
@@ -108,6 +119,20 @@ impl CapturePath<'_> {
             let inputs = self.appearance_inputs();
             passes.appearance.encode(recorder, &inputs, &of.appearance);
         }
+    }
+
+    /// Draws what depends on how soft the picture is, of a known view.
+    fn sharpen(&self, recorder: &mut Recorder<'_>) {
+        let (passes, of) = (self.passes, &self.captured.by_pass);
+        passes
+            .validity
+            .encode(recorder, &self.validity_inputs(), &of.validity);
+        let maps = &self.captured.light;
+        self.lighting
+            .encode_light_visibility(recorder, self.light, self.physical(), maps);
+        self.plate(recorder);
+        self.withhold(recorder);
+        self.estimate(recorder);
     }
 
     /// Refines what is known of the scene by another view.
@@ -142,11 +167,7 @@ impl CapturePath<'_> {
     fn observe(&self, recorder: &mut Recorder<'_>) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         let (light, maps) = (self.light, &self.captured.light);
-        let posed = Posed {
-            globals: self.region.globals_on_device(),
-            toy: self.toy,
-            pose: &self.toy.physical,
-        };
+        let posed = self.physical();
         self.lighting.encode_self_shadow(recorder, light, posed, maps);
         passes
             .gbuffer
@@ -158,6 +179,14 @@ impl CapturePath<'_> {
         self.plate(recorder);
     }
 
+    fn physical(&self) -> Posed<'_> {
+        Posed {
+            globals: self.region.globals_on_device(),
+            toy: self.toy,
+            pose: &self.toy.physical,
+        }
+    }
+
     fn plate(&self, recorder: &mut Recorder<'_>) {
         let inputs = plate::Inputs {
             globals: &self.region.globals,
@@ -167,7 +196,16 @@ impl CapturePath<'_> {
         };
         // The fits before `estimate` read the photographed plate, too.
         let target = self.photographed().unwrap_or(&self.captured.plate);
-        self.plate.encode(recorder, &inputs, target);
+        let plan = &self.region.plan;
+        let soften = &self.captured.by_pass.soften;
+        match soften.sharp().filter(|_| soften::is_needed(plan)) {
+            Some(sharp) => {
+                self.plate.encode(recorder, &inputs, sharp);
+                let spread = plan.sharpness.plate_spread;
+                self.passes.soften.encode(recorder, spread, soften, target);
+            }
+            None => self.plate.encode(recorder, &inputs, target),
+        }
     }
 
     fn withhold(&self, recorder: &mut Recorder<'_>) {
@@ -281,6 +319,7 @@ impl CapturePath<'_> {
         validity::Inputs {
             plan: &self.region.plan,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
+            soft_reach_px: self.region.uniform.soft_reach_px(),
         }
     }
 
@@ -316,6 +355,18 @@ impl CapturePath<'_> {
             seen: self.seen(),
             observed: self.observed(),
             plate: &self.captured.plate.view,
+        }
+    }
+
+    fn rim_inputs(&self) -> rim::Inputs<'_> {
+        rim::Inputs {
+            plan: &self.region.plan,
+            scene: self.scene(),
+            grids: &self.state.grids,
+            cells: &self.state.residual.cells,
+            plate: &self.captured.plate.view,
+            observed: self.observed(),
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
         }
     }
 
