@@ -17,7 +17,7 @@
 //#import common/covered
 //#import common/fullscreen
 //#import common/marks
-//#import common/spread
+//#import common/soft_toy
 
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
@@ -61,10 +61,6 @@ const OUTLIER_ALL: f32 = 0.3;
 // colour.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
-// Rings around a pixel on which a toy is looked for that a soft picture spreads, and places on each.
-const N_RINGS: u32 = 4u;
-const N_ON_RING: u32 = 12u;
-const TURN: f32 = 6.2831853;
 // Distance over which the toy's colours bleed into a pixel beside it.
 const BLEED_PX: f32 = 6.0;
 // Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from
@@ -185,21 +181,6 @@ fn coverage(texel: vec2i) -> f32 {
   return round(textureLoad(covered, texel, 0).r / COVERED_POSITION) / f32(N_POSITIONS);
 }
 
-// The toy's colours around a texel, from as near as it is drawn: a soft picture spreads it beyond that.
-fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
-  var sum = vec4f(0.0);
-  for (var ring = 1u; ring <= N_RINGS; ring++) {
-    let reach_px = 1.0 + soft_reach_px() * f32(ring) / f32(N_RINGS);
-    for (var k = 0u; k < N_ON_RING; k++) {
-      let turn = f32(k) * (TURN / f32(N_ON_RING));
-      let tap = texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
-      sum += drawn_toy(clamped_to_box(tap), n_draws);
-    }
-    if sum.a > 0.0 { break; }
-  }
-  return sum;
-}
-
 // The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
 fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
   let own = drawn_toy(texel, n_draws);
@@ -227,17 +208,6 @@ fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
 fn change_at(texel: vec2i) -> f32 {
   let clamped = clamped_to_box(texel);
   return max(textureLoad(toy_moved, clamped, 0).r, textureLoad(moved_mask, clamped, 0).r);
-}
-
-// The most change on rings around a texel, as far as a soft picture spreads what it shows.
-fn change_around(texel: vec2i) -> f32 {
-  var most = 0.0;
-  for (var k = 0u; k < 2u * N_ON_RING; k++) {
-    let turn = f32(k) * (TURN / f32(N_ON_RING));
-    let reach_px = soft_reach_px() * select(1.0, 0.5, k < N_ON_RING);
-    most = max(most, change_at(texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))))));
-  }
-  return most;
 }
 
 // 1 where a texel of the toy box and those beside, above and below it are as the camera saw them.

@@ -11,6 +11,8 @@
 //! physical pose ─► shape ─────────────┴► pose ─► lights ─► Alignment
 //! ```
 //!
+//! How soft the photograph is, beside its plate and at the toy's outline, is measured on the way (`softness`).
+//!
 //! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
 //! before all else the distortion of the **lens** ([`Aligner::lens`]), of which photographs are freed.
 //!

@@ -13,6 +13,7 @@ mod pose_filter;
 mod probe;
 mod probe_session;
 mod real_pictures;
+mod softness;
 mod uncertainty;
 mod withheld;
 mod world_scale;

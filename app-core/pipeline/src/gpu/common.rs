@@ -40,6 +40,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "pool",
     "receiver_light",
     "self_shadow",
+    "soft_toy",
     "source",
     "spread",
     "srgb",
