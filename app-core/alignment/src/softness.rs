@@ -266,7 +266,7 @@ impl Grey {
         self.taking(&[(direction, 1.0), (-direction, -1.0)])
     }
 
-    /// As the core spreads a plate: along one axis, then along the other.
+    /// Along one axis, then along the other.
     fn spread(&self, spread: Spread) -> Self {
         let [first, second] = spread.axes_px().map(taps_along);
         self.taking(&first).taking(&second)

@@ -1,10 +1,10 @@
-//! `soften` on pictures of nothing but detail, along axes of any direction.
+//! `soften` on pictures of nothing but detail, by taps along axes of any direction.
 
 use app_core::wgpu;
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec2, DVec4, UVec2};
+use glam::{DVec4, UVec2};
 use reference::raster::Raster;
-use reference::soften::{Axis, soften};
+use reference::soften::{Taps, soften};
 
 use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;
@@ -19,23 +19,24 @@ const ALLOWED: f64 = 4e-3;
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct OnDevice {
-    direction: [f32; 2],
-    deviation_px: f32,
-    pad: f32,
+    first_px: [f32; 2],
+    second_px: [f32; 2],
+    spacing: f32,
+    pad: [f32; 3],
 }
 
-/// Across, down, and aslant; one of nothing.
-fn axes() -> [Axis; 4] {
-    let axis = |x: f64, y: f64, deviation_px: f64, reach_px: u32| Axis {
-        direction: DVec2::new(x, y),
-        deviation_px,
-        reach_px,
+/// A round spread, one aslant, one by a motion, and none.
+fn grids() -> [Taps; 4] {
+    let taps = |first: [f64; 2], second: [f64; 2], spacing: f64, n_beside: u32| Taps {
+        steps_px: [first.into(), second.into()],
+        spacing,
+        n_beside,
     };
     [
-        axis(1.0, 0.0, 2.0, 6),
-        axis(0.0, 1.0, 0.7, 6),
-        axis(0.6, -0.8, 3.1, 12),
-        axis(0.0, 1.0, 0.0, 6),
+        taps([1.5, 0.0], [0.0, 1.5], 0.75, 3),
+        taps([0.9, -1.2], [0.4, 0.3], 0.4, 6),
+        taps([0.0, 1.1], [0.0, 0.0], 0.75, 3),
+        taps([0.0, 0.0], [0.0, 0.0], 0.75, 3),
     ]
 }
 
@@ -55,24 +56,25 @@ fn errors(source: &str) -> Errors {
     let map = device.filterable_colors(&plate);
     let linear = device.linear_sampler();
     let colors = plate.map(|texel| DVec4::from(texel.map(f64::from)) / 256.0);
-    let pairs = axes().map(|axis| {
+    let pairs = grids().map(|taps| {
         let on_device = device.uniform(&OnDevice {
-            direction: axis.direction.as_vec2().to_array(),
-            deviation_px: axis.deviation_px as f32,
-            pad: 0.0,
+            first_px: taps.steps_px[0].as_vec2().to_array(),
+            second_px: taps.steps_px[1].as_vec2().to_array(),
+            spacing: taps.spacing as f32,
+            pad: [0.0; 3],
         });
         let own: Bindings<'_> = vec![
             (0, on_device.as_entire_binding()),
             (1, wgpu::BindingResource::TextureView(&map)),
             (2, wgpu::BindingResource::Sampler(&linear)),
         ];
-        let constants = [("REACH_PX", f64::from(axis.reach_px))];
+        let constants = [("N_BESIDE", f64::from(taps.n_beside))];
         let draw = Draw {
             constants: &constants,
             ..Draw::of(source, "fs_soften", SIZE)
         };
         let actual = device.draw(draw, [&[], &own]);
-        let expected = Raster::from_fn(SIZE, |texel| soften(&colors, &axis, texel));
+        let expected = Raster::from_fn(SIZE, |texel| soften(&colors, &taps, texel));
         pairs_of(&actual, &expected)
     });
     Errors::between(pairs.concat())
@@ -87,10 +89,9 @@ fn plates_are_spread_as_light_is() {
 fn a_fault_in_the_spread_is_found() {
     let faults = [
         ("exp(-0.5 *", "exp(-0.6 *"),
-        ("own.a == 0.0 ||", "own.a < 0.0 ||"),
-        ("LEAST_PX: f32 = 0.01", "LEAST_PX: f32 = 1.0"),
-        ("k <= REACH_PX", "k < REACH_PX"),
-        ("(before + behind)", "(before + before)"),
+        ("own.a == 0.0", "own.a < 0.0"),
+        ("i <= N_BESIDE", "i < N_BESIDE"),
+        ("f32(j) * taps.second_px", "f32(i) * taps.second_px"),
         ("/ sum.a", "/ own.a"),
     ];
     check_faults("soften", &faults, ALLOWED, errors);

@@ -52,7 +52,7 @@ impl CaptureTargets {
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         let has_photographed = !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some();
         // A finer plate will do where codes would.
-        let has_soft = !plan.is_softened || self.by_pass.soften.sharp().is_some();
+        let has_soft = !plan.is_softened || self.by_pass.soften.sharp.is_some();
         has_photographed && has_soft && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
     }
 }
@@ -130,7 +130,7 @@ impl CapturePath<'_> {
         let maps = &self.captured.light;
         self.lighting
             .encode_light_visibility(recorder, self.light, self.physical(), maps);
-        self.plate(recorder);
+        self.soften(recorder);
         self.withhold(recorder);
         self.estimate(recorder);
     }
@@ -194,18 +194,24 @@ impl CapturePath<'_> {
             plates: self.pictures.plates,
             is_same_view: self.pictures.is_same_view,
         };
-        // The fits before `estimate` read the photographed plate, too.
-        let target = self.photographed().unwrap_or(&self.captured.plate);
-        let plan = &self.region.plan;
-        let soften = &self.captured.by_pass.soften;
-        match soften.sharp().filter(|_| soften::is_needed(plan)) {
-            Some(sharp) => {
-                self.plate.encode(recorder, &inputs, sharp);
-                let spread = plan.sharpness.plate_spread;
-                self.passes.soften.encode(recorder, spread, soften, target);
-            }
-            None => self.plate.encode(recorder, &inputs, target),
+        let sharp = self.captured.by_pass.soften.sharp.as_ref();
+        let target = sharp.unwrap_or_else(|| self.read_plate());
+        self.plate.encode(recorder, &inputs, target);
+        self.soften(recorder);
+    }
+
+    /// Makes the plate as soft as the picture, where there are targets for it.
+    fn soften(&self, recorder: &mut Recorder<'_>) {
+        if let Some(sharp) = &self.captured.by_pass.soften.sharp {
+            let spread = self.region.plan.sharpness.plate_spread;
+            let target = self.read_plate();
+            self.passes.soften.encode(recorder, (spread, sharp), target);
         }
+    }
+
+    /// The plate that the first passes read: those before `estimate` read the photographed one, too.
+    fn read_plate(&self) -> &Texture {
+        self.photographed().unwrap_or(&self.captured.plate)
     }
 
     fn withhold(&self, recorder: &mut Recorder<'_>) {

@@ -14,38 +14,76 @@ use crate::gpu::texture::Texture;
 use crate::model::plan::Plan;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
 
-pub(crate) const SHADER: Shader = shader!("capture/soften", structs: [Axis]);
-const SLOTS: &[Slot] = &[Slot::per_use::<Axis>(), Slot::Filtered, Slot::Sampler];
-/// Pixels to either side that are looked at, three deviations: of the softest picture, and of most.
-const REACHES_PX: [u32; 2] = [12, 6];
-/// Deviations that are looked at.
-const REACH: f64 = 3.0;
+pub(crate) const SHADER: Shader = shader!("capture/soften", structs: [Taps]);
+const SLOTS: &[Slot] = &[Slot::per_use::<Taps>(), Slot::Filtered, Slot::Sampler];
+
+/// A grid of taps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TapGrid {
+    /// To either side of the middle, along each axis.
+    n_beside: u32,
+    /// Standard deviations from one to the next, for its weights.
+    spacing: f64,
+    /// Variance of what it makes of taps that are so far apart, over that of a Gaussian which is not cut off.
+    variance: f64,
+}
+
+/// Of most spreads, and of wide ones, where taps of the former would leave gaps between them.
+const GRIDS: [TapGrid; 2] = [
+    TapGrid {
+        n_beside: 3,
+        spacing: 0.75,
+        variance: 0.939,
+    },
+    TapGrid {
+        n_beside: 6,
+        spacing: 0.4,
+        variance: 0.930,
+    },
+];
+/// Standard deviation from which on a spread is a wide one.
+const WIDE_PX: f64 = 2.4;
+/// What bilinear taps spread by themselves, in square pixels, where they lie all over a pixel; and the variance from which on they do.
+const BILINEAR_PX2: f64 = 1.0 / 6.0;
+const ALL_OVER_PX2: f64 = 0.25;
 
 shared_struct! {
-    /// An axis of a spread.
-    pub(crate) struct Axis {
-        pub direction: [f32; 2],
-        pub deviation_px: f32,
-        pub _pad: f32,
+    /// Taps along the axes of a spread.
+    pub(crate) struct Taps {
+        pub first_px: [f32; 2],
+        pub second_px: [f32; 2],
+        pub spacing: f32,
+        pub _pad_0: f32,
+        pub _pad_1: [f32; 2],
     }
 }
 
-impl Axis {
-    /// As long as the standard deviation along it; across the picture where it has none.
-    fn new(axis_px: DVec2) -> Self {
-        #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
-        let deviation_px = axis_px.length() as f32;
+impl Taps {
+    fn new(spread: Spread, grid: &TapGrid) -> Self {
+        let [first, second] = spread.axes_px().map(|axis_px| {
+            let step_px = grid.spacing / grid.variance.sqrt() * own_px(axis_px.length());
+            (step_px * axis_px.normalize_or(DVec2::ZERO)).as_vec2()
+        });
+        #[allow(clippy::cast_possible_truncation, reason = "a handful of digits")]
         Self {
-            direction: axis_px.normalize_or(DVec2::X).as_vec2().to_array(),
-            deviation_px,
-            _pad: 0.0,
+            first_px: first.to_array(),
+            second_px: second.to_array(),
+            spacing: grid.spacing as f32,
+            _pad_0: 0.0,
+            _pad_1: [0.0; 2],
         }
     }
 }
 
-/// Whether the plate is sharper than the picture.
-pub(crate) fn is_needed(plan: &Plan) -> bool {
-    plan.sharpness.plate_spread != Spread::NONE
+/// The standard deviation that taps have to have for a wanted one, since each is spread over the pixels around it. Within a pixel that
+/// is as much as their mean distance from the middle, .8 of the deviation.
+fn own_px(wanted_px: f64) -> f64 {
+    let wanted_px2 = wanted_px * wanted_px;
+    if wanted_px2 < ALL_OVER_PX2 {
+        wanted_px2 / 0.8
+    } else {
+        (wanted_px2 - BILINEAR_PX2).sqrt()
+    }
 }
 
 pub(crate) struct Pass {
@@ -53,35 +91,21 @@ pub(crate) struct Pass {
     fine: Draws,
 }
 
-/// For each of the reaches.
-type Draws = [Draw; REACHES_PX.len()];
+/// For each of the grids.
+type Draws = [Draw; GRIDS.len()];
 
 /// Of the region's size, where a picture is softer than what is laid into it.
 pub(crate) struct Targets {
-    stages: Option<Stages>,
-}
-
-struct Stages {
     /// The plate as it was taken.
-    sharp: Texture,
-    /// Spread along the first axis.
-    half: Texture,
+    pub(crate) sharp: Option<Texture>,
 }
 
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
-        let target = |label| Texture::target(gpu, label, plan.region.size_px, plan.plate_format());
+        let target = || Texture::target(gpu, "sharp plate", plan.region.size_px, plan.plate_format());
         Self {
-            stages: plan.is_softened.then(|| Stages {
-                sharp: target("sharp plate"),
-                half: target("half softened plate"),
-            }),
+            sharp: plan.is_softened.then(target),
         }
-    }
-
-    /// The plate as it was taken, if there is one beside the plate that passes read.
-    pub(crate) fn sharp(&self) -> Option<&Texture> {
-        self.stages.as_ref().map(|stages| &stages.sharp)
     }
 }
 
@@ -89,9 +113,9 @@ impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let groups = [&[][..], SLOTS, &[], &[]];
         let draws = |format: TextureFormat| {
-            REACHES_PX.map(|reach_px| {
+            GRIDS.map(|grid| {
                 gpu.draw(&DrawSpec {
-                    constants: vec![("REACH_PX", reach_px)],
+                    constants: vec![("N_BESIDE", grid.n_beside)],
                     ..DrawSpec::fullscreen(&SHADER, "fs_soften", groups, &[format])
                 })
             })
@@ -102,33 +126,29 @@ impl Pass {
         }
     }
 
-    /// Spreads the plate as it was taken onto the one that passes read.
+    /// Spreads the plate as it was taken onto the one that passes read; it is copied where there is no spread.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
-        spread: Spread,
-        targets: &Targets,
+        (spread, sharp): (Spread, &Texture),
         softened: &Texture,
     ) {
-        let Some(Stages { sharp, half }) = &targets.stages else {
-            return;
-        };
-        let is_narrow = REACH * spread.widest_px() <= f64::from(REACHES_PX[1]) + 0.5;
-        let [first, second] = spread.axes_px().map(Axis::new);
-        for (axis, from, onto) in [(first, sharp, half), (second, half, softened)] {
-            let draws = if onto.format() == CODED_FORMAT {
-                &self.coded
-            } else {
-                &self.fine
-            };
-            let draw = &draws[usize::from(is_narrow)];
-            let resources = [
-                Resource::PerUse,
-                (&from.view).into(),
-                (&recorder.gpu.samplers.linear).into(),
-            ];
-            let group = recorder.bind_with(draw, GROUP_PASS, &axis, &resources);
-            recorder.fullscreen(draw, &[group], &[&onto.view]);
+        if spread == Spread::NONE {
+            return recorder.copy(sharp, softened);
         }
+        let draws = if softened.format() == CODED_FORMAT {
+            &self.coded
+        } else {
+            &self.fine
+        };
+        let index = usize::from(spread.widest_px() >= WIDE_PX);
+        let (draw, grid) = (&draws[index], &GRIDS[index]);
+        let resources = [
+            Resource::PerUse,
+            (&sharp.view).into(),
+            (&recorder.gpu.samplers.linear).into(),
+        ];
+        let group = recorder.bind_with(draw, GROUP_PASS, &Taps::new(spread, grid), &resources);
+        recorder.fullscreen(draw, &[group], &[&softened.view]);
     }
 }
