@@ -49,7 +49,9 @@ struct Globals {
   seen_from_behind: u32,
   // Depth in metres nearer than which a shadow is cut off: a small part of the distance to the toy.
   near_m: f32,
-  _pad_1: u32,
+  // Weight of the neighbours on either side, along each axis, in means of what is drawn by spread positions: what they spread is
+  // left out of `spread`.
+  soft_side: f32,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;

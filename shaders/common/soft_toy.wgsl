@@ -9,6 +9,10 @@
 const N_RINGS: u32 = 4u;
 const N_ON_RING: u32 = 12u;
 const TURN: f32 = 6.2831853;
+// Rings on which colours of what has moved are taken, nearest first: their radii over how far the picture spreads, and weights of their
+// places against that of the middle.
+const NEAR_RINGS = vec2f(0.2, 0.4);
+const NEAR_WEIGHTS = vec2f(0.6, 0.25);
 
 fn on_ring(texel: vec2i, reach_px: f32, k: u32) -> vec2i {
   let turn = f32(k) * (TURN / f32(N_ON_RING));
@@ -24,6 +28,21 @@ fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
     if sum.a > 0.0 { break; }
   }
   return sum;
+}
+
+// The toy's colour at a texel where it is drawn, premultiplied. What has moved is about as soft as the picture: folds between its parts, and
+// what no camera has seen, are drawn sharp.
+fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
+  let change = change_at(texel);
+  if change == 0.0 { return own; }
+  var sum = own;
+  for (var ring = 0u; ring < 2u; ring++) {
+    for (var k = 0u; k < N_ON_RING; k++) {
+      let tap = clamped_to_box(on_ring(texel, NEAR_RINGS[ring] * soft_reach_px(), k));
+      sum += NEAR_WEIGHTS[ring] * drawn_toy(tap, n_draws);
+    }
+  }
+  return mix(own / own.a, sum / sum.a, change);
 }
 
 // The most change around a texel, as far as it is spread.

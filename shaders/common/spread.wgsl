@@ -17,6 +17,21 @@ fn soft_reach_px() -> f32 {
 const PI: f32 = 3.14159265;
 const WINITZKI: f32 = 0.147;
 
+// The mean of what was drawn by spread positions in a texel and in those around it: of nine times as many positions.
+fn soft_texel(map: texture_2d<f32>, texel: vec2i) -> vec4f {
+  let side = globals.soft_side;
+  if side == 0.0 { return textureLoad(map, texel, 0); }
+  let last = vec2i(textureDimensions(map)) - 1;
+  var sum = vec4f(0.0);
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let weight = select(side, 1.0 - 2.0 * side, x == 0) * select(side, 1.0 - 2.0 * side, y == 0);
+      sum += weight * textureLoad(map, clamp(texel + vec2i(x, y), vec2i(0), last), 0);
+    }
+  }
+  return sum;
+}
+
 // What a number of a normal distribution is above, by the part of all numbers that are below, to 2 parts in 1000.
 // Source: Winitzki 2008 (the inverse error function).
 fn normal_quantile(part: f32) -> f32 {

@@ -12,12 +12,14 @@ const N_PLACES: u32 = 64;
 /// Rows and columns from one place to the next.
 const STEPS: [u32; 2] = [47, 53];
 
-/// Part of what a texel shows that is the toy's, whose depth is 0 where it is not; `root` is that of the picture's spread.
+/// Part of what a texel shows that is the toy's, whose depth is 0 where it is not; `root` is that of the picture's spread, places lie by
+/// `beside_px` more beside that, to all four sides in turn.
 #[must_use]
-pub fn part_of_toy(depth: &Raster<f64>, root: [f64; 3], texel: UVec2) -> f64 {
+pub fn part_of_toy(depth: &Raster<f64>, (root, beside_px): ([f64; 3], f64), texel: UVec2) -> f64 {
     let places = (0..N_PLACES).map(|k| {
         let lattice = STEPS.map(|step| (f64::from(k * step % N_PLACES) + 0.5) / f64::from(N_PLACES));
-        texel.as_dvec2() + spread_position(DVec2::from(lattice), root)
+        let side = [k, k / 2].map(|k| if k % 2 == 0 { -beside_px } else { beside_px });
+        texel.as_dvec2() + spread_position(DVec2::from(lattice), root) + DVec2::from(side)
     });
     let shows_toy = |place: &DVec2| {
         let is_inside = place.cmpge(DVec2::ZERO).all() && place.cmplt(depth.size().as_dvec2()).all();

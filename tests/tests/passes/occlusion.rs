@@ -115,7 +115,8 @@ fn visibility_of_the_ambient_light() {
     }
 }
 
-/// A spread that is wider along one axis, and the root of its covariance with that of a pixel, worked out by hand.
+/// A spread that is wider along one axis, and the root of its covariance, with that of a pixel and without that of the mean over three by three
+/// texels that it is read by, worked out by hand.
 const SOFT: Spread = Spread {
     xx_px2: 3.2,
     xy_px2: 0.9,
@@ -123,9 +124,10 @@ const SOFT: Spread = Spread {
 };
 
 fn root() -> [f64; 3] {
-    let xx = (SOFT.xx_px2 + 1.0 / 12.0).sqrt();
+    let own = 1.0 / 12.0 - 0.5;
+    let xx = (SOFT.xx_px2 + own).sqrt();
     let yx = SOFT.xy_px2 / xx;
-    [xx, yx, (SOFT.yy_px2 + 1.0 / 12.0 - yx * yx).sqrt()]
+    [xx, yx, (SOFT.yy_px2 + own - yx * yx).sqrt()]
 }
 
 #[test]

@@ -54,7 +54,7 @@ shared_struct! {
         pub n_receivers: u32,
         pub seen_from_behind: u32,
         pub near_m: f32,
-        pub _pad_1: u32,
+        pub soft_side: f32,
     }
 }
 
@@ -165,7 +165,7 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         n_receivers: count(layout.receivers.len(), MAX_RECEIVERS),
         seen_from_behind: seen_from_behind(view, layout.receivers),
         near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
-        _pad_1: 0,
+        soft_side: 0.0,
     }
 }
 
@@ -185,8 +185,11 @@ impl Globals {
     /// The same of a picture that spreads a point so; as sharp as pixels are where it does not.
     #[must_use]
     pub fn with_spread(self, spread: Spread) -> Self {
+        // A mean over three has twice the variance of one side's weight.
+        let side = 0.25 * spread.variances_px2()[1].clamp(0.0, 1.0);
         Self {
-            spread: spread_factor(spread),
+            spread: spread_factor(spread, 2.0 * side),
+            soft_side: narrowed(side),
             ..self
         }
     }
@@ -197,16 +200,17 @@ const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// Deviations that the outermost of 64 positions lies from the middle, and a little for rounding.
 const OUTERMOST: f64 = 2.44;
 
-/// The root of a spread's covariance, with the pixel's own, and how far positions reach.
-fn spread_factor(spread: Spread) -> [f32; 4] {
+/// The root of a spread's covariance, with the pixel's own and without a variance that means over texels give, and how far it reaches.
+fn spread_factor(spread: Spread, of_means_px2: f64) -> [f32; 4] {
     if spread == Spread::NONE {
         return [0.0; 4];
     }
     // Source: Cholesky's factor of 2 x 2.
-    let across = (spread.xx_px2 + PIXEL_PX2).sqrt();
+    let own_px2 = PIXEL_PX2 - of_means_px2;
+    let across = (spread.xx_px2 + own_px2).sqrt();
     let sheared = spread.xy_px2 / across;
-    let down = (spread.yy_px2 + PIXEL_PX2 - sheared * sheared).max(0.0).sqrt();
-    let reach_px = OUTERMOST * across.max(sheared.abs() + down);
+    let down = (spread.yy_px2 + own_px2 - sheared * sheared).max(0.0).sqrt();
+    let reach_px = OUTERMOST * across.max(sheared.abs() + down) + if of_means_px2 > 0.0 { 1.0 } else { 0.0 };
     [across, sheared, down, reach_px].map(narrowed)
 }
 
