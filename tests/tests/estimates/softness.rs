@@ -24,6 +24,7 @@ fn still() -> Taps {
 }
 
 /// In linear light.
+#[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn spread(image: &Image, across: &Taps, down: &Taps) -> Image {
     let (width, height) = (image.width_px as i32, image.height_px as i32);
     let codes = image.rgba8.chunks_exact(4);

@@ -41,6 +41,7 @@ fn grids() -> [Taps; 4] {
 }
 
 /// In steps of 1/256, times an alpha of a half or none: patches were not photographed.
+#[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn plate() -> Raster<[u8; 4]> {
     Raster::from_fn(SIZE, |at| {
         if number(at / 9, 160) < 0.2 {
@@ -51,6 +52,7 @@ fn plate() -> Raster<[u8; 4]> {
     })
 }
 
+#[allow(clippy::cast_possible_truncation, reason = "a handful of digits")]
 fn errors(source: &str) -> Errors {
     let (device, plate) = (Device::shared(), plate());
     let map = device.filterable_colors(&plate);
