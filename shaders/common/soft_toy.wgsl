@@ -9,9 +9,9 @@
 const N_RINGS: u32 = 4u;
 const N_ON_RING: u32 = 12u;
 const TURN: f32 = 6.2831853;
-// Rings on which colours of what has moved are taken, nearest first: their radii over how far the picture spreads, and weights of their
+// Rings on which colours of what has moved are taken, nearest first: their radii in deviations of the picture's spread, and weights of their
 // places against that of the middle.
-const NEAR_RINGS = vec2f(0.2, 0.4);
+const NEAR_RINGS = vec2f(0.6, 1.2);
 const NEAR_WEIGHTS = vec2f(0.6, 0.25);
 
 fn on_ring(texel: vec2i, reach_px: f32, k: u32) -> vec2i {
@@ -38,7 +38,9 @@ fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
   var sum = own;
   for (var ring = 0u; ring < 2u; ring++) {
     for (var k = 0u; k < N_ON_RING; k++) {
-      let tap = clamped_to_box(on_ring(texel, NEAR_RINGS[ring] * soft_reach_px(), k));
+      let turn = f32(k) * (TURN / f32(N_ON_RING));
+      let offset_px = NEAR_RINGS[ring] * spread_px(vec2f(cos(turn), sin(turn)));
+      let tap = clamped_to_box(texel + vec2i(round(offset_px)));
       sum += NEAR_WEIGHTS[ring] * drawn_toy(tap, n_draws);
     }
   }

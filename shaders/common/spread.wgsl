@@ -44,5 +44,10 @@ fn normal_quantile(part: f32) -> f32 {
 // Offset from a pixel's centre, in pixels, of a position of an even lattice over the square from 0 to 1, both left out.
 fn spread_position_px(lattice: vec2f) -> vec2f {
   let normal = vec2f(normal_quantile(lattice.x), normal_quantile(lattice.y));
-  return vec2f(globals.spread.x * normal.x, globals.spread.y * normal.x + globals.spread.z * normal.y);
+  return spread_px(normal);
+}
+
+// A place in standard deviations of the spread, in pixels.
+fn spread_px(deviations: vec2f) -> vec2f {
+  return vec2f(globals.spread.x * deviations.x, globals.spread.y * deviations.x + globals.spread.z * deviations.y);
 }

@@ -128,7 +128,10 @@ fn a_fault_in_the_mixture_is_found() {
             "POSITION_STEPS = vec2u(47u, 47u)",
         ),
         ("2.0 * part - 1.0", "1.4 * part - 0.7"),
-        ("globals.spread.y * normal.x", "globals.spread.z * normal.x"),
+        (
+            "globals.spread.y * deviations.x",
+            "globals.spread.z * deviations.x",
+        ),
         ("depth > 0.0", "depth >= 0.0"),
         ("if b.a == 0.0 {", "if b.a < 0.0 {"),
         ("model + cell_at(point).rgb", "model - cell_at(point).rgb"),
