@@ -8,6 +8,8 @@
 //#import common/fullscreen
 
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
+// Added to the distance from the toy's outline: how far a soft picture spreads the toy.
+@group(1) @binding(1) var<uniform> soft_px: i32;
 
 // Distance kept from the toy's outline on the receiver.
 const EDGE_PX: i32 = 2;
@@ -22,8 +24,9 @@ fn depth_at(texel: vec2i) -> f32 {
 }
 
 fn is_clear_of_toy(texel: vec2i) -> bool {
-  for (var y = -EDGE_PX; y <= EDGE_PX; y++) {
-    for (var x = -EDGE_PX; x <= EDGE_PX; x++) {
+  let edge_px = EDGE_PX + soft_px;
+  for (var y = -edge_px; y <= edge_px; y++) {
+    for (var x = -edge_px; x <= edge_px; x++) {
       if depth_at(texel + vec2i(x, y)) > 0.0 { return false; }
     }
   }

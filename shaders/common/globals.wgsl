@@ -41,12 +41,17 @@ struct Globals {
   // The same of the part that maps of the physical toy hold.
   physical_box_origin_px: vec2f,
   physical_box_size_px: vec2f,
+  // How a softer picture than pixels make spreads a point, and the pixel itself: the lower triangle of the root of its
+  // covariance, (xx, yx, yy), in pixels; and how far. 0 of a sharp picture.
+  spread: vec4f,
   n_receivers: u32,
   // Bit k is 1 where receiver k is seen from behind.
   seen_from_behind: u32,
   // Depth in metres nearer than which a shadow is cut off: a small part of the distance to the toy.
   near_m: f32,
-  _pad_1: u32,
+  // Weight of the neighbours on either side, along each axis, in means of what is drawn by spread positions: what they spread is
+  // left out of `spread`.
+  soft_side: f32,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;

@@ -17,6 +17,7 @@
 //#import common/covered
 //#import common/fullscreen
 //#import common/marks
+//#import common/soft_toy
 
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
@@ -121,8 +122,8 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let texel = vec2u(position.xy);
   let at = position.xy;
   let uv = at / globals.region_size_px;
-  let v_before = textureLoad(physical_visibility, texel, 0);
-  let v_after = textureLoad(visibility, texel, 0);
+  let v_before = soft_texel(physical_visibility, vec2i(texel));
+  let v_after = soft_texel(visibility, vec2i(texel));
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
   // Where no light changes, what follows comes to the frame: most pixels are done here.
@@ -183,12 +184,15 @@ fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
 
 // Part of a pixel that the toy covers.
 fn coverage(texel: vec2i) -> f32 {
-  return round(textureLoad(covered, texel, 0).r / COVERED_POSITION) / f32(N_POSITIONS);
+  let n_covered = soft_texel(covered, texel).r / COVERED_POSITION;
+  // Whole numbers, but for means of them.
+  return select(round(n_covered), min(n_covered, f32(N_POSITIONS)), globals.soft_side > 0.0) / f32(N_POSITIONS);
 }
 
 // The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
 fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
-  let own = drawn_toy(texel, n_draws);
+  var own = drawn_toy(texel, n_draws);
+  if own.a > 0.0 && is_soft() { own = softened_toy(texel, own, n_draws); }
   if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
   var sum = vec4f(0.0);
   for (var y = -1; y <= 1; y++) {
@@ -196,6 +200,7 @@ fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
       sum += drawn_toy(clamped_to_box(texel + vec2i(x, y)), n_draws);
     }
   }
+  if sum.a == 0.0 && is_soft() { sum = toy_color_beyond(texel, n_draws); }
   if sum.a == 0.0 { return vec4f(0.0); }
   return vec4f(sum.rgb / sum.a, 1.0);
 }
@@ -218,7 +223,9 @@ fn change_at(texel: vec2i) -> f32 {
 fn stillness(texel: vec2i) -> f32 {
   let beside = max(change_at(texel - vec2i(1, 0)), change_at(texel + vec2i(1, 0)));
   let above_and_below = max(change_at(texel - vec2i(0, 1)), change_at(texel + vec2i(0, 1)));
-  return 1.0 - max(change_at(texel), max(beside, above_and_below));
+  let most = max(change_at(texel), max(beside, above_and_below));
+  if most == 1.0 || !is_soft() { return 1.0 - most; }
+  return 1.0 - max(most, change_around(texel));
 }
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {

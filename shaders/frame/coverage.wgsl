@@ -13,6 +13,7 @@
 
 //#import common/behind
 //#import common/covered
+//#import common/spread
 //#import common/tiles
 
 struct Positions {
@@ -29,9 +30,11 @@ struct Moved {
   @location(0) @interpolate(flat, either) index: u32,
 }
 
-// Offset from the pixel's centre.
+// Offset from the pixel's centre, in a soft picture also beyond the pixel.
 fn position_px(index: u32) -> vec2f {
-  return (vec2f(vec2u(index, index * positions.row_step % positions.n)) + 0.5) / f32(positions.n) - 0.5;
+  let lattice = (vec2f(vec2u(index, index * positions.row_step % positions.n)) + 0.5) / f32(positions.n);
+  if is_soft() { return spread_position_px(lattice); }
+  return lattice - 0.5;
 }
 
 // Of a corner at `clip`, drawn for a position.

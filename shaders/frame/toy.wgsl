@@ -21,6 +21,7 @@
 //#import common/between_tints
 //#import common/behind
 //#import common/source
+//#import common/spread
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
@@ -30,6 +31,8 @@
 @group(1) @binding(4) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(5) var<storage, read> tints: array<vec4f>;
 @group(1) @binding(6) var appearance_source: texture_2d<f32>;
+// What a soft picture mixes into the toy's colours, over the gain, and the part of a pixel that is the toy's.
+@group(1) @binding(7) var rim: texture_2d<f32>;
 
 // Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
 override IS_COARSE: bool = false;
@@ -46,6 +49,8 @@ const OTHER_MATERIAL: f32 = 0.25;
 // Relative change of the light on a surface that is invisible, and that is visible in full.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
+// Part of a pixel from which on the toy's own colour is told from what is mixed into it: below, noise would be, too.
+const LEAST_PART: f32 = 0.35;
 // Weight of colours extrapolated past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
 
@@ -103,6 +108,15 @@ fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
   return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
 }
 
+// The toy's own colour at a texel of the physical box, without what a soft picture mixes into it.
+fn own_color(texel: vec2i) -> vec3f {
+  let seen = frame_at(region_texel(texel));
+  if !is_soft() { return seen; }
+  let mixed = textureLoad(rim, texel, 0);
+  let part = max(mixed.a, LEAST_PART);
+  return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
+}
+
 // The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the
 // base
 // colour `base`; alpha 0 where something hides it.
@@ -127,7 +141,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4
     if is_other_material(seen_base.rgb, base) { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
-    let color = frame_at(region_texel(source_texel(vec2i(texel), number)));
+    let color = own_color(source_texel(vec2i(texel), number));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
     sum += weight * vec4f(color, 1.0);

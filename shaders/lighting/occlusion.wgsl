@@ -17,6 +17,7 @@
 // Here the accumulation is done by the blending of one pass rather than by one pass per point.
 
 //#import common/flatten
+//#import common/spread
 //#import common/tiles
 
 struct LightPoints {
@@ -69,9 +70,12 @@ struct Flattened {
   @location(1) @interpolate(flat, either) depth: f32,
 }
 
-// Where a point is drawn for, from the top left corner of a texel, in texels.
+// Where a point is drawn for, from the top left corner of a texel, in texels. In a soft picture that is also beside the texel;
+// coarser maps have nothing that is as sharp as the picture.
 fn position_in_texel(point: u32) -> vec2f {
-  return (vec2f(point * POSITION_STEPS % light_points.n_points) + 0.5) / f32(light_points.n_points);
+  let lattice = (vec2f(point * POSITION_STEPS % light_points.n_points) + 0.5) / f32(light_points.n_points);
+  if is_soft() && all(light_points.texel_px == vec2f(1.0)) { return 0.5 + spread_position_px(lattice); }
+  return lattice;
 }
 
 fn in_plane_of(instance: u32, in_anchor: vec3f) -> vec3f {

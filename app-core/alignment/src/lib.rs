@@ -12,6 +12,8 @@
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
+//! How soft the photograph is, beside its plate and at the toy's outline, is measured on the way (`softness`).
+//!
 //! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
 //! before all else the distortion of the **lens** ([`Aligner::lens`]), of which photographs are freed.
 //!
@@ -50,6 +52,7 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod softness;
 mod things;
 mod view;
 mod warning;
@@ -63,6 +66,7 @@ use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
+use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
@@ -106,6 +110,8 @@ pub struct Alignment {
     pub scene: Option<Arc<Scene>>,
     /// Things that stand in the picture beside the toy; none where nothing tells of any.
     pub things: Option<Things>,
+    /// How soft the picture is.
+    pub sharpness: Sharpness,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -122,6 +128,7 @@ impl Alignment {
             lights: None,
             scene: None,
             things: None,
+            sharpness: input.sharpness,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }
@@ -136,6 +143,7 @@ impl Alignment {
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
             .with_things(self.things.clone().or_else(|| input.things.clone()))
+            .with_sharpness(self.sharpness)
     }
 }
 
@@ -359,6 +367,8 @@ impl Aligner {
         let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
         let found = photograph.pose(&self.scene, &input_seen, self.held)?;
         input_seen.world_from_object = found.world_from_object;
+        let outline_px = found.report.map(|pose| pose.spread_px);
+        let sharpness = photograph.sharpness(&self.scene, &found.world_from_object, outline_px)?;
         Ok(Seen {
             view: AlignedView {
                 image: input.image.clone(),
@@ -369,6 +379,7 @@ impl Aligner {
                 world_from_object: found.world_from_object,
                 plate_spread_px: found.plate_spread_px,
                 report: found.report,
+                sharpness,
             },
             photograph: photograph.with_plate_spread(found.plate_spread_px),
             input: input_seen,
@@ -467,6 +478,7 @@ impl Aligner {
             lights: applied,
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
+            sharpness: view.map_or(input.sharpness, |view| view.sharpness),
             report,
             warnings: warnings.collect(),
         }

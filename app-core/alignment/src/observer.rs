@@ -5,13 +5,12 @@ use std::sync::Arc;
 use super::error::{self, AlignError};
 use super::photograph::Photograph;
 use app_scene::frame::FrameInput;
-use app_scene::scene::Scene;
-use app_scene::things::Things;
+use app_scene::scene::{Light, Scene};
 
 /// Looks at frames that are shown as they are given.
 #[derive(Debug, Default)]
 pub struct Observer {
-    latest: Option<(FrameInput, Option<Things>)>,
+    latest: Option<FrameInput>,
 }
 
 impl Observer {
@@ -21,23 +20,33 @@ impl Observer {
     /// As [`Aligner::align`](crate::Aligner::align).
     pub fn observed(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         error::check(scene, input)?;
-        let latest = self.latest.as_ref().filter(|(latest, _)| {
+        let latest = self.latest.as_ref().filter(|latest| {
             latest.image.is(&input.image)
                 && latest.camera == input.camera
                 && latest.world_from_object == input.world_from_object
                 && latest.lights == input.lights
         });
-        let things = match latest {
-            Some((_, things)) => things.clone(),
-            None => {
-                let lights = match &input.lights {
-                    Some(lights) => Arc::clone(lights),
-                    None => scene.lights.as_slice().into(),
-                };
-                Photograph::new(scene, input, None).things(scene, input, &lights)?
-            }
+        let observed = match latest {
+            Some(latest) => input
+                .clone()
+                .with_things(latest.things.clone())
+                .with_sharpness(latest.sharpness),
+            None => observed(scene, input)?,
         };
-        self.latest = Some((input.clone(), things.clone()));
-        Ok(input.clone().with_things(things))
+        self.latest = Some(observed.clone());
+        Ok(observed)
     }
+}
+
+fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
+    let lights: Arc<[Light]> = match &input.lights {
+        Some(lights) => Arc::clone(lights),
+        None => scene.lights.as_slice().into(),
+    };
+    let photograph = Photograph::new(scene, input, None);
+    let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
+    // Things are told by what a plate shows that is as soft.
+    let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
+    let things = photograph.things(scene, input, &lights)?;
+    Ok(input.clone().with_things(things).with_sharpness(sharpness))
 }

@@ -1,5 +1,7 @@
 //! A photograph with its plate, and what is made of a toy's pose and lights that are found in it.
 
+mod conditions;
+
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
@@ -9,12 +11,11 @@ use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
-use super::{lights, pose, things};
+use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Camera, Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
-use app_scene::things::Things;
+use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
 use app_scene::toy::ToyError;
 
 /// A pose whose outline stays farther from the picture's, in pixels, was not found.
@@ -57,15 +58,6 @@ impl Photograph {
             self.pyramid = pyramid;
         }
         self
-    }
-
-    /// Of which nothing is known where things stand or the plate is wrong.
-    pub(super) fn clear_of(&self, things: &Things) -> Self {
-        Self {
-            pyramid: self.pyramid.clear_of(things.marks()),
-            receivers: self.receivers.clone(),
-            camera_from_world: self.camera_from_world,
-        }
     }
 
     pub(super) fn pyramid(&self) -> &Pyramid {
@@ -267,31 +259,6 @@ impl Photograph {
                 errors: found.losses,
             }
         }))
-    }
-
-    /// Things that stand beside the toy in its place, in given lights; none where nothing tells of any.
-    pub(super) fn things(
-        &self,
-        scene: &Scene,
-        input: &FrameInput,
-        lights: &[Light],
-    ) -> Result<Option<Things>, ToyError> {
-        let shape = self.shape(scene, &input.world_from_object)?;
-        let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
-        let found = things::find(&things::Sight {
-            shape: &shape,
-            paint: &paint,
-            receivers: &self.receivers,
-            pyramid: &self.pyramid,
-            lights,
-            world_from_camera: &input.camera.world_from_camera,
-        });
-        // Of the largest level, which may be smaller than the picture.
-        let camera = Camera {
-            intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
-            ..input.camera
-        };
-        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
     }
 
     /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.

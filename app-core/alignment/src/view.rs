@@ -7,6 +7,7 @@ use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Scene};
+use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 
 /// A view with its photograph.
@@ -28,6 +29,7 @@ pub(super) struct AlignedView {
     pub(super) world_from_object: DMat4,
     pub(super) plate_spread_px: f64,
     pub(super) report: Option<PoseAlignment>,
+    pub(super) sharpness: Sharpness,
 }
 
 impl Seen {

@@ -7,6 +7,7 @@ use glam::DMat4;
 use crate::camera_frame::CameraImage;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
+use crate::sharpness::Sharpness;
 use crate::things::Things;
 
 /// A camera frame of the real, static toy, and the pose to show.
@@ -31,6 +32,8 @@ pub struct FrameInput {
     pub light_estimate: Option<LightEstimate>,
     /// Things that stand in the picture beside the toy, where any are known.
     pub things: Option<Things>,
+    /// How soft the picture is, where that was measured: what is laid into it is made as soft. Alignment measures it.
+    pub sharpness: Sharpness,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
@@ -50,6 +53,7 @@ impl FrameInput {
             lights: None,
             light_estimate: None,
             things: None,
+            sharpness: Sharpness::SHARP,
             shown_pose: Pose::default(),
             effect: 1.0,
         }
@@ -104,6 +108,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets how soft the picture is.
+    #[must_use]
+    pub fn with_sharpness(mut self, sharpness: Sharpness) -> Self {
+        self.sharpness = sharpness;
+        self
+    }
+
     /// Sets the pose that the toy is shown in.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -128,6 +139,7 @@ impl FrameInput {
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
             light.check(&format!("lights[{index}]"))?;
         }
+        self.sharpness.check("sharpness")?;
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))
     }

@@ -9,6 +9,7 @@ pub mod frame;
 pub mod geometry;
 pub mod lens;
 pub mod scene;
+pub mod sharpness;
 pub mod things;
 pub mod toy;
 pub mod words;

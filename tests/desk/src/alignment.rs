@@ -12,6 +12,7 @@ use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
+use app_core::sharpness::Sharpness;
 use app_core::things::Things;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
@@ -100,8 +101,8 @@ pub struct Alignments {
     aligner: Option<Aligner>,
     /// What looks at frames that stay as they were recorded.
     observer: Observer,
-    /// Things in the latest of them, and its index.
-    observed: Option<(usize, Option<Things>)>,
+    /// What it saw in each.
+    observed: Vec<Observed>,
     first: usize,
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
@@ -110,6 +111,13 @@ pub struct Alignments {
     laid_receivers: Option<Vec<Receiver>>,
     /// Of the lens, where it was looked for.
     lens: Option<LensAlignment>,
+}
+
+/// What is seen in a frame that stays as it was recorded.
+struct Observed {
+    index: usize,
+    things: Option<Things>,
+    sharpness: Sharpness,
 }
 
 /// Of one frame.
@@ -196,7 +204,7 @@ impl Alignments {
             lights: Lights::Given,
             aligner: None,
             observer: Observer::default(),
-            observed: None,
+            observed: Vec::new(),
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
@@ -304,12 +312,19 @@ impl Alignments {
 
     /// Looks at a frame that stays as it was recorded.
     fn observe(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
+        if self.observed.iter().any(|observed| observed.index == index) {
+            return Ok(());
+        }
         let observed = self.observer.observed(scene, &self.lights.input(frame));
         let observed = observed.map_err(|reason| ReplayError::Align {
             index,
             reason: Box::new(reason),
         })?;
-        self.observed = Some((index, observed.things));
+        self.observed.push(Observed {
+            index,
+            things: observed.things,
+            sharpness: observed.sharpness,
+        });
         Ok(())
     }
 
@@ -392,8 +407,12 @@ impl Alignments {
                 .applied_to(&input)
                 .with_lights(aligned.lights(preset).or_else(|| input.lights.clone())),
             None => {
-                let observed = self.observed.as_ref().filter(|(of, _)| *of == index);
-                input.with_things(observed.and_then(|(_, things)| things.clone()))
+                let observed = self.observed.iter().find(|observed| observed.index == index);
+                observed.map_or(input.clone(), |observed| {
+                    input
+                        .with_things(observed.things.clone())
+                        .with_sharpness(observed.sharpness)
+                })
             }
         }
     }

@@ -350,6 +350,7 @@ impl<'a> Run<'a> {
             session_warnings: warnings.map(ToString::to_string).collect(),
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
+            sharpness: input.sharpness.into(),
             scores: None,
             flicker: None,
         };

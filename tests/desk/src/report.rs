@@ -4,6 +4,7 @@
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
 use app_core::scene::MAX_LIGHTS;
+use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
 use serde::Serialize;
 
@@ -85,10 +86,31 @@ pub struct FrameEntry {
     pub report: FrameReport,
     /// What alignment found; none where the session is replayed as recorded.
     pub alignment: Option<AlignmentEntry>,
+    /// How soft the picture was measured to be.
+    pub sharpness: SharpnessEntry,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
     /// Flicker since the frame before, where both have a truth.
     pub flicker: Option<Flicker>,
+}
+
+/// How soft a picture is: deviations of the two axes of a spread, the wider first, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SharpnessEntry {
+    /// What makes the plates as soft.
+    pub plate_px: [f64; 2],
+    /// What makes a sharp outline as soft.
+    pub outline_px: [f64; 2],
+}
+
+impl From<Sharpness> for SharpnessEntry {
+    fn from(sharpness: Sharpness) -> Self {
+        let axes_px = |spread: Spread| spread.axes_px().map(|axis| axis.length());
+        Self {
+            plate_px: axes_px(sharpness.plate_spread),
+            outline_px: axes_px(sharpness.outline_spread),
+        }
+    }
 }
 
 /// A map as a picture of the whole frame.

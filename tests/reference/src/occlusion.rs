@@ -15,6 +15,25 @@ pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
     (DVec2::new(column, row) + 0.5) / n_points as f64
 }
 
+/// The same in a picture that spreads a point by the lower triangle (xx, yx, yy) of a root of its covariance, the pixel's own with it: where the
+/// parts below the lattice's rows and columns are those of a normal distribution.
+#[must_use]
+pub fn spread_position(lattice: DVec2, [xx, yx, yy]: [f64; 3]) -> DVec2 {
+    let [across, down] = lattice.to_array().map(normal_quantile);
+    0.5 + DVec2::new(xx * across, yx * across + yy * down)
+}
+
+/// What a number of a normal distribution is above, by the part of all numbers that are below. Source: Winitzki 2008, whose one constant is .147.
+#[must_use]
+pub fn normal_quantile(part: f64) -> f64 {
+    const A: f64 = 0.147;
+    let x = 2.0 * part - 1.0;
+    let log = (1.0 - x * x).ln();
+    let half = 2.0 / (std::f64::consts::PI * A) + log / 2.0;
+    let inverse_error = ((half * half - log / A).sqrt() - half).sqrt();
+    std::f64::consts::SQRT_2 * inverse_error * x.signum()
+}
+
 type Triangle<R> = [Vector<R>; 3];
 
 /// A posed mesh in plane space, and the precision in which rays meet it.
@@ -107,6 +126,18 @@ pub fn hidden_share<R: Real>(
     region: &Region,
     (map_px, texel): (UVec2, UVec2),
 ) -> Option<f64> {
+    let position = |i, n_points| sample_position(i, n_points);
+    hidden_share_from(casters, region, (map_px, texel), position)
+}
+
+/// The same where each light point is seen from a place of its own, in texels from the top left corner of the texel.
+#[must_use]
+pub fn hidden_share_from<R: Real>(
+    casters: &[Caster<R>],
+    region: &Region,
+    (map_px, texel): (UVec2, UVec2),
+    place: impl Fn(usize, usize) -> DVec2,
+) -> Option<f64> {
     let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
     let receiver = if casters.len() == 1 {
         0
@@ -117,7 +148,7 @@ pub fn hidden_share<R: Real>(
     let (caster, plane) = (&casters[receiver], &region.receivers[receiver]);
     let mut n_hidden = 0.0;
     for (i, light_point) in caster.light_points.iter().enumerate() {
-        let position = texel.as_dvec2() + sample_position(i, caster.light_points.len());
+        let position = texel.as_dvec2() + place(i, caster.light_points.len());
         let in_plane = plane.plane_point(position * region_px_per_texel)?;
         // A point behind the receiver lights nothing of it.
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);

@@ -25,9 +25,9 @@ pub struct Marks {
 }
 
 /// Marks a texel by the reversed depth of the physical toy around it, which is 0 where the toy is not and goes on beyond
-/// the border as it is there.
+/// the border as it is there. The picture spreads the toy by `soft_px` pixels.
 #[must_use]
-pub fn mark(depth: &Raster<f64>, texel: UVec2) -> Marks {
+pub fn mark(depth: &Raster<f64>, soft_px: i32, texel: UVec2) -> Marks {
     let last = depth.size().as_ivec2() - 1;
     let at = |offset: IVec2| depth.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
     let around = |reach_px: i32, step_px: usize| {
@@ -42,7 +42,7 @@ pub fn mark(depth: &Raster<f64>, texel: UVec2) -> Marks {
         before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= DEPTH_BEND * here
     };
     let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
-    let is_clear = around(EDGE_PX, 1).all(|((_, x), (_, y))| is_free(x, y));
+    let is_clear = around(EDGE_PX + soft_px, 1).all(|((_, x), (_, y))| is_free(x, y));
     // Like the dark squares of a chessboard.
     let mut bleeding =
         around(BLEED_PX, BLEED_STEP_PX).filter(|((column, _), (row, _))| (column + row) % 2 == 0);

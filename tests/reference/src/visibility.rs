@@ -5,7 +5,7 @@ use app_scene::geometry::disc::vogel_disc;
 use glam::{DVec2, DVec3, UVec2};
 
 use super::model::Region;
-use super::occlusion::{Caster, Occluder, hidden_share};
+use super::occlusion::{Caster, Occluder, hidden_share, hidden_share_from, sample_position, spread_position};
 use super::raster::Raster;
 use super::real::{Real, Vector};
 
@@ -15,6 +15,19 @@ use super::real::{Real, Vector};
 #[must_use]
 pub fn visibility_map<R: Real>(casters: &[Caster<R>], region: &Region, map_px: UVec2) -> Raster<f64> {
     let hidden = |texel| hidden_share(casters, region, (map_px, texel));
+    Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
+}
+
+/// The same of a picture that spreads a point, by a root of its covariance.
+#[must_use]
+pub fn soft_visibility_map<R: Real>(
+    casters: &[Caster<R>],
+    region: &Region,
+    map_px: UVec2,
+    root: [f64; 3],
+) -> Raster<f64> {
+    let place = |i, n_points| spread_position(sample_position(i, n_points), root);
+    let hidden = |texel| hidden_share_from(casters, region, (map_px, texel), place);
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
 

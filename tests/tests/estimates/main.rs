@@ -14,6 +14,7 @@ mod pose_filter;
 mod probe;
 mod probe_session;
 mod real_pictures;
+mod softness;
 mod things;
 mod uncertainty;
 mod withheld;

@@ -1,10 +1,12 @@
 //! `occlusion`: flattened meshes against rays.
 
+use app_core::preset::Preset;
+use app_core::sharpness::{Sharpness, Spread};
 use app_core::toy::PosedMesh;
 use glam::DVec4;
 use reference::occlusion::Caster;
 use reference::raster::Raster;
-use reference::visibility::visibility_map;
+use reference::visibility::{soft_visibility_map, visibility_map};
 
 use crate::device::Device;
 use crate::errors::Errors;
@@ -28,8 +30,17 @@ const MAX_POINTS: f64 = 2.0;
 const LIGHTS_STORED: f64 = 1.0 / 255.0;
 const AMBIENT_STORED: f64 = 0.0;
 
-fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, (what, max_share, stored): (&str, f64, f64)) {
+fn compare(run: &Run, casters: &[Caster], actual: &Raster<f64>, told: (&str, f64, f64)) {
     let expected = visibility_map(casters, &run.region, actual.size());
+    compare_with(run, casters, (actual, &expected), told);
+}
+
+fn compare_with(
+    run: &Run,
+    casters: &[Caster],
+    (actual, expected): (&Raster<f64>, &Raster<f64>),
+    (what, max_share, stored): (&str, f64, f64),
+) {
     assert!(
         expected.texels().iter().any(|visibility| *visibility < 0.5),
         "{what}: there is no shadow"
@@ -101,5 +112,49 @@ fn visibility_of_the_ambient_light() {
             &run.shown_ambient,
             ("shown ambient", MAX_AMBIENT_SHARE, AMBIENT_STORED),
         );
+    }
+}
+
+/// A spread that is wider along one axis, and the root of its covariance, with that of a pixel and without that of the mean over three by three
+/// texels that it is read by, worked out by hand.
+const SOFT: Spread = Spread {
+    xx_px2: 3.2,
+    xy_px2: 0.9,
+    yy_px2: 1.4,
+};
+
+fn root() -> [f64; 3] {
+    let own = 1.0 / 12.0 - 0.5;
+    let xx = (SOFT.xx_px2 + own).sqrt();
+    let yx = SOFT.xy_px2 / xx;
+    [xx, yx, (SOFT.yy_px2 + own - yx * yx).sqrt()]
+}
+
+#[test]
+fn visibility_in_a_soft_picture() {
+    let stand = Stand::new(FOUR_LIGHTS);
+    let two_lights = Setup {
+        lights: &FOUR_LIGHTS.lights[..2],
+        ..FOUR_LIGHTS
+    };
+    let pictures = photograph(&Stand::new(two_lights));
+    let sharpness = Sharpness {
+        plate_spread: Spread::NONE,
+        outline_spread: SOFT,
+    };
+    let decoded = Device::shared().decoded();
+    let run = Run::of(Preset::Balanced, (stand, sharpness), pictures, &decoded).unwrap();
+    for i in 0..run.plan.n_lights {
+        let casters = run
+            .stand
+            .light_casters(&run.stand.shown, i, run.plan.n_light_points[i]);
+        let actual = run.shown_visibility.map(|texel| texel[i]);
+        let expected = soft_visibility_map(&casters, &run.region, actual.size(), root());
+        let told = ("soft light", MAX_LIGHT_SHARE, LIGHTS_STORED);
+        compare_with(&run, &casters, (&actual, &expected), told);
+        let sharp = visibility_map(&casters, &run.region, actual.size());
+        let apart = actual.texels().iter().zip(sharp.texels());
+        let apart = Errors::between(apart.map(|(a, b)| (*a, *b)));
+        assert!(apart.max() > 0.2, "it is no sharp one: {}", apart.max());
     }
 }

@@ -67,6 +67,15 @@ impl Device {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
+    /// Multiples of 1/256 in four channels of halves, to be filtered.
+    pub(crate) fn filterable_colors(&self, numbers: &Raster<[u8; 4]>) -> wgpu::TextureView {
+        let numbers_of_all = numbers.texels().as_flattened().iter();
+        let halves: Vec<u16> = numbers_of_all.map(|number| half(*number)).collect();
+        let bytes = bytemuck::cast_slice(&halves);
+        let texture = self.texture(numbers.size(), 1, wgpu::TextureFormat::Rgba16Float, bytes);
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
     /// Whole numbers in two channels.
     pub(crate) fn labels(&self, labels: &Raster<[u8; 2]>) -> wgpu::TextureView {
         let bytes = labels.texels().as_flattened();

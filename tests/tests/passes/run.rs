@@ -6,6 +6,7 @@ use app_core::core::CoreError;
 use app_core::frame::{FrameInput, Warning};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene};
+use app_core::sharpness::Sharpness;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::plan::Plan;
@@ -86,8 +87,18 @@ impl Run {
         [plate, frame]: [Arc<Image>; 2],
         decoded: &[f64],
     ) -> Result<Self, CoreError> {
+        Self::of(preset, (stand, Sharpness::SHARP), [plate, frame], decoded)
+    }
+
+    /// The same of a picture that is taken to be soft.
+    pub(crate) fn of(
+        preset: Preset,
+        (stand, sharpness): (Stand, Sharpness),
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
         let mut core = core_on(scene(&stand, &plate), preset)?;
-        let report = core.frame(&input(&stand, &frame))?;
+        let report = core.frame(&input(&stand, &frame).with_sharpness(sharpness))?;
         let expected = match stand.setup.lights {
             [] => vec![Warning::NoLight { has_ambient: true }],
             _ => Vec::new(),

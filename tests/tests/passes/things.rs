@@ -7,7 +7,7 @@ use reference::things::{BEFORE_TOY, THING, Things, WRONG_PLATE, mark};
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::{Errors, pairs_of};
-use crate::numbers::{number, numbers};
+use crate::numbers::numbers;
 use crate::scrambled::{buffers, views};
 
 /// Blocks of each code, in a picture that is not the region's.
@@ -15,7 +15,7 @@ fn things() -> Things {
     let codes = [0, THING, 0, BEFORE_TOY, WRONG_PLATE];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
-            codes[(5.0 * number(at / 6, 9)) as usize % 5]
+            codes[at.element_sum() as usize / 6 * 7 % 5]
         }),
         // Not exact in binary, so that no place lies on the border of two pixels; behind its camera to one side.
         codes_px_from_region_px: DMat3::from_cols(

@@ -30,15 +30,24 @@ fn errors(source: &str) -> Errors {
     let device = Device::shared();
     let depth = Raster::from_fn(SIZE, depth);
     let map = device.depth(&depth);
-    let own: Bindings<'_> = vec![(0, wgpu::BindingResource::TextureView(&map))];
-    let draw = Draw::of(source, "fs_mark", SIZE);
-    let actual = device.draw(draw, [&[], &own]);
-    let expected = Raster::from_fn(SIZE, |texel| mark(&depth, texel));
-    let both = actual.texels().iter().zip(expected.texels());
-    Errors::between(both.flat_map(|(actual, marks)| {
-        let marks = [marks.is_clear, marks.is_one_surface, marks.is_well_clear];
-        (0..3).map(move |k| (actual[k], f64::from(u8::from(marks[k]))))
-    }))
+    // Of a sharp picture, and of a soft one.
+    let pairs = [0, 3].map(|soft_px: i32| {
+        let uniform = device.uniform(&soft_px);
+        let own: Bindings<'_> = vec![
+            (0, wgpu::BindingResource::TextureView(&map)),
+            (1, uniform.as_entire_binding()),
+        ];
+        let draw = Draw::of(source, "fs_mark", SIZE);
+        let actual = device.draw(draw, [&[], &own]);
+        let expected = Raster::from_fn(SIZE, |texel| mark(&depth, soft_px, texel));
+        let both = actual.texels().iter().zip(expected.texels());
+        let pairs = both.flat_map(|(actual, marks)| {
+            let marks = [marks.is_clear, marks.is_one_surface, marks.is_well_clear];
+            (0..3).map(move |k| (actual[k], f64::from(u8::from(marks[k]))))
+        });
+        pairs.collect::<Vec<_>>()
+    });
+    Errors::between(pairs.concat())
 }
 
 #[test]
@@ -50,6 +59,7 @@ fn what_pixels_show() {
 fn a_fault_in_the_marks_is_found() {
     let faults = [
         ("EDGE_PX: i32 = 2", "EDGE_PX: i32 = 1"),
+        ("EDGE_PX + soft_px", "EDGE_PX - soft_px"),
         ("BLEED_PX: i32 = 8", "BLEED_PX: i32 = 6"),
         ("BLEED_STEP_PX: i32 = 2", "BLEED_STEP_PX: i32 = 1"),
         ("% (2 * BLEED_STEP_PX)", "% BLEED_STEP_PX"),

@@ -153,6 +153,13 @@ impl Search<'_> {
         best.or_else(|| is_likely(&on_plane).then_some(on_plane))
     }
 
+    /// What the camera spreads the outline by.
+    pub(super) fn spread_px(&mut self, paint: &Paint, placement: &Placement) -> f64 {
+        let light = self.light(paint, placement);
+        let lit = light.as_ref().map(|light| Lit { paint, light });
+        self.optics(placement, lit).spread_px
+    }
+
     pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
         let posed = self.posed(placement, None);
         paint.light(placement, self.pyramid.level(0), &posed.coverage)

@@ -192,6 +192,22 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
     Some((motion.matrix(), fit.outline_px()))
 }
 
+/// Standard deviation of the spread that the camera gives the outline of a toy in its place, in pixels of the largest level; none where too
+/// little of the outline is seen.
+pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid) -> Option<f64> {
+    let shape = subject.shape;
+    let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
+    let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
+    search.fit(&placement)?;
+    Some(search.spread_px(subject.paint, &placement))
+}
+
+/// What a shape covers of a level.
+pub(super) fn covered(shape: &Shape, level: &Level) -> Coverage {
+    let corners = project(shape.points.iter().copied(), &level.intrinsics);
+    Rasterizer::default().with_depth(&corners, &shape.faces, level.frame.size_px)
+}
+
 /// Places on the outline of a shape's triangles with their corners at `points`, in pixels of a picture.
 pub(super) fn outline_px(
     raster: &mut Rasterizer,

@@ -14,7 +14,7 @@ use app_scene::geometry::edges::Edge;
 /// Pixels along each side of a tile.
 const TILE_PX: u32 = 4;
 /// Distance that positions within a pixel are from its centre, and some for the rounding of 32 bits.
-const AROUND_PX: f32 = 0.55;
+pub const AROUND_PX: f32 = 0.55;
 
 /// Points that look at a shape: of a light, or the camera. All are points, or all are directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +71,11 @@ impl Viewers {
 pub trait Projection {
     /// Of a point in anchor space; none where that has no bounds.
     fn land(&self, in_anchor: Vec3) -> Option<Landing>;
+
+    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    fn around_px(&self) -> f32 {
+        AROUND_PX
+    }
 }
 
 /// Where a point is seen, from one point or from many.
@@ -95,6 +100,8 @@ pub struct ByCamera {
     pub origin_px: Vec2,
     /// Inverse depths of the receivers' planes at a pixel of the region (u, v, 1).
     pub inverse_depths: Vec<Vec3>,
+    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    pub around_px: f32,
 }
 
 /// Half of the share of its depth by which a point may lie behind a receiver and still be before it, as the shaders have it.
@@ -117,6 +124,10 @@ impl Projection for ByCamera {
             may_be_cut: self.inverse_depths.iter().any(is_behind),
         })
     }
+
+    fn around_px(&self) -> f32 {
+        self.around_px
+    }
 }
 
 /// From the points of a light, as shadows on a receiver.
@@ -132,6 +143,8 @@ pub struct OntoReceiver {
     pub region_size_px: Vec2,
     /// Depth in metres nearer than which a shadow is cut off.
     pub near_m: f32,
+    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    pub around_px: f32,
 }
 
 /// Height up to which a shadow may be cut off where its caster meets the receiver, in metres.
@@ -165,6 +178,10 @@ impl Projection for OntoReceiver {
             within_px: Vec2::new(moved(x, at.x), moved(y, at.y)) * half,
             may_be_cut: height < NEAR_RECEIVER_M,
         })
+    }
+
+    fn around_px(&self) -> f32 {
+        self.around_px
     }
 }
 
@@ -207,20 +224,21 @@ pub fn find_silhouette(
         .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
         .collect();
     let mut tiles = Tiles::over(size_px, TILE_PX);
+    let around_px = projection.around_px();
     for edge in shape.edges {
         if edge
             .beside
             .is_none_or(|[one, other]| may_part(&sides, one, other))
         {
             let [from, to] = edge.ends.map(land);
-            let reach_px = from.within_px.max(to.within_px) + AROUND_PX;
+            let reach_px = from.within_px.max(to.within_px) + around_px;
             tiles.mark_segment([from.at_px, to.at_px], reach_px);
         }
     }
     for corners in triangles {
         let landings = corners.map(land);
         if landings.iter().any(|landing| landing.may_be_cut) {
-            tiles.mark_box(around(landings, AROUND_PX));
+            tiles.mark_box(around(landings, around_px));
         }
     }
     let counted = tiles.counted();
@@ -228,7 +246,7 @@ pub fn find_silhouette(
         .as_chunks::<3>()
         .0
         .iter()
-        .filter(|corners| counted.meets(around(corners.map(land), AROUND_PX)))
+        .filter(|corners| counted.meets(around(corners.map(land), around_px)))
         .flatten()
         .copied()
         .collect();

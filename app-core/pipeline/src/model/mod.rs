@@ -29,6 +29,7 @@ use crate::plan::{Change, FrameDelta};
 use crate::readback::FloatMap;
 use crate::readback::inject::InjectedVisibility;
 use app_scene::geometry::bounds::Sphere;
+use app_scene::sharpness::Sharpness;
 
 /// The additive model of one scene.
 pub(crate) struct Model {
@@ -133,6 +134,11 @@ impl Model {
         self.state.tints.surround(gpu, toy);
     }
 
+    /// Takes the picture as so soft from now on.
+    pub(crate) fn soften(&mut self, gpu: &Gpu, sharpness: Sharpness) {
+        self.region.soften(gpu, sharpness);
+    }
+
     /// The region's picture.
     pub(crate) fn picture(&self) -> Picture<'_> {
         self.drawn.by_pass.composite.picture()
@@ -146,7 +152,7 @@ impl Model {
         let marks = |pose, maps| Marks::of(&self.region, &self.lighting, toy, pose, maps);
         let known = self.drawn.physical_marks.take();
         let physical = known
-            .filter(|_| delta.change < Change::View)
+            .filter(|_| delta.keeps_physical())
             .unwrap_or_else(|| marks(&toy.physical, &self.captured.light));
         let shown = marks(&toy.shown, &self.drawn.light);
         let (plan, uniform) = (&self.region.plan, &self.region.uniform);
@@ -175,7 +181,7 @@ impl Model {
             pictures,
         };
         recorder.group = capture_path(delta.change);
-        capture.encode(recorder, delta.change);
+        capture.encode(recorder, delta);
         let frame = FramePath {
             region: &self.region,
             captured: &self.captured,

@@ -10,6 +10,7 @@ use crate::passes::toy_mesh::CasterLod;
 use crate::plan::{SceneFacts, SkippedWork};
 use crate::preset::ModelSettings;
 use app_scene::scene::MAX_LIGHTS;
+use app_scene::sharpness::Sharpness;
 
 /// Steps of the reweighted least squares; each more moved no direct fraction by 1e-3 on the sessions they were chosen
 /// on.
@@ -110,6 +111,10 @@ pub struct Plan {
     pub self_shadow: ShadowAtlas,
     /// What casts shadows.
     pub casters: Casters,
+    /// How soft the picture is, as far as that is seen.
+    pub sharpness: Sharpness,
+    /// Whether there is what makes the plate and the toy's colours as soft as the picture.
+    pub is_softened: bool,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -150,6 +155,8 @@ impl Plan {
             has_things: facts.has_things,
             self_shadow: self_shadow(n_lights, settings),
             casters: Casters::new(facts, settings),
+            sharpness: facts.sharpness,
+            is_softened: facts.is_softened,
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,

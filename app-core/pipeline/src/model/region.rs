@@ -5,6 +5,7 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::model::plan::Plan;
 use crate::passes::globals::{Globals, GlobalsOnDevice};
+use app_scene::sharpness::Sharpness;
 
 pub(crate) struct Region {
     pub(crate) plan: Plan,
@@ -15,18 +16,26 @@ pub(crate) struct Region {
 
 impl Region {
     pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals) -> Self {
+        let uniform = globals.with_spread(plan.sharpness.outline_spread);
         Self {
+            globals: gpu.uniform("globals", &uniform),
+            uniform,
             plan,
-            uniform: *globals,
-            globals: gpu.uniform("globals", globals),
         }
     }
 
     /// Moves on to another view.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
+        self.uniform = globals.with_spread(plan.sharpness.outline_spread);
         self.plan = plan;
-        self.uniform = *globals;
-        gpu.write(&self.globals, &[*globals]);
+        gpu.write(&self.globals, &[self.uniform]);
+    }
+
+    /// Takes the picture as so soft.
+    pub(crate) fn soften(&mut self, gpu: &Gpu, sharpness: Sharpness) {
+        self.plan.sharpness = sharpness;
+        self.uniform = self.uniform.with_spread(sharpness.outline_spread);
+        gpu.write(&self.globals, &[self.uniform]);
     }
 
     /// The globals, here and there.

@@ -6,11 +6,12 @@ use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::seen::Caster;
-use crate::geometry::silhouette::{ByCamera, OntoReceiver, Viewers};
+use crate::geometry::silhouette::{AROUND_PX, ByCamera, OntoReceiver, Viewers};
 use crate::geometry::view::View;
 use crate::gpu::{Buffer, Mat3Columns, Mirrors, Slot, mirrors, shared_struct};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
+use app_scene::sharpness::Spread;
 
 /// WGSL part of the globals.
 pub(crate) const GLOBALS: Mirrors = mirrors!(
@@ -49,10 +50,11 @@ shared_struct! {
         pub toy_box_size_px: [f32; 2],
         pub physical_box_origin_px: [f32; 2],
         pub physical_box_size_px: [f32; 2],
+        pub spread: [f32; 4],
         pub n_receivers: u32,
         pub seen_from_behind: u32,
         pub near_m: f32,
-        pub _pad_1: u32,
+        pub soft_side: f32,
     }
 }
 
@@ -71,10 +73,21 @@ impl Globals {
             clip_from_anchor: Mat4::from_cols_array_2d(&self.clip_from_anchor),
             region_size_px: self.region_size_px.into(),
             origin_px: self.toy_box_origin_px.into(),
+            around_px: self.around_px(),
             inverse_depths: receivers
                 .map(|receiver| Vec3::from(receiver.plane_from_region_px.map(|[_, _, w, _]| w)))
                 .collect(),
         }
+    }
+
+    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    fn around_px(&self) -> f32 {
+        AROUND_PX.max(self.soft_reach_px())
+    }
+
+    /// Farthest that a picture which is softer than pixels are spreads what it shows; 0 of a sharp one.
+    pub(crate) fn soft_reach_px(&self) -> f32 {
+        self.spread[3]
     }
 
     /// How many of a light's points, from the first on, see all of a toy's shadow on a receiver land before the camera; the points
@@ -104,6 +117,7 @@ impl Globals {
             clip_from_plane: Mat3::from_cols_array_2d(&columns),
             region_size_px: self.region_size_px.into(),
             near_m: self.near_m,
+            around_px: self.around_px(),
         })
     }
 }
@@ -147,10 +161,11 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         toy_box_size_px: rect.size_px.as_vec2().to_array(),
         physical_box_origin_px: [0.0; 2],
         physical_box_size_px: rect.size_px.as_vec2().to_array(),
+        spread: [0.0; 4],
         n_receivers: count(layout.receivers.len(), MAX_RECEIVERS),
         seen_from_behind: seen_from_behind(view, layout.receivers),
         near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
-        _pad_1: 0,
+        soft_side: 0.0,
     }
 }
 
@@ -166,6 +181,37 @@ impl Globals {
             ..self
         }
     }
+
+    /// The same of a picture that spreads a point so; as sharp as pixels are where it does not.
+    #[must_use]
+    pub fn with_spread(self, spread: Spread) -> Self {
+        // A mean over three has twice the variance of one side's weight.
+        let side = 0.25 * spread.variances_px2()[1].clamp(0.0, 1.0);
+        Self {
+            spread: spread_factor(spread, 2.0 * side),
+            soft_side: narrowed(side),
+            ..self
+        }
+    }
+}
+
+/// Variance of a place within a pixel, along each axis.
+const PIXEL_PX2: f64 = 1.0 / 12.0;
+/// Deviations that the outermost of 64 positions lies from the middle, and a little for rounding.
+const OUTERMOST: f64 = 2.44;
+
+/// The root of a spread's covariance, with the pixel's own and without a variance that means over texels give, and how far it reaches.
+fn spread_factor(spread: Spread, of_means_px2: f64) -> [f32; 4] {
+    if spread == Spread::NONE {
+        return [0.0; 4];
+    }
+    // Source: Cholesky's factor of 2 x 2.
+    let own_px2 = PIXEL_PX2 - of_means_px2;
+    let across = (spread.xx_px2 + own_px2).sqrt();
+    let sheared = spread.xy_px2 / across;
+    let down = (spread.yy_px2 + own_px2 - sheared * sheared).max(0.0).sqrt();
+    let reach_px = OUTERMOST * across.max(sheared.abs() + down) + if of_means_px2 > 0.0 { 1.0 } else { 0.0 };
+    [across, sheared, down, reach_px].map(narrowed)
 }
 
 fn receiver_plane(

@@ -6,6 +6,7 @@
 use serde::Serialize;
 
 use crate::geometry::rect::PixelRect;
+use app_scene::sharpness::Sharpness;
 
 /// Facts of a scene that decide its plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,10 @@ pub struct SceneFacts {
     pub are_plates_scaled: bool,
     /// Whether things stand in the picture beside the toy, or a part of the plate is wrong.
     pub has_things: bool,
+    /// How soft the picture is, as far as that is seen.
+    pub sharpness: Sharpness,
+    /// Whether this picture, or one before it, is softer than what is laid into it.
+    pub is_softened: bool,
 }
 
 /// Factor up to which a penumbra's width may change before it counts as another.
@@ -95,12 +100,19 @@ pub(crate) struct FrameDelta {
     pub(crate) change: Change,
     /// Whether another pose is shown than in the frame before.
     pub(crate) is_pose_new: bool,
+    /// Whether the picture is as soft as the one before.
+    pub(crate) keeps_sharpness: bool,
 }
 
 impl FrameDelta {
     /// Whether what is drawn of the shown pose alone, such as its shadows, can stay.
     pub(crate) fn keeps_pose(self) -> bool {
-        !self.is_pose_new && self.change < Change::View
+        !self.is_pose_new && self.keeps_physical()
+    }
+
+    /// Whether what is drawn of the physical pose can stay.
+    pub(crate) fn keeps_physical(self) -> bool {
+        self.keeps_sharpness && self.change < Change::View
     }
 
     /// Whether the picture can stay, too.

@@ -115,6 +115,7 @@ impl Stage {
         let delta = FrameDelta {
             change: Change::View,
             is_pose_new: true,
+            keeps_sharpness: false,
         };
         model.update_coverage_tiles(&self.toy, delta);
         model.encode(&mut recorder, &self.toy, &pictures, delta);

@@ -6,6 +6,7 @@ mod footprint;
 pub(crate) mod method;
 mod placement;
 mod reuse;
+mod soft;
 mod supported;
 
 use std::sync::{Arc, OnceLock};
@@ -36,6 +37,7 @@ use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Camera, Image, Scene};
+use app_scene::sharpness::Sharpness;
 use app_scene::things::Things as GivenThings;
 use app_scene::toy;
 use app_scene::toy::{PosedMesh, Toy, ToyError};
@@ -88,6 +90,8 @@ pub(crate) struct Stage {
     state: Option<MethodState>,
     /// What the clips shown so far reach of each receiver.
     reached_rects: Vec<PlaneRect>,
+    /// How soft the latest picture is taken to be.
+    sharpness: Sharpness,
     /// How much of the region's picture the latest frame shows; none where the camera image passes through.
     effect: Option<f64>,
     /// The picture as a texture, once one was asked for.
@@ -169,6 +173,7 @@ impl Stage {
             present: present::Pass::new(gpu),
             state: None,
             reached_rects: Vec::new(),
+            sharpness: Sharpness::SHARP,
             lights_inside: None,
             lights: Lights::new(&scene.lights, &receivers.anchored),
             receivers: receivers.anchored,
@@ -374,7 +379,7 @@ impl Stage {
         }
         recorder.stages.begin("reuse");
         self.take_things(gpu, input);
-        let change = self.update_method(gpu, input, footprint);
+        let (change, keeps_sharpness) = self.update_method(gpu, input, footprint);
         report.warnings.extend(self.cost_warning.clone());
         recorder.stages.begin("encode");
         let Some(state) = &mut self.state else {
@@ -388,7 +393,11 @@ impl Stage {
             state.exposure = input.exposure;
             state.image = Some(input.image.clone());
         }
-        let delta = FrameDelta { change, is_pose_new };
+        let delta = FrameDelta {
+            change,
+            is_pose_new,
+            keeps_sharpness,
+        };
         state.method.update_coverage_tiles(&self.toy, delta);
         let Some(MethodState { method, .. }) = &self.state else {
             return;

@@ -7,6 +7,7 @@ use glam::{UVec2, Vec4};
 
 use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
 use super::method::Method;
+use super::soft;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
@@ -51,11 +52,36 @@ enum Reuse {
 }
 
 impl Stage {
-    /// Makes the method's state fit the frame; returns how much of it is to be learned anew.
-    pub(super) fn update_method(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) -> Change {
+    /// Makes the method's state fit the frame; returns how much of it is to be learned anew, and whether the picture is as soft as
+    /// the one before.
+    pub(super) fn update_method(
+        &mut self,
+        gpu: &Gpu,
+        input: &FrameInput,
+        footprint: &Footprint,
+    ) -> (Change, bool) {
+        let sharpness = soft::taken(input.sharpness, self.sharpness);
+        let keeps_sharpness = sharpness == self.sharpness;
+        self.sharpness = sharpness;
+        let change = self.update_for(gpu, input, footprint, keeps_sharpness);
+        (change, keeps_sharpness)
+    }
+
+    fn update_for(
+        &mut self,
+        gpu: &Gpu,
+        input: &FrameInput,
+        footprint: &Footprint,
+        keeps_sharpness: bool,
+    ) -> Change {
         self.plates.load(gpu, &self.scene, &footprint.choice.indices);
         self.reached_rects = united(&self.reached_rects, &footprint.plane_rects);
-        match self.reusable(input, footprint) {
+        let reuse = self.reusable(input, footprint);
+        match if keeps_sharpness {
+            reuse
+        } else {
+            self.softened(gpu, reuse)
+        } {
             Reuse::Nothing => {
                 self.start(gpu, input, footprint);
                 Change::Scene
@@ -71,6 +97,26 @@ impl Stage {
             }
             Reuse::View => Change::Picture,
             Reuse::Picture => Change::Pose,
+        }
+    }
+
+    /// What is left to reuse in a picture that is softer or sharper than the one before.
+    fn softened(&mut self, gpu: &Gpu, reuse: Reuse) -> Reuse {
+        let Some(Method::Model(model)) = self.state.as_mut().map(|state| &mut state.method) else {
+            return reuse;
+        };
+        match reuse {
+            Reuse::View | Reuse::Picture | Reuse::Region if !model.region.plan.is_softened => {
+                // There are no targets yet for what depends on it.
+                return Reuse::SceneState;
+            }
+            Reuse::Nothing | Reuse::Targets | Reuse::SceneState => return reuse,
+            Reuse::View | Reuse::Picture | Reuse::Region => {}
+        }
+        model.soften(gpu, self.sharpness);
+        match reuse {
+            Reuse::Region => Reuse::Region,
+            _ => Reuse::View,
         }
     }
 
@@ -251,6 +297,8 @@ impl Stage {
                 && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
             has_things: self.things.is_some(),
             are_plates_scaled: footprint.plate_views.are_scaled(),
+            sharpness: self.sharpness,
+            is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),
         }
     }
 

@@ -6,6 +6,7 @@ use app_core::Core;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Light, Pose, Scene};
+use app_core::sharpness::{Sharpness, Spread};
 use app_core::toy::NodePose;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::Map;
@@ -239,6 +240,62 @@ fn a_focal_length_that_toggles_is_another_view_of_the_same_scene() {
     zoomed.camera.intrinsics.fx_px += 1e-3;
     assert_eq!(learned(&mut core, &zoomed), Learned::Nothing);
     assert_eq!(learned(&mut core, &first), Learned::View);
+}
+
+fn as_soft_as(input: &FrameInput, deviation_px: f64) -> FrameInput {
+    input.clone().with_sharpness(Sharpness {
+        plate_spread: Spread::round(deviation_px),
+        outline_spread: Spread::round(deviation_px),
+    })
+}
+
+/// As sharp as pixels are, however little is measured.
+#[test]
+fn a_softness_that_is_not_seen_changes_nothing() {
+    let mut core = core();
+    let first = first_input();
+    let sharp = fresh_picture(&mut core, scene(), &first);
+    assert!(fresh_picture(&mut core, scene(), &as_soft_as(&first, 0.29)) == sharp);
+    assert!(fresh_picture(&mut core, scene(), &as_soft_as(&first, 1.0)) != sharp);
+    for preset in [Preset::Paper, Preset::Flat] {
+        let mut published = |input: &FrameInput| {
+            core.set_scene(scene(), preset).unwrap();
+            picture_of(&mut core, input)
+        };
+        assert!(
+            published(&first) == published(&as_soft_as(&first, 2.0)),
+            "{preset}"
+        );
+    }
+}
+
+#[test]
+fn a_focus_that_breathes_is_no_new_scene() {
+    let maps = |core: &Core| {
+        let maps = [
+            Map::Plate,
+            Map::Validity,
+            Map::PhysicalVisibility,
+            Map::Visibility,
+            Map::Coverage,
+        ];
+        maps.map(|map| core.read_map(map).unwrap().unwrap())
+    };
+    let mut core = core();
+    let first = first_frame(&mut core);
+    let of_softness = [1.4, 2.6, 0.0, 2.0].map(|deviation_px| {
+        let input = as_soft_as(&first, deviation_px);
+        fresh_picture(&mut core, scene(), &input);
+        (input, maps(&core))
+    });
+    first_frame(&mut core);
+    // What depends on it has no targets yet.
+    assert_eq!(learned(&mut core, &as_soft_as(&first, 2.0)), Learned::View);
+    assert_eq!(learned(&mut core, &as_soft_as(&first, 2.05)), Learned::Nothing);
+    for (input, fresh) in &of_softness {
+        assert_eq!(learned(&mut core, input), Learned::Picture);
+        assert!(maps(&core) == *fresh, "{:?}", input.sharpness);
+    }
 }
 
 #[test]

@@ -1,15 +1,18 @@
 //! Budgets of frames, held on the ledger: it has no noise and needs no device.
 
 use app_core::Core;
+use app_core::camera_frame::Display;
 use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
+use app_core::ledger::Ledger;
 use app_core::preset::Preset;
 use app_core::scene::{Light, Scene};
+use app_core::sharpness::{Sharpness, Spread};
 use app_core::toy::Toy;
 use app_pipeline::core::inspect::Inspect;
 use glam::DVec3;
 use measure::ball::{SCREEN_PX, ball, lifted, phone};
-use measure::bench::FRAME_KINDS;
+use measure::bench::{FRAME_KINDS, FrameKind, with_new};
 use measure::count::{Counted, count, ledgers};
 
 /// On that screen.
@@ -90,6 +93,44 @@ fn frames_stay_within_their_budgets() {
     ];
     for (n_lights, preset, budgets, peak_mib) in budgets {
         assert_held(n_lights, preset, budgets, peak_mib);
+    }
+}
+
+/// In a picture of 2 px of defocus: a new pose and a new picture of the same softness, and one whose focus has moved on.
+#[test]
+fn soft_pictures_stay_within_their_budgets() {
+    const COPIES: [f64; 2] = [1.56, 2.0];
+    const OF_FOCUS: f64 = 2.3;
+    const PEAK_MIB: f64 = 44.0;
+    let (scene, input) = scene_of(ball(100, 51), 1);
+    let as_soft_as = |input: &FrameInput, deviation_px: f64| {
+        input.clone().with_sharpness(Sharpness {
+            plate_spread: Spread::round(deviation_px),
+            outline_spread: Spread::round(deviation_px),
+        })
+    };
+    let counted = count(&scene, (Preset::Balanced, &[]), &as_soft_as(&input, 2.0)).unwrap();
+    for (counted, most) in counted.iter().zip(COPIES) {
+        let copies = counted.ledger.copies_moved();
+        let what = ledgers(std::slice::from_ref(counted));
+        assert!(copies <= most, "{copies:.3} copies\n{what}");
+        assert!(counted.peak_mib() <= PEAK_MIB, "{}", counted.peak_mib());
+    }
+    let mut core = Core::counting();
+    let screen_px = [scene.width_px, scene.height_px];
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    core.draw_every_pose().unwrap();
+    for deviation_px in [2.0, 2.3, 1.5] {
+        let picture = with_new(&input, FrameKind::Picture);
+        let report = core.frame(&as_soft_as(&picture, deviation_px)).unwrap();
+        let present = core.count_present(screen_px, Display::default());
+        let ledger = Ledger::new(&report, screen_px, present);
+        let copies = ledger.copies_moved();
+        if deviation_px != 2.0 {
+            assert_eq!(report.change, Some(Change::Picture));
+            let rows: Vec<String> = ledger.rows().iter().map(|row| format!("{row:?}")).collect();
+            assert!(copies <= OF_FOCUS, "{copies:.3} copies\n{}", rows.join("\n"));
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //! of them as the whole shape.
 
 use app_pipeline::geometry::silhouette::{
-    ByCamera, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette,
+    AROUND_PX, ByCamera, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette,
 };
 use app_scene::geometry::edges::{Edge, edges};
 use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
@@ -142,6 +142,7 @@ fn look_by_light(name: &'static str, points: Vec<Vec4>, check: &dyn Fn(&Look<'_>
         clip_from_plane: homography(),
         region_size_px: SIZE_PX.as_vec2(),
         near_m: 0.1,
+        around_px: AROUND_PX,
     };
     let plane_from_clip: DMat3 = homography().as_dmat3().inverse();
     let seen_by = points.clone();
@@ -198,6 +199,7 @@ fn look_by_camera(check: &dyn Fn(&Look<'_>)) {
         region_size_px: SIZE_PX.as_vec2(),
         origin_px: Vec2::ZERO,
         inverse_depths: vec![DVec3::new(right - origin, below - origin, origin).as_vec3()],
+        around_px: AROUND_PX,
     };
     check(&Look {
         name: "a camera",
@@ -281,6 +283,7 @@ fn a_shadow_without_bounds_has_no_outline() {
         clip_from_plane: homography(),
         region_size_px: SIZE_PX.as_vec2(),
         near_m: 0.1,
+        around_px: AROUND_PX,
     };
     let edges = edges(mesh.1.as_chunks().0);
     let shape = Shape {
@@ -305,6 +308,7 @@ fn shadows_land_on_any_receiver() {
         clip_from_plane: homography(),
         region_size_px: SIZE_PX.as_vec2(),
         near_m: 0.1,
+        around_px: AROUND_PX,
     };
     let anchor_from_shelf = shelf_from_anchor.as_dmat4().inverse();
     let (origin, up) = (anchor_from_shelf.w_axis.xyz(), anchor_from_shelf.y_axis.xyz());

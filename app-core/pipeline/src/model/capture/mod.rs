@@ -19,10 +19,11 @@ use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;
-use crate::plan::Change;
+use crate::plan::{Change, FrameDelta};
 
 passes!(Plan:
-    gbuffer, validity, things, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, tint, tint_fill, appearance,
+    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, tint, tint_fill,
+    appearance,
 );
 
 /// Rounds in which plate and light are estimated from one another.
@@ -51,7 +52,8 @@ impl CaptureTargets {
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         let has_photographed = !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some();
         // A finer plate will do where codes would.
-        has_photographed && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
+        let has_soft = !plan.is_softened || self.by_pass.soften.sharp.is_some();
+        has_photographed && has_soft && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
     }
 }
 
@@ -79,11 +81,17 @@ pub(crate) struct CapturePath<'a> {
 }
 
 impl CapturePath<'_> {
-    /// Learns what `change` asks for: nothing of a new pose.
-    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, change: Change) {
+    /// Learns what a frame's differences ask for: nothing of a new pose.
+    pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
+        let change = delta.change;
         match change {
             Change::Pose => return,
-            Change::Picture => self.fit_intensities(recorder, false),
+            Change::Picture => {
+                if !delta.keeps_sharpness {
+                    self.sharpen(recorder);
+                }
+                self.fit_intensities(recorder, false);
+            }
             Change::View => self.learn_view(recorder),
             Change::Scene => self.learn_scene(recorder),
         }
@@ -99,6 +107,9 @@ impl CapturePath<'_> {
         if detail::is_needed(&self.region.plan) {
             passes.detail.encode(recorder, &self.detail_inputs(), &of.detail);
         }
+        if rim::is_needed(&self.region.plan) {
+            passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
+        }
         if is_view_new || !is_residual_next {
             let tints = &self.state.tints;
             passes.tint.encode(recorder, &self.tint_inputs(), tints);
@@ -108,6 +119,20 @@ impl CapturePath<'_> {
             let inputs = self.appearance_inputs();
             passes.appearance.encode(recorder, &inputs, &of.appearance);
         }
+    }
+
+    /// Draws what depends on how soft the picture is, of a known view.
+    fn sharpen(&self, recorder: &mut Recorder<'_>) {
+        let (passes, of) = (self.passes, &self.captured.by_pass);
+        passes
+            .validity
+            .encode(recorder, &self.validity_inputs(), &of.validity);
+        let maps = &self.captured.light;
+        self.lighting
+            .encode_light_visibility(recorder, self.light, self.physical(), maps);
+        self.soften(recorder);
+        self.withhold(recorder);
+        self.estimate(recorder);
     }
 
     /// Refines what is known of the scene by another view.
@@ -142,11 +167,7 @@ impl CapturePath<'_> {
     fn observe(&self, recorder: &mut Recorder<'_>) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         let (light, maps) = (self.light, &self.captured.light);
-        let posed = Posed {
-            globals: self.region.globals_on_device(),
-            toy: self.toy,
-            pose: &self.toy.physical,
-        };
+        let posed = self.physical();
         self.lighting.encode_self_shadow(recorder, light, posed, maps);
         passes
             .gbuffer
@@ -159,6 +180,14 @@ impl CapturePath<'_> {
         self.plate(recorder);
     }
 
+    fn physical(&self) -> Posed<'_> {
+        Posed {
+            globals: self.region.globals_on_device(),
+            toy: self.toy,
+            pose: &self.toy.physical,
+        }
+    }
+
     fn plate(&self, recorder: &mut Recorder<'_>) {
         let inputs = plate::Inputs {
             globals: &self.region.globals,
@@ -166,12 +195,13 @@ impl CapturePath<'_> {
             plates: self.pictures.plates,
             is_same_view: self.pictures.is_same_view,
         };
-        // The fits before `estimate` read the photographed plate, too.
-        let target = self.photographed().unwrap_or(&self.captured.plate);
+        let sharp = self.captured.by_pass.soften.sharp.as_ref();
+        let target = sharp.unwrap_or_else(|| self.read_plate());
         self.plate.encode(recorder, &inputs, target);
         if let Some(things) = self.pictures.things.filter(|things| things.is_plate_wrong()) {
             self.passes.things.forget_plate(recorder, things, &target.view);
         }
+        self.soften(recorder);
     }
 
     fn mark_things(&self, recorder: &mut Recorder<'_>) {
@@ -180,6 +210,20 @@ impl CapturePath<'_> {
             let (things_of, marks) = (&of.things, &of.validity.marks);
             self.passes.things.mark(recorder, things, things_of, marks);
         }
+    }
+
+    /// Makes the plate as soft as the picture, where there are targets for it.
+    fn soften(&self, recorder: &mut Recorder<'_>) {
+        if let Some(sharp) = &self.captured.by_pass.soften.sharp {
+            let spread = self.region.plan.sharpness.plate_spread;
+            let target = self.read_plate();
+            self.passes.soften.encode(recorder, (spread, sharp), target);
+        }
+    }
+
+    /// The plate that the first passes read: those before `estimate` read the photographed one, too.
+    fn read_plate(&self) -> &Texture {
+        self.photographed().unwrap_or(&self.captured.plate)
     }
 
     fn withhold(&self, recorder: &mut Recorder<'_>) {
@@ -293,6 +337,7 @@ impl CapturePath<'_> {
         validity::Inputs {
             plan: &self.region.plan,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
+            soft_reach_px: self.region.uniform.soft_reach_px(),
         }
     }
 
@@ -328,6 +373,18 @@ impl CapturePath<'_> {
             seen: self.seen(),
             observed: self.observed(),
             plate: &self.captured.plate.view,
+        }
+    }
+
+    fn rim_inputs(&self) -> rim::Inputs<'_> {
+        rim::Inputs {
+            plan: &self.region.plan,
+            scene: self.scene(),
+            grids: &self.state.grids,
+            cells: &self.state.residual.cells,
+            plate: &self.captured.plate.view,
+            observed: self.observed(),
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use wgpu::{Color, TextureFormat};
 
-use crate::gpu::bindings::{GROUP_PASS, Slot};
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared_to};
@@ -10,13 +10,17 @@ use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::plan::Plan;
 
-pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [BLEED_PX]);
-const SLOTS: &[Slot] = &[Slot::Depth];
+pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [EDGE_PX, BLEED_PX]);
+const SLOTS: &[Slot] = &[Slot::Depth, Slot::per_use::<i32>()];
 /// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
-/// Farthest that the toy is looked for around a pixel.
+/// Distance kept from the toy's outline in a sharp picture.
+const EDGE_PX: u32 = 2;
+/// Farthest that the toy is looked for around a pixel in one.
 const BLEED_PX: u32 = 8;
+/// Farthest in a soft picture: what lies beyond is not in the physical box.
+const MOST_PX: u32 = 10;
 /// Marks of pixels farther from it.
 pub(crate) const FAR_MARKS: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 
@@ -27,6 +31,8 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) gbuffer_depth: &'a TextureView,
+    /// Farthest that a soft picture spreads what it shows.
+    pub(crate) soft_reach_px: f32,
 }
 
 /// Of the physical box's size.
@@ -51,11 +57,14 @@ impl Pass {
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let own = recorder.bind(&self.draw, GROUP_PASS, &[inputs.gbuffer_depth.into()]);
+        #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
+        let soft_px = (inputs.soft_reach_px.ceil() as i32).min((MOST_PX - EDGE_PX) as i32);
+        let resources = [inputs.gbuffer_depth.into(), Resource::PerUse];
+        let own = recorder.bind_with(&self.draw, GROUP_PASS, &soft_px, &resources);
         let [r, g, b, a] = FAR_MARKS.map(f64::from);
         let far = Color { r, g, b, a };
         let marks = Some(cleared_to(&targets.marks.view, far));
-        let near = inputs.plan.near_physical_toy(BLEED_PX);
+        let near = inputs.plan.near_physical_toy(BLEED_PX.max(EDGE_PX + soft_px.unsigned_abs()));
         recorder.fullscreen_within(&self.draw, &[own], &[marks], near);
     }
 }

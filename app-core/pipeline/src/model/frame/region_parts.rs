@@ -41,7 +41,8 @@ impl Marks {
                 origin_px: Vec2::ZERO,
                 ..globals.uniform.by_camera()
             };
-            toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, AROUND_TOY_PX);
+            let around_px = AROUND_TOY_PX + globals.uniform.soft_reach_px();
+            toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, around_px);
         }
         if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {
             // Each pixel has its own residual, or the ambient light's change may be as large as a shadow.

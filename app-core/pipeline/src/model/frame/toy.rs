@@ -31,6 +31,7 @@ const SLOTS: &[Slot] = &[
     Slot::uniform::<TintGrid>(),
     Slot::Read,
     Slot::Texture,
+    Slot::Texture,
 ];
 /// As a draw with materials, then the physical pose.
 const STREAMS: &[Stream] = &[
@@ -78,6 +79,8 @@ pub(crate) struct Inputs<'a> {
     /// Of the shown pose, and of the physical one.
     pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
+    /// What a soft picture mixes into the toy's colours.
+    pub(crate) rim: Option<&'a TextureView>,
 }
 
 /// Of the toy box's size: one for each draw, and those that stay on the chip.
@@ -214,7 +217,7 @@ fn sides(gpu: &Gpu, format: TextureFormat, n_samples: u32) -> Sides {
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 7] {
+    fn resources(&self) -> [Resource<'a>; 8] {
         [
             Resource::PerUse,
             self.gbuffer_depth.into(),
@@ -223,6 +226,8 @@ impl<'a> Inputs<'a> {
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
             (&self.appearance.source.view).into(),
+            // A placeholder that is not read where there is none.
+            self.rim.unwrap_or(&self.appearance.base.view).into(),
         ]
     }
 }

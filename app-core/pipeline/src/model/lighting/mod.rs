@@ -12,7 +12,7 @@ use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
 use crate::passes::globals::GlobalsOnDevice;
 use crate::passes::list::passes;
-use crate::passes::toy_mesh::{PoseBuffers, Side, ToyMesh};
+use crate::passes::toy_mesh::{CasterLod, PoseBuffers, Side, ToyMesh};
 use crate::readback::FloatMap;
 use crate::readback::inject::upload;
 use app_scene::geometry::disc::ambient_directions;
@@ -136,9 +136,10 @@ impl Lighting {
                 let Some(onto) = posed.globals.uniform.onto_receiver(receiver, points) else {
                     return tiles.mark_all();
                 };
+                let around_px = AROUND_SHADOW_PX + posed.globals.uniform.soft_reach_px();
                 posed
                     .toy
-                    .mark_seen(tiles, posed.pose, self.casters.light, &onto, AROUND_SHADOW_PX);
+                    .mark_seen(tiles, posed.pose, self.casters.light, &onto, around_px);
             }
         }
     }
@@ -151,37 +152,52 @@ impl Lighting {
         posed: Posed<'_>,
         maps: &LightMaps,
     ) {
-        let inputs = |caster| occlusion::Inputs {
+        self.encode_light_visibility(recorder, passes, posed, maps);
+        let ambient = [Light {
+            points: &self.ambient,
+            side: None,
+        }];
+        let inputs = self.occlusion_inputs(posed, self.casters.ambient);
+        let (map, order) = (&maps.visibility.ambient, &self.orders.ambient);
+        passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
+    }
+
+    /// Draws the visibility of the lights, if there are any: all of it that is as sharp as the picture.
+    pub(crate) fn encode_light_visibility(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        posed: Posed<'_>,
+        maps: &LightMaps,
+    ) {
+        if self.lights.is_empty() {
+            return;
+        }
+        let lights: Vec<_> = self
+            .lights
+            .iter()
+            .enumerate()
+            .map(|(index, points)| Light {
+                points,
+                side: Some(Side::Light(index)),
+            })
+            .collect();
+        let inputs = self.occlusion_inputs(posed, self.casters.light);
+        let (map, order) = (&maps.visibility.lights, &self.orders.lights);
+        passes.occlusion.encode(recorder, &inputs, &lights, map, order);
+        if let Some(injected) = &maps.injected {
+            recorder.copy(&injected.visibility, &maps.visibility.lights);
+        }
+    }
+
+    fn occlusion_inputs<'a>(&self, posed: Posed<'a>, caster: CasterLod) -> occlusion::Inputs<'a> {
+        occlusion::Inputs {
             globals: posed.globals,
             n_receivers: self.n_receivers,
             toy: posed.toy,
             pose: posed.pose,
             caster,
-        };
-        if !self.lights.is_empty() {
-            let lights: Vec<_> = self
-                .lights
-                .iter()
-                .enumerate()
-                .map(|(index, points)| Light {
-                    points,
-                    side: Some(Side::Light(index)),
-                })
-                .collect();
-            let inputs = inputs(self.casters.light);
-            let (map, order) = (&maps.visibility.lights, &self.orders.lights);
-            passes.occlusion.encode(recorder, &inputs, &lights, map, order);
-            if let Some(injected) = &maps.injected {
-                recorder.copy(&injected.visibility, &maps.visibility.lights);
-            }
         }
-        let ambient = [Light {
-            points: &self.ambient,
-            side: None,
-        }];
-        let inputs = inputs(self.casters.ambient);
-        let (map, order) = (&maps.visibility.ambient, &self.orders.ambient);
-        passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
 
     /// Draws the toy's shadow on itself.

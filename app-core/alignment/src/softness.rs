@@ -1,0 +1,298 @@
+//! How much softer a photograph is than its plate, by the texture of what both show.
+//!
+//! A Gaussian takes from a texture the more the finer it is: where a plate that is spread by the right one has as much of it left, along each of
+//! four directions, as the photograph shows. Four directions tell a covariance, and so a motion from a lens out of focus. Shadows, things and
+//! the toy itself are left out by their ratio to the plate. Noise, which photograph and plate do not share, falls out where both have as much.
+
+use glam::{DVec2, IVec2};
+use nalgebra::{Matrix3, Vector3};
+
+use super::picture::{Level, Mask, gaussian, index_in, places};
+use super::raster::Coverage;
+use app_scene::sharpness::{Sharpness, Spread};
+
+/// Around the toy, in its own larger side, what is looked at.
+const AROUND: f64 = 0.75;
+/// And at most that many pixels along each side, which tell enough.
+const MOST_SIDE_PX: i32 = 640;
+/// Fewer pixels tell nothing.
+const LEAST_PIXELS: usize = 4000;
+/// Both are first spread by as much, in pixels, so that noise from pixel to pixel counts little.
+const SMOOTHED_PX: f64 = 1.0;
+/// Ratios are compared of pictures that are spread by as much, in pixels.
+const RATIO_PX: f64 = 3.0;
+/// Where the ratio is off its median by more, something else is seen than what the plate shows in the same light.
+const SAME_LIGHT: f32 = 0.04;
+/// Square roots of light that are too dark to divide by, and too bright to be told from clipped ones.
+const DARKEST: f32 = 0.1;
+const BRIGHTEST: f32 = 0.97;
+/// What is left out is grown by as much, in pixels: farther than derivatives of what is spread look; around the toy by more.
+const GROWN_PX: i32 = 6;
+const TOY_GROWN_PX: i32 = 12;
+/// Squared correlation of photograph and plate below which a direction shows noise, and what all that are used must have in the end.
+const LEAST_CORRELATION: f64 = 0.5;
+const CORRELATION: f64 = 0.8;
+/// Weight of a round spread against what the directions say.
+const ROUND: f64 = 0.02;
+/// A spread whose deviations differ by less, in pixels, is a round one.
+const ALIKE_PX: f64 = 0.3;
+/// Variance that one step changes at most, when it is the last one, and the most there is, in square pixels.
+const MOST_STEP_PX2: f64 = 1.5;
+const LAST_STEP_PX2: f64 = 0.02;
+const MOST_PX2: f64 = 16.0;
+const N_STEPS: usize = 10;
+/// A smaller spread of the outline, in pixels, is that of a sharp lens: compression and the like make as much of it.
+const LEAST_OUTLINE_PX: f64 = 0.7;
+
+/// Directions in which derivatives are taken.
+const DIRECTIONS: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
+
+/// How soft a photograph is, by its texture against the plate's and by the spread of its outline, in pixels of the level; the outline's is none
+/// where it was not seen.
+pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline_px: Option<f64>) -> Sharpness {
+    let plate_spread = over_plate(level, coverage).unwrap_or(Spread::NONE);
+    // A photograph's own spread is that of its plate and what it has over that: no less than the latter.
+    let of_outline = outline_px.filter(|px| *px >= LEAST_OUTLINE_PX).unwrap_or(0.0);
+    let over_plate_px2 = 0.5 * (plate_spread.xx_px2 + plate_spread.yy_px2);
+    let of_plate_px2 = (of_outline * of_outline - over_plate_px2).max(0.0);
+    Sharpness {
+        plate_spread,
+        outline_spread: plate_spread.and(Spread::round(of_plate_px2.sqrt())),
+    }
+}
+
+/// What makes the plate as soft as the photograph; none where nothing tells, or where it is as soft already.
+fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
+    let (frame, plate, unlike) = textures(level, coverage)?;
+    let is_used: Vec<bool> = places(frame.size_px).map(|at| !unlike.has(at)).collect();
+    if is_used.iter().filter(|is_used| **is_used).count() < LEAST_PIXELS {
+        return None;
+    }
+    let frame = frame.spread(Spread::round(SMOOTHED_PX));
+    let plate = plate.spread(Spread::round(SMOOTHED_PX));
+    let mut spread = Spread::NONE;
+    for _ in 0..N_STEPS {
+        let told = told(&frame, &plate.spread(spread), &is_used);
+        let step_px2 = step(&told, spread)?;
+        let most_px2 = step_px2.amax();
+        let step_px2 = step_px2 * (MOST_STEP_PX2 / most_px2.max(MOST_STEP_PX2));
+        spread = steadied(spread.and(Spread {
+            xx_px2: step_px2.x,
+            xy_px2: step_px2.y,
+            yy_px2: step_px2.z,
+        }));
+        if most_px2 < LAST_STEP_PX2 {
+            break;
+        }
+    }
+    let told = told(&frame, &plate.spread(spread), &is_used);
+    let is_met = told
+        .iter()
+        .all(|one| one.correlation < LEAST_CORRELATION || one.correlation >= CORRELATION);
+    is_met.then_some(spread)
+}
+
+/// What one direction says.
+struct Told {
+    /// Logarithm of the photograph's energy over the plate's.
+    excess: f64,
+    /// How fast that of the plate falls with each of (xx, xy, yy).
+    falls: Vector3<f64>,
+    /// Squared.
+    correlation: f64,
+}
+
+fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()] {
+    DIRECTIONS.map(|direction| {
+        let (frame, plate) = (frame.difference(direction), plate.difference(direction));
+        let [across, down] = [IVec2::X, IVec2::Y].map(|axis| plate.difference(axis));
+        let mut sums = [0.0; 6];
+        let used = is_used.iter().enumerate().filter(|(_, is_used)| **is_used);
+        for (index, _) in used {
+            let at = |grey: &Grey| f64::from(grey.values[index]);
+            // Differences are over two pixels.
+            let (f, b, x, y) = (at(&frame), at(&plate), 0.5 * at(&across), 0.5 * at(&down));
+            let terms = [f * f, b * b, f * b, x * x, x * y, y * y];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        }
+        let [ff, bb, fb, xx, xy, yy] = sums;
+        // A picture without any texture has no energy: it says nothing.
+        let (frame_energy, plate_energy) = (ff.max(f64::MIN_POSITIVE), bb.max(f64::MIN_POSITIVE));
+        Told {
+            excess: (frame_energy / plate_energy).ln(),
+            falls: Vector3::new(xx, 2.0 * xy, yy) / plate_energy,
+            correlation: (fb / frame_energy) * (fb / plate_energy),
+        }
+    })
+}
+
+/// Change of (xx, xy, yy) that brings the plate's energies to the photograph's; none where no direction says anything.
+fn step(told: &[Told], spread: Spread) -> Option<Vector3<f64>> {
+    let is_heard = |one: &&Told| one.correlation >= LEAST_CORRELATION;
+    told.iter().find(is_heard)?;
+    let mut normal = Matrix3::identity() * f64::EPSILON;
+    let mut right = Vector3::zeros();
+    let mut add = |row: Vector3<f64>, value: f64| {
+        normal += row * row.transpose();
+        right += row * value;
+    };
+    for one in told.iter().filter(is_heard) {
+        add(one.falls, -one.excess);
+    }
+    add(
+        Vector3::new(ROUND, 0.0, -ROUND),
+        ROUND * (spread.yy_px2 - spread.xx_px2),
+    );
+    add(Vector3::new(0.0, 2.0 * ROUND, 0.0), -2.0 * ROUND * spread.xy_px2);
+    let step = normal.cholesky()?.solve(&right);
+    step.iter().all(|value| value.is_finite()).then_some(step)
+}
+
+/// A covariance that can be: none below nothing, and a round one where it nearly is.
+fn steadied(spread: Spread) -> Spread {
+    let [wide, narrow] = spread
+        .variances_px2()
+        .map(|variance| variance.clamp(0.0, MOST_PX2));
+    if wide.sqrt() - narrow.sqrt() < ALIKE_PX {
+        return Spread::round((0.5 * (wide + narrow)).sqrt());
+    }
+    let along = spread.axes_px()[0].normalize_or(DVec2::X);
+    let (xx, xy, yy) = (along.x * along.x, along.x * along.y, along.y * along.y);
+    Spread {
+        xx_px2: wide * xx + narrow * yy,
+        xy_px2: (wide - narrow) * xy,
+        yy_px2: wide * yy + narrow * xx,
+    }
+}
+
+/// Square roots of light around the toy, of the photograph at the plate's exposure and of the plate; and marks where they show something else.
+fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
+    let plate = level.plate.as_ref()?;
+    let (origin_px, size_px) = window(coverage, level.frame.size_px)?;
+    let read = |picture: &super::picture::Picture| {
+        let roots = places(size_px).map(|at| {
+            let color = picture.get(origin_px + at)?;
+            Some((color.iter().sum::<f32>() / 3.0).max(0.0).sqrt())
+        });
+        roots.collect::<Vec<Option<f32>>>()
+    };
+    let (frame, plate) = (read(&level.frame), read(plate));
+    let mut unlike = Mask::new(size_px);
+    let mut toy = Mask::new(size_px);
+    for (index, at) in places(size_px).enumerate() {
+        let is_told = |value: Option<f32>| value.is_some_and(|value| (DARKEST..=BRIGHTEST).contains(&value));
+        if !is_told(frame[index]) || !is_told(plate[index]) || is_at_border(at, size_px) {
+            unlike.mark(at);
+        }
+        if coverage.at(origin_px + at) > 0.0 {
+            toy.mark(at);
+        }
+    }
+    let grey = |values: Vec<Option<f32>>| Grey {
+        size_px,
+        values: values.into_iter().map(|value| value.unwrap_or(0.0)).collect(),
+    };
+    let (mut frame, plate) = (grey(frame), grey(plate));
+    let [of_frame, of_plate] = [&frame, &plate].map(|grey| grey.spread(Spread::round(RATIO_PX)));
+    let ratios = of_frame.values.iter().zip(&of_plate.values);
+    let ratios: Vec<f32> = ratios.map(|(f, b)| f / b.max(DARKEST)).collect();
+    let told = places(size_px).zip(&ratios).filter(|(at, _)| !unlike.has(*at));
+    let mut told: Vec<f32> = told.map(|(_, ratio)| *ratio).collect();
+    if told.is_empty() {
+        return None;
+    }
+    let middle = told.len() / 2;
+    let (_, median, _) = told.select_nth_unstable_by(middle, f32::total_cmp);
+    let exposure = median.max(f32::MIN_POSITIVE);
+    for (at, ratio) in places(size_px).zip(&ratios) {
+        if (ratio / exposure - 1.0).abs() > SAME_LIGHT {
+            unlike.mark(at);
+        }
+    }
+    let mut unlike = unlike.grown(GROWN_PX);
+    let toy = toy.grown(TOY_GROWN_PX);
+    places(size_px)
+        .filter(|at| toy.has(*at))
+        .for_each(|at| unlike.mark(at));
+    frame.values.iter_mut().for_each(|value| *value /= exposure);
+    Some((frame, plate, unlike))
+}
+
+fn is_at_border(at: IVec2, size_px: IVec2) -> bool {
+    at.min_element() < TOY_GROWN_PX || (size_px - 1 - at).min_element() < TOY_GROWN_PX
+}
+
+/// Corner and size of what is looked at: around the toy, within the picture; none where the toy is not seen.
+fn window(coverage: &Coverage, picture_px: IVec2) -> Option<(IVec2, IVec2)> {
+    if coverage.size_px.min_element() <= 0 {
+        return None;
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "pixels of a picture")]
+    let around_px = (AROUND * f64::from(coverage.size_px.max_element())) as i32;
+    let middle = coverage.origin_px + coverage.size_px / 2;
+    let half = (coverage.size_px / 2 + around_px).min(IVec2::splat(MOST_SIDE_PX / 2));
+    let low = (middle - half).max(IVec2::ZERO);
+    let size_px = (middle + half).min(picture_px) - low;
+    (size_px.min_element() > 0).then_some((low, size_px))
+}
+
+/// A picture of one number a pixel.
+#[derive(Clone)]
+struct Grey {
+    size_px: IVec2,
+    values: Vec<f32>,
+}
+
+impl Grey {
+    /// The nearest pixel's.
+    fn at(&self, at: IVec2) -> f32 {
+        let inside = at.clamp(IVec2::ZERO, self.size_px - 1);
+        index_in(self.size_px, inside).map_or(0.0, |index| self.values[index])
+    }
+
+    fn taking(&self, taps: &[(IVec2, f32)]) -> Self {
+        let sum = |at: IVec2| {
+            taps.iter()
+                .map(|(offset, weight)| weight * self.at(at + *offset))
+                .sum()
+        };
+        Self {
+            size_px: self.size_px,
+            values: places(self.size_px).map(sum).collect(),
+        }
+    }
+
+    fn difference(&self, direction: IVec2) -> Self {
+        self.taking(&[(direction, 1.0), (-direction, -1.0)])
+    }
+
+    /// Along one axis, then along the other.
+    fn spread(&self, spread: Spread) -> Self {
+        let [first, second] = spread.axes_px().map(taps_along);
+        self.taking(&first).taking(&second)
+    }
+}
+
+/// Taps of a Gaussian along an axis as long as its deviation, a pixel apart and bilinear between pixels.
+fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
+    const LEAST_PX: f64 = 0.01;
+    let deviation_px = axis_px.length();
+    if deviation_px < LEAST_PX {
+        return vec![(IVec2::ZERO, 1.0)];
+    }
+    let mut taps = Vec::new();
+    for (step, weight) in gaussian(deviation_px) {
+        let at = f64::from(step) * axis_px / deviation_px;
+        let corner = at.floor();
+        let [right, down] = (at - corner).as_vec2().to_array();
+        let four = [
+            (IVec2::ZERO, (1.0 - right) * (1.0 - down)),
+            (IVec2::X, right * (1.0 - down)),
+            (IVec2::Y, (1.0 - right) * down),
+            (IVec2::ONE, right * down),
+        ];
+        let near = four.into_iter().filter(|(_, part)| *part > 0.0);
+        taps.extend(near.map(|(offset, part)| (corner.as_ivec2() + offset, weight * part)));
+    }
+    taps
+}

@@ -1,0 +1,154 @@
+//! `soften`: the plate, made as soft as the picture.
+
+use app_scene::sharpness::Spread;
+use glam::DVec2;
+use wgpu::TextureFormat;
+
+use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::context::Gpu;
+use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::shader::{Shader, shader};
+use crate::gpu::shared::shared_struct;
+use crate::gpu::texture::Texture;
+use crate::model::plan::Plan;
+use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
+
+pub(crate) const SHADER: Shader = shader!("capture/soften", structs: [Taps]);
+const SLOTS: &[Slot] = &[Slot::per_use::<Taps>(), Slot::Filtered, Slot::Sampler];
+
+/// A grid of taps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TapGrid {
+    /// To either side of the middle, along each axis.
+    n_beside: u32,
+    /// Standard deviations from one to the next, for its weights.
+    spacing: f64,
+    /// Variance of what it makes of taps that are so far apart, over that of a Gaussian which is not cut off.
+    variance: f64,
+}
+
+/// Of most spreads, and of wide ones, where taps of the former would leave gaps between them.
+const GRIDS: [TapGrid; 2] = [
+    TapGrid {
+        n_beside: 3,
+        spacing: 0.75,
+        variance: 0.939,
+    },
+    TapGrid {
+        n_beside: 6,
+        spacing: 0.4,
+        variance: 0.930,
+    },
+];
+/// Standard deviation from which on a spread is a wide one.
+const WIDE_PX: f64 = 2.4;
+/// What bilinear taps spread by themselves, in square pixels, where they lie all over a pixel; and the variance from which on they do.
+const BILINEAR_PX2: f64 = 1.0 / 6.0;
+const ALL_OVER_PX2: f64 = 0.25;
+
+shared_struct! {
+    /// Taps along the axes of a spread.
+    pub(crate) struct Taps {
+        pub first_px: [f32; 2],
+        pub second_px: [f32; 2],
+        pub spacing: f32,
+        pub _pad_0: f32,
+        pub _pad_1: [f32; 2],
+    }
+}
+
+impl Taps {
+    fn new(spread: Spread, grid: &TapGrid) -> Self {
+        let [first, second] = spread.axes_px().map(|axis_px| {
+            let step_px = grid.spacing / grid.variance.sqrt() * own_px(axis_px.length());
+            (step_px * axis_px.normalize_or(DVec2::ZERO)).as_vec2()
+        });
+        #[allow(clippy::cast_possible_truncation, reason = "a handful of digits")]
+        Self {
+            first_px: first.to_array(),
+            second_px: second.to_array(),
+            spacing: grid.spacing as f32,
+            _pad_0: 0.0,
+            _pad_1: [0.0; 2],
+        }
+    }
+}
+
+/// The standard deviation that taps have to have for a wanted one, since each is spread over the pixels around it. Within a pixel that
+/// is as much as their mean distance from the middle, .8 of the deviation.
+fn own_px(wanted_px: f64) -> f64 {
+    let wanted_px2 = wanted_px * wanted_px;
+    if wanted_px2 < ALL_OVER_PX2 {
+        wanted_px2 / 0.8
+    } else {
+        (wanted_px2 - BILINEAR_PX2).sqrt()
+    }
+}
+
+pub(crate) struct Pass {
+    coded: Draws,
+    fine: Draws,
+}
+
+/// For each of the grids.
+type Draws = [Draw; GRIDS.len()];
+
+/// Of the region's size, where a picture is softer than what is laid into it.
+pub(crate) struct Targets {
+    /// The plate as it was taken.
+    pub(crate) sharp: Option<Texture>,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let target = || Texture::target(gpu, "sharp plate", plan.region.size_px, plan.plate_format());
+        Self {
+            sharp: plan.is_softened.then(target),
+        }
+    }
+}
+
+impl Pass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let groups = [&[][..], SLOTS, &[], &[]];
+        let draws = |format: TextureFormat| {
+            GRIDS.map(|grid| {
+                gpu.draw(&DrawSpec {
+                    constants: vec![("N_BESIDE", grid.n_beside)],
+                    ..DrawSpec::fullscreen(&SHADER, "fs_soften", groups, &[format])
+                })
+            })
+        };
+        Self {
+            coded: draws(CODED_FORMAT),
+            fine: draws(FINE_FORMAT),
+        }
+    }
+
+    /// Spreads the plate as it was taken onto the one that passes read; it is copied where there is no spread.
+    pub(crate) fn encode(
+        &self,
+        recorder: &mut Recorder<'_>,
+        (spread, sharp): (Spread, &Texture),
+        softened: &Texture,
+    ) {
+        if spread == Spread::NONE {
+            return recorder.copy(sharp, softened);
+        }
+        let draws = if softened.format() == CODED_FORMAT {
+            &self.coded
+        } else {
+            &self.fine
+        };
+        let index = usize::from(spread.widest_px() >= WIDE_PX);
+        let (draw, grid) = (&draws[index], &GRIDS[index]);
+        let resources = [
+            Resource::PerUse,
+            (&sharp.view).into(),
+            (&recorder.gpu.samplers.linear).into(),
+        ];
+        let group = recorder.bind_with(draw, GROUP_PASS, &Taps::new(spread, grid), &resources);
+        recorder.fullscreen(draw, &[group], &[&softened.view]);
+    }
+}

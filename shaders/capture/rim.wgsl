@@ -1,0 +1,62 @@
+// What a soft picture mixes into the toy's colours at its outline: the receiver beside it, in the real shadow.
+//
+//   frame = part of the toy x its own colour + (1 - part) x gain x this
+// The part is counted over positions that are spread as the picture spreads a point. Of a sharp picture only pixels within the
+// outline are used, which nothing is mixed into.
+//
+// Reads: plate, visibility, ambient, residual cells, depth of the physical toy. Writes: in the physical box rgb what is
+// mixed in, over the gain; alpha the part of the pixel that shows the toy. CPU reference: tests/reference/src/rim.rs.
+// Source: Chuang et al. 2001 (matting: colours are unmixed where the part is known).
+
+//#import common/model
+//#import common/cells
+//#import common/spread
+//#import common/fullscreen
+
+@group(1) @binding(1) var<storage, read> cells: array<vec4f>;
+@group(1) @binding(2) var plate: texture_2d<f32>;
+@group(1) @binding(3) var visibility: texture_2d<f32>;
+@group(1) @binding(4) var ambient: texture_2d<f32>;
+@group(1) @binding(5) var ambient_sampler: sampler;
+@group(1) @binding(6) var gbuffer_depth: texture_depth_2d;
+
+const N_POSITIONS: u32 = 64u;
+// Column and row step of the lattice from one position to the next.
+const POSITION_STEPS = vec2u(47u, 53u);
+
+// Part of what a pixel of the physical box shows that is the toy's.
+fn part_of_toy(at: vec2f) -> f32 {
+  let size = vec2i(textureDimensions(gbuffer_depth));
+  var n_toy = 0u;
+  for (var k = 0u; k < N_POSITIONS; k++) {
+    let lattice = (vec2f(k * POSITION_STEPS % N_POSITIONS) + 0.5) / f32(N_POSITIONS);
+    // As far as the mean over the texels around would spread it.
+    let beside_px = sqrt(2.0 * globals.soft_side) * (2.0 * vec2f(vec2u(k, k >> 1u) & vec2u(1u)) - 1.0);
+    let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px));
+    let is_inside = all(texel >= vec2i(0)) && all(texel < size);
+    let depth = textureLoad(gbuffer_depth, clamp(texel, vec2i(0), size - 1), 0);
+    n_toy += select(0u, 1u, is_inside && depth > 0.0);
+  }
+  return f32(n_toy) / f32(N_POSITIONS);
+}
+
+// What the receiver shows at a texel of the region over the gain: none where no plate tells it.
+fn shown_receiver(texel: vec2i) -> vec4f {
+  let at = vec2f(texel) + 0.5;
+  let b = textureLoad(plate, texel, 0);
+  if b.a == 0.0 { return vec4f(0.0); }
+  let point = receiver_point(at);
+  if !is_hit(point) { return vec4f(b.rgb, 1.0); }
+  let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
+  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
+  return vec4f(b.rgb * max(model + cell_at(point).rgb, vec3f(0.0)), 1.0);
+}
+
+@fragment
+fn fs_mix(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let part = part_of_toy(position.xy);
+  if part == 0.0 || part == 1.0 { return vec4f(0.0, 0.0, 0.0, part); }
+  let receiver = shown_receiver(region_texel(vec2i(position.xy)));
+  // What is not known is not taken out.
+  return vec4f(receiver.rgb, select(1.0, part, receiver.a == 1.0));
+}

@@ -1,0 +1,54 @@
+//! CPU reference of `rim.wgsl`: what a soft picture mixes into the toy's colours.
+
+use glam::{DVec2, DVec3, UVec2};
+
+use super::grid::PlaneGrid;
+use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
+use super::occlusion::spread_position;
+use super::raster::Raster;
+
+/// Places that are looked at, in as many rows and columns.
+const N_PLACES: u32 = 64;
+/// Rows and columns from one place to the next.
+const STEPS: [u32; 2] = [47, 53];
+
+/// Part of what a texel shows that is the toy's, whose depth is 0 where it is not; `root` is that of the picture's spread, places lie by
+/// `beside_px` more beside that, to all four sides in turn.
+#[must_use]
+pub fn part_of_toy(depth: &Raster<f64>, (root, beside_px): ([f64; 3], f64), texel: UVec2) -> f64 {
+    let places = (0..N_PLACES).map(|k| {
+        let lattice = STEPS.map(|step| (f64::from(k * step % N_PLACES) + 0.5) / f64::from(N_PLACES));
+        let side = [k, k / 2].map(|k| if k % 2 == 0 { -beside_px } else { beside_px });
+        texel.as_dvec2() + spread_position(DVec2::from(lattice), root) + DVec2::from(side)
+    });
+    let shows_toy = |place: &DVec2| {
+        let is_inside = place.cmpge(DVec2::ZERO).all() && place.cmplt(depth.size().as_dvec2()).all();
+        is_inside && depth.at(place.as_uvec2()) > 0.0
+    };
+    places.filter(shows_toy).count() as f64 / f64::from(N_PLACES)
+}
+
+/// What was learned of the receivers.
+#[derive(Clone, Copy, Debug)]
+pub struct Learned<'a> {
+    /// Of the fits.
+    pub solution: &'a Solution,
+    /// Filled residuals on each receiver, in plates, and where their cells lie.
+    pub residuals: &'a [(PlaneGrid, Raster<DVec3>)],
+}
+
+/// What the receiver shows at a texel of the region in the real shadow, over the gain.
+#[must_use]
+pub fn shown_receiver(region: &Region, pictures: &Pictures, learned: &Learned<'_>, texel: UVec2) -> DVec3 {
+    let (at, plate) = (centre_px(texel), pictures.plate.at(texel));
+    let Some(point) = region.receiver_point(at) else {
+        return plate;
+    };
+    let ambient = coarse_at(&pictures.ambient, region, at);
+    let visibility = pictures.visibility.at(texel);
+    let model = learned
+        .solution
+        .receiver_model(region, point, ambient, visibility);
+    let (grid, residual) = &learned.residuals[point.receiver];
+    plate * (model + grid.value_at(residual, point.in_plane)).max(DVec3::ZERO)
+}
