@@ -100,6 +100,7 @@ impl Stage {
         let mut model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
+            grain: None,
             frame: Frame::Picture(Picture {
                 light: &frame.view,
                 codes: &frame.view,
