@@ -16,10 +16,8 @@ const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
 const N_CLASSES: usize = 16;
 /// Blocks that a class needs.
 const MIN_BLOCKS: usize = 24;
-/// Deviation in codes below which a picture is clean: nobody sees what is missing, and rounding alone is 0.3.
-const MIN_CODES: f64 = 1.0;
-/// Part of the picture's variance from which what the plate has is enough.
-const ENOUGH: f64 = 0.8;
+/// Deviation in codes below which a picture is clean, and nothing is made: path-traced pictures without a sensor have up to 3.
+const MIN_CODES: f64 = 4.0;
 /// Most correlation that neighbours are given.
 const MAX_CORRELATION: f64 = 0.625;
 
@@ -73,7 +71,7 @@ impl Grain {
     }
 
     /// Measures a picture against a plate of the same view and size: what both show is no noise. None where the picture is
-    /// clean, where the plate is as noisy, or where hardly anything can be compared.
+    /// clean, or where hardly anything can be compared.
     #[must_use]
     pub fn measured(frame: &Image, plate: &Image) -> Option<Self> {
         let size_px = [frame.width_px, frame.height_px];
@@ -95,15 +93,14 @@ impl Grain {
             channels: narrowed(common, 1.0),
         };
         let light = median(classes.iter().map(|class| class.light));
-        grain.is_needed(light).then_some(grain)
+        grain.is_seen(light).then_some(grain)
     }
 
-    /// Whether anybody would see that made pixels of this light lack it.
-    fn is_needed(&self, light: f64) -> bool {
-        let [frame, plate] = [self.frame, self.plate].map(|noise| noise.variance(light));
+    /// Whether the picture is not clean at this light.
+    fn is_seen(&self, light: f64) -> bool {
         #[allow(clippy::cast_possible_truncation, reason = "of a light of one picture")]
         let light_per_code = f64::from(linear_per_srgb(light as f32)) / 255.0;
-        frame - plate > (MIN_CODES * light_per_code).powi(2) && plate < ENOUGH * frame
+        self.frame.variance(light) > (MIN_CODES * light_per_code).powi(2)
     }
 
     /// Checks the values.
