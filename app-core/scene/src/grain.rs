@@ -9,7 +9,8 @@ const BLOCK_PX: u32 = 8;
 /// Blocks that are looked at, at most: more tell nothing new.
 const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
-const N: f64 = (BLOCK_PX * BLOCK_PX) as f64;
+const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
+const N: f64 = N_PX as f64;
 /// Codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
 /// Classes of brightness, even in the square root of light.
@@ -55,8 +56,8 @@ struct Told {
 
 /// Deviations of the pixels of a block from its mean, of the frame, and of the plate at the frame's brightness.
 struct Channel {
-    frame: [f64; N as usize],
-    plate: [f64; N as usize],
+    frame: [f64; N_PX],
+    plate: [f64; N_PX],
     light: f64,
     scale: f64,
 }
@@ -159,7 +160,7 @@ fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
 impl Channel {
     /// None where a pixel of either picture cannot be used.
     fn new(pictures: [&Image; 2], corner: [u32; 2], channel: usize, light_of: &[f32; 256]) -> Option<Self> {
-        let [mut frame, mut plate] = [[0.0; N as usize]; 2];
+        let [mut frame, mut plate] = [[0.0; N_PX]; 2];
         let width = pictures[0].width_px;
         for (picture, values) in pictures.iter().zip([&mut frame, &mut plate]) {
             for (index, value) in (0..).zip(values.iter_mut()) {
@@ -187,7 +188,7 @@ impl Channel {
 
     /// Of the frame's noise in two channels: what the plate shows as well is texture.
     fn covariance(&self, other: &Self) -> f64 {
-        let pixels = 0..N as usize;
+        let pixels = 0..N_PX;
         let sum = pixels
             .map(|k| self.frame[k] * (other.frame[k] - other.plate[k]))
             .sum::<f64>();
