@@ -16,13 +16,26 @@
 //#import common/channels
 //#import common/covered
 //#import common/fullscreen
+//#import common/grain
 //#import common/marks
 //#import common/soft_toy
 
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
   has_detail: u32,
+  // What follows is of grain: number of the picture, variance of light in frame and plate as (in the dark, for each unit of
+  // light), correlation of pixels side by side, and of a pixel's channels.
+  picture: u32,
+  frame_noise: vec2f,
+  plate_noise: vec2f,
+  beside: f32,
+  channels: f32,
 }
+
+// Whether made pixels are given the camera's noise.
+override HAS_GRAIN: bool = false;
+// Part of a pixel's variance that may be missing.
+const ENOUGH_MISSING: f32 = 0.2;
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var physical_ambient: texture_2d<f32>;
@@ -114,6 +127,26 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
+// Variance that the receiver's pixel lacks of what the camera's pixels have there.
+var<private> missing: vec3f;
+
+// Of a pixel of which `own` is the frame's `f`, and which has the plate `b` times `lit`.
+fn missing_beside(color: vec3f, own: f32, f: vec3f, b: vec3f, lit: vec3f) -> vec3f {
+  let wanted = variance_of(drawing.frame_noise, color);
+  let made = (1.0 - own) * lit;
+  let left = wanted - own * own * variance_of(drawing.frame_noise, f) - made * made * variance_of(drawing.plate_noise, b);
+  return select(vec3f(0.0), left, left > ENOUGH_MISSING * wanted);
+}
+
+// A colour with the noise of this variance, of the same mean.
+fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
+  if all(variance <= vec3f(0.0)) { return color; }
+  let at = texel + vec2i(globals.region_origin_px);
+  let noise = sqrt(max(variance, vec3f(0.0))) * grain_at(at, drawing.picture, drawing.beside, drawing.channels);
+  let room = max(min(color, 1.0 - color), vec3f(0.0));
+  return color + clamp(noise, -room, room);
+}
+
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
 // the camera pixel where toy and receiver mix: 1 where the change is little. `f` is the frame there, `evident` are its marks;
@@ -141,7 +174,9 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   // Beyond the receivers nothing changes but that the real toy goes.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
-    return mix(lit, f, evident.r);
+    let color = mix(lit, f, evident.r);
+    if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b.rgb, fit.gain.rgb); }
+    return color;
   }
   // A thing stays as the camera saw it.
   if is_thing(evident) && evident.b == 1.0 {
@@ -173,7 +208,9 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let is_withheld = evident.a < 1.0 && !is_thing(evident);
   let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
   *change = vec4f(lit * (after - before), keep_mixed);
-  return max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
+  let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
+  if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b.rgb, fit.gain.rgb * (after + residual)); }
+  return color;
 }
 
 fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
@@ -228,6 +265,13 @@ fn stillness(texel: vec2i) -> f32 {
   return 1.0 - max(most, change_around(texel));
 }
 
+// A pixel of which so much is a toy that has moved: its colours are means of those beside a point, which have less noise.
+fn grained_toy(color: vec3f, texel: vec2i, moved: f32) -> vec3f {
+  if !HAS_GRAIN { return color; }
+  let of_toy = (1.0 - resampled_variance(drawing.beside)) * variance_of(drawing.frame_noise, color);
+  return grained(color, texel, mix(missing, of_toy, moved));
+}
+
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
   let frame_color = frame_at(vec2i(texel));
@@ -236,16 +280,19 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {
-    return vec4f(mix(toy.rgb, frame_color, stillness(in_box)), 1.0);
+    let still = stillness(in_box);
+    return vec4f(grained_toy(mix(toy.rgb, frame_color, still), vec2i(texel), 1.0 - still), 1.0);
   }
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
-  if change.a == 0.0 { return vec4f(laid, 1.0); }
+  if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let still = stillness(in_box);
-  return vec4f(max(mix(laid, kept, still * change.a), vec3f(0.0)), 1.0);
+  missing *= 1.0 - still * change.a;
+  let color = max(mix(laid, kept, still * change.a), vec3f(0.0));
+  return vec4f(grained_toy(color, vec2i(texel), toy.a * (1.0 - still)), 1.0);
 }
 
 // The plate that a pixel shows under a model and the pooled residual, no brighter than white.
@@ -279,7 +326,9 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @fragment
 fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   var change = vec4f(0.0);
-  return vec4f(receiver(position, frame_at(vec2i(position.xy)), FAR_MARKS, false, &change), 1.0);
+  let color = receiver(position, frame_at(vec2i(position.xy)), FAR_MARKS, false, &change);
+  if !HAS_GRAIN { return vec4f(color, 1.0); }
+  return vec4f(grained(color, vec2i(position.xy), missing), 1.0);
 }
 
 // Near a toy, which was drawn once, or four times. An entry point for each, since some processors take all

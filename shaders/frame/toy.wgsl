@@ -43,9 +43,16 @@ const MAX_TURN: f32 = 4.0;
 // at all: a surface that was seen at a grazing angle and turns to the camera has too few pixels.
 const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
+// The same from which lines of the texture that are thinner than a pixel are the camera's.
+const STRETCH_LINES: f32 = 0.75;
 // Difference of base colours, relative to the lighter one, above which two points of the model have different
 // materials.
 const OTHER_MATERIAL: f32 = 0.25;
+// Relative step of depth within which a point is the one that the camera saw: a tenth of a millimetre a metre away.
+const SHOWN_DEPTH: f32 = 1e-4;
+// Weight of other paint around a point that the camera saw. With all of it the bundled toy's error is 3.86 codes, with a
+// hundredth 3.88 and lines are ragged, with this 3.77.
+const OTHER_PAINT_WEIGHT: f32 = 0.3;
 // Relative change of the light on a surface that is invisible, and that is visible in full.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
@@ -117,33 +124,55 @@ fn own_color(texel: vec2i) -> vec3f {
   return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
 }
 
+// Texel of the physical box of one of the four pixels around a point.
+fn physical_tap(low: vec2f, k: u32) -> vec2i {
+  return physical_texel(vec2i(low)) + vec2i(vec2u(k & 1u, k >> 1u));
+}
+
+// Whether the camera saw the very point: its depth is between those of the four pixels around it, each of which shows one
+// surface.
+fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
+  var depths = vec4f(0.0);
+  for (var k = 0u; k < 4u; k++) {
+    let texel = physical_tap(low, k);
+    if !is_in_physical_box(texel) { return false; }
+    if number_at(textureLoad(appearance_source, texel, 0)) != number_of(vec2i(0)) { return false; }
+    depths[k] = textureLoad(gbuffer_depth, texel, 0);
+  }
+  let between = mix(mix(depths.x, depths.y, t.x), mix(depths.z, depths.w, t.x), t.y);
+  return abs(between - depth) <= SHOWN_DEPTH * depth;
+}
+
 // The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the
 // base
 // colour `base`; alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
 // outline where `appearance` carried its colours. Their mean is relit from the mean of the light they were seen under.
-fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f) -> vec4f {
+// Where the camera saw the very point, and hardly more at a slant than it is shown, pixels of other paint count, too: a line
+// of the texture may be thinner than a pixel, and beside the camera's colours the model's own would be a speck.
+fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch: f32) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
+  let is_shown = stretch >= STRETCH_LINES && is_point_shown(low, t, depth);
   var sum = vec4f(0.0);
   var up = 0.0;
   var received = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
-    let corner = vec2f(f32(k & 1u), f32(k >> 1u));
-    let tap = low + corner - globals.physical_box_origin_px;
-    if !(all(tap >= vec2f(0.0)) && all(tap < globals.physical_box_size_px)) { continue; }
-    let texel = vec2u(tap);
+    let texel = physical_tap(low, k);
+    if !is_in_physical_box(texel) { continue; }
     let surface = textureLoad(gbuffer_depth, texel, 0);
     if surface > depth && !is_same_surface(surface, depth) { continue; }
     let seen_base = textureLoad(appearance_base, texel, 0);
-    if is_other_material(seen_base.rgb, base) { continue; }
+    let is_other = is_other_material(seen_base.rgb, base);
+    if is_other && !is_shown { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
-    let color = own_color(source_texel(vec2i(texel), number));
+    let color = own_color(source_texel(texel, number));
+    let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0);
+    let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
     sum += weight * vec4f(color, 1.0);
     up += weight * seen_base.a;
     received += weight * textureLoad(appearance_received, texel, 0);
@@ -213,7 +242,7 @@ fn fs_toy(
   let physical_px = region_px(clip);
   let lit = toy_radiance_over_base(normal, light_received(false, normal, in_anchor));
   let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
-  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit);
+  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, stretch);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::grain::Grain;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
 use crate::sharpness::Sharpness;
@@ -39,6 +40,9 @@ pub struct FrameInput {
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
     /// known. At 0 nothing is learned.
     pub effect: f64,
+    /// The picture's noise, which what is made in it is given; none where it is clean. It is looked at with a new picture or pose;
+    /// presets of the model alone go by it.
+    pub grain: Option<Grain>,
 }
 
 impl FrameInput {
@@ -56,6 +60,7 @@ impl FrameInput {
             sharpness: Sharpness::SHARP,
             shown_pose: Pose::default(),
             effect: 1.0,
+            grain: None,
         }
     }
 
@@ -129,6 +134,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets the noise that made pixels are given.
+    #[must_use]
+    pub fn with_grain(mut self, grain: Option<Grain>) -> Self {
+        self.grain = grain;
+        self
+    }
+
     /// Validates the input.
     pub fn check(&self) -> Result<(), InputError> {
         check::camera("camera", &self.camera)?;
@@ -136,6 +148,7 @@ impl FrameInput {
         InputError::at("effect", check::number(self.effect, &(0.0..=1.0)))?;
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
+        self.grain.map_or(Ok(()), |grain| grain.check())?;
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
             light.check(&format!("lights[{index}]"))?;
         }

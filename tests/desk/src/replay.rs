@@ -10,6 +10,7 @@ use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::QualityStep;
+use app_core::grain::Grain;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use app_core::session::{GroundTruth, Session, SessionError, SessionFrame, Truth};
@@ -250,7 +251,11 @@ pub(crate) struct Shot<'a> {
 impl Shot<'_> {
     /// What the core is given.
     pub(crate) fn input(&self, preset: Preset) -> FrameInput {
-        self.alignments.input(self.index, &self.frame, preset)
+        let recorded = FrameInput::from(&self.frame);
+        let grain = Grain::of(self.session.scene(), &recorded);
+        self.alignments
+            .input(self.index, &self.frame, preset)
+            .with_grain(grain)
     }
 
     fn failed(&self, reason: CoreError) -> ReplayError {

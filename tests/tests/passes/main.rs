@@ -23,6 +23,7 @@ mod fill;
 mod fit;
 mod frame;
 mod goldens;
+mod grain;
 mod grazing;
 mod inject;
 mod intensities;

@@ -28,6 +28,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "frame",
     "fullscreen",
     "globals",
+    "grain",
     "grid",
     "hemispheres",
     "marks",

@@ -192,6 +192,7 @@ impl Model {
             state: &self.state,
             toy,
             frame: pictures.frame,
+            grain: pictures.grain,
         };
         recorder.group = PassGroup::Frame;
         frame.encode(recorder, delta);

@@ -8,6 +8,7 @@ use crate::geometry::rect::PixelRect;
 use crate::gpu::{Buffer, Gpu, Mat3Columns, Mirrors, Render, TextureView, mirrors, n_pixels, shared_struct};
 use crate::passes::thing_marks::Things;
 use app_scene::camera_frame::YcbcrEncoding;
+use app_scene::grain::Grain;
 
 /// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.
 pub(crate) const PLANES: Mirrors = mirrors!("common/planes", structs: [Encoding]);
@@ -104,9 +105,18 @@ impl<'a> Frame<'a> {
     }
 }
 
+/// The noise of a picture, and the picture's number, by which it differs from that of others.
+#[derive(Clone, Copy)]
+pub(crate) struct PictureGrain {
+    pub(crate) grain: Grain,
+    pub(crate) picture: u32,
+}
+
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
     pub(crate) frame: Frame<'a>,
+    /// Its noise.
+    pub(crate) grain: Option<PictureGrain>,
     /// How many the state has learned from before.
     pub(crate) n_before: u32,
     /// Exposure of `frame` over that of the frame that last updated the state.

@@ -23,7 +23,7 @@ use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::governor::QualityStep;
 use crate::gpu::{Gpu, GpuError, Recorder, Texture, n_pixels};
-use crate::passes::pictures::{ComposedFrame, Frame, Pictures, RegionOverlay};
+use crate::passes::pictures::{ComposedFrame, Frame, PictureGrain, Pictures, RegionOverlay};
 use crate::passes::present;
 use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::thing_marks::Things;
@@ -419,8 +419,10 @@ impl Stage {
             // Its `retarget` filters light of the whole picture.
             Method::Baseline(_) => Frame::Picture(self.camera.keep_decoded(recorder)),
         };
+        let picture = self.state.as_ref().map_or(0, |state| state.n_pictures);
         let pictures = Pictures {
             frame,
+            grain: input.grain.map(|grain| PictureGrain { grain, picture }),
             n_before,
             exposure_ratio,
             plates: &self.plates.pictures.view,

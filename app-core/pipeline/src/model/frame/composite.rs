@@ -1,5 +1,8 @@
 //! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
 
+use std::sync::OnceLock;
+
+use bytemuck::Zeroable;
 use wgpu::StoreOp;
 
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
@@ -18,7 +21,7 @@ use crate::model::lighting::LightMaps;
 use crate::model::plan::Plan;
 use crate::model::state::grids::Grids;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
-use crate::passes::pictures::{ByForm, Picture, fill_parts, n_pixels_of};
+use crate::passes::pictures::{ByForm, Picture, PictureGrain, fill_parts, n_pixels_of};
 use crate::passes::present::REGION_FORMAT;
 
 pub(crate) const SHADER: Shader =
@@ -48,12 +51,24 @@ shared_struct! {
     /// How the receivers were drawn.
     pub(crate) struct Drawing {
         pub has_detail: u32,
+        pub picture: u32,
+        pub frame_noise: [f32; 2],
+        pub plate_noise: [f32; 2],
+        pub beside: f32,
+        pub channels: f32,
     }
 }
 
 pub(crate) struct Pass {
-    /// Clear of the toy in either pose, and of its shadows.
+    /// Clear of the toy in either pose, and of its shadows: there nothing is made.
     open: ByForm<Draw>,
+    clean: Shadowed,
+    /// With grain, compiled when the first frame has any.
+    grained: OnceLock<Shadowed>,
+}
+
+/// Where shadows fall.
+struct Shadowed {
     /// Clear of the toy in either pose.
     beside: ByForm<Draw>,
     /// Near it, where the toy was drawn once.
@@ -75,6 +90,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) moved_mask: &'a TextureView,
     /// Each pixel's own residual; without it the frame's own pixels serve.
     pub(crate) detail: Option<&'a TextureView>,
+    pub(crate) grain: Option<PictureGrain>,
 }
 
 /// Of the region's size.
@@ -104,37 +120,30 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let draw = |fragment, of_shadow, of_toy| {
-            let groups = [SEEN_SLOTS, SLOTS, of_shadow, of_toy];
-            ByForm::new(gpu, move |gpu, form| {
-                gpu.draw(&DrawSpec {
-                    constants: vec![form],
-                    ..DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT])
-                })
-            })
-        };
         Self {
-            open: draw("fs_open", &[], &[]),
-            beside: draw("fs_beside", SHADOW_SLOTS, &[]),
-            drawn_once: draw("fs_drawn_once", SHADOW_SLOTS, TOY_SLOTS),
-            drawn_four_times: draw("fs_drawn_four_times", SHADOW_SLOTS, TOY_SLOTS),
+            open: draw(gpu, "fs_open", [&[], &[]], false),
+            clean: Shadowed::new(gpu, false),
+            grained: OnceLock::new(),
         }
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        let gpu = recorder.gpu;
+        let shadowed = match inputs.grain {
+            None => &self.clean,
+            Some(_) => self.grained.get_or_init(|| Shadowed::new(gpu, true)),
+        };
         let near_toy = match inputs.toy.n_draws() {
-            1 => &self.drawn_once,
-            _ => &self.drawn_four_times,
+            1 => &shadowed.drawn_once,
+            _ => &shadowed.drawn_four_times,
         };
         let [open, beside, near_toy] =
-            [&self.open, &self.beside, near_toy].map(|draw| draw.of(recorder.gpu, &inputs.seen.frame));
+            [&self.open, &shadowed.beside, near_toy].map(|draw| draw.of(gpu, &inputs.seen.frame));
         let of_open = [
             inputs.seen.bind(recorder, open),
             recorder.bind(open, GROUP_PASS, &inputs.of_all(&recorder.gpu.samplers.linear)),
         ];
-        let drawing = Drawing {
-            has_detail: u32::from(inputs.detail.is_some()),
-        };
+        let drawing = inputs.drawing();
         let shadowed = recorder.bind_with(beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
         let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
         let (target, parts) = (&targets.picture.view, inputs.parts);
@@ -150,7 +159,42 @@ impl Pass {
     }
 }
 
+impl Shadowed {
+    fn new(gpu: &Gpu, has_grain: bool) -> Self {
+        Self {
+            beside: draw(gpu, "fs_beside", [SHADOW_SLOTS, &[]], has_grain),
+            drawn_once: draw(gpu, "fs_drawn_once", [SHADOW_SLOTS, TOY_SLOTS], has_grain),
+            drawn_four_times: draw(gpu, "fs_drawn_four_times", [SHADOW_SLOTS, TOY_SLOTS], has_grain),
+        }
+    }
+}
+
+fn draw(gpu: &Gpu, fragment: &'static str, read: [&'static [Slot]; 2], has_grain: bool) -> ByForm<Draw> {
+    let groups = [SEEN_SLOTS, SLOTS, read[0], read[1]];
+    ByForm::new(gpu, move |gpu, form| {
+        gpu.draw(&DrawSpec {
+            constants: vec![form, ("HAS_GRAIN", u32::from(has_grain))],
+            ..DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT])
+        })
+    })
+}
+
 impl<'a> Inputs<'a> {
+    fn drawing(&self) -> Drawing {
+        let clean = Drawing {
+            has_detail: u32::from(self.detail.is_some()),
+            ..Drawing::zeroed()
+        };
+        self.grain.map_or(clean, |PictureGrain { grain, picture }| Drawing {
+            picture,
+            frame_noise: [grain.frame.floor, grain.frame.per_light],
+            plate_noise: [grain.plate.floor, grain.plate.per_light],
+            beside: grain.beside,
+            channels: grain.channels,
+            ..clean
+        })
+    }
+
     fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 5] {
         [
             self.grids.into(),

@@ -14,7 +14,7 @@ use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::model::state::solution::{Scene, SeenScene};
 use crate::passes::list::passes;
-use crate::passes::pictures::Frame;
+use crate::passes::pictures::{Frame, PictureGrain};
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::FrameDelta;
 
@@ -57,6 +57,7 @@ pub(crate) struct FramePath<'a> {
     pub(crate) state: &'a SceneState,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) frame: Frame<'a>,
+    pub(crate) grain: Option<PictureGrain>,
 }
 
 impl FramePath<'_> {
@@ -136,6 +137,7 @@ impl FramePath<'_> {
                 .residual
                 .as_ref()
                 .map(|residual| &residual.view),
+            grain: self.grain,
         }
     }
 

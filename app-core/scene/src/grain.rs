@@ -1,0 +1,311 @@
+//! Grain: the noise of a picture, measured against a plate of the same view.
+
+use crate::frame::FrameInput;
+use crate::geometry::color::{linear_of_codes, linear_per_srgb};
+use crate::scene::{Image, InputError, Scene, check};
+
+/// Side of a block of pixels in which noise is told from texture.
+const BLOCK_PX: u32 = 8;
+/// Blocks that are looked at, at most: more tell nothing new.
+const MAX_BLOCKS: u32 = 6000;
+/// Pixels of a block.
+const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
+const N: f64 = N_PX as f64;
+/// Codes that are neither clipped nor mostly rounding.
+const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
+/// Classes of brightness, even in the square root of light.
+const N_CLASSES: usize = 16;
+/// Blocks that a class needs.
+const MIN_BLOCKS: usize = 24;
+/// Deviation in codes below which a picture is clean, and nothing is made: path-traced pictures without a sensor have up to 3.
+const MIN_CODES: f64 = 4.0;
+/// Most correlation that neighbours are given.
+const MAX_CORRELATION: f64 = 0.625;
+
+/// Variance of a channel of linear light: `floor + per_light * light`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// In the dark.
+    pub floor: f32,
+    /// For each unit of light.
+    pub per_light: f32,
+}
+
+/// The noise of a camera's picture, which what is made in it is to have, and that of its plate, which made pixels have already.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Of the camera's picture.
+    pub frame: Noise,
+    /// Of the plate that was taken from the same place.
+    pub plate: Noise,
+    /// Correlation of pixels side by side, from 0 to 0.625.
+    pub beside: f32,
+    /// Correlation of a pixel's channels, from 0 to 1.
+    pub channels: f32,
+}
+
+/// What a block tells of one channel, in linear light.
+#[derive(Clone, Copy, Default)]
+struct Told {
+    light: f64,
+    plate_light: f64,
+    frame: f64,
+    plate: f64,
+    beside: f64,
+}
+
+/// Deviations of the pixels of a block from its mean, of the frame, and of the plate at the frame's brightness.
+struct Channel {
+    frame: [f64; N_PX],
+    plate: [f64; N_PX],
+    light: f64,
+    scale: f64,
+}
+
+impl Grain {
+    /// That of a frame, against the first plate that the very same camera took; none where there is no such plate, or where
+    /// [`Grain::measured`] finds none.
+    #[must_use]
+    pub fn of(scene: &Scene, input: &FrameInput) -> Option<Self> {
+        let plate = scene.plates.iter().find(|plate| plate.camera == input.camera)?;
+        Self::measured(input.image.rgba(), &plate.image)
+    }
+
+    /// Measures a picture against a plate of the same view and size: what both show is no noise. None where the picture is
+    /// clean, or where hardly anything can be compared.
+    #[must_use]
+    pub fn measured(frame: &Image, plate: &Image) -> Option<Self> {
+        let size_px = [frame.width_px, frame.height_px];
+        if !(frame.is_of_size(size_px) && plate.is_of_size(size_px)) {
+            return None;
+        }
+        let (told, common) = told(frame, plate);
+        let classes = classes(told);
+        let of = |value: fn(&Told) -> f64, light: fn(&Told) -> f64| {
+            fitted(classes.iter().map(|class| (light(class), value(class))))
+        };
+        let grain = Self {
+            frame: of(|class| class.frame, |class| class.light)?,
+            plate: of(|class| class.plate, |class| class.plate_light)?,
+            beside: narrowed(
+                median(classes.iter().map(|class| class.beside / class.frame)),
+                MAX_CORRELATION,
+            ),
+            channels: narrowed(common, 1.0),
+        };
+        let light = median(classes.iter().map(|class| class.light));
+        grain.is_seen(light).then_some(grain)
+    }
+
+    /// Whether the picture is not clean at this light.
+    fn is_seen(&self, light: f64) -> bool {
+        #[allow(clippy::cast_possible_truncation, reason = "of a light of one picture")]
+        let light_per_code = f64::from(linear_per_srgb(light as f32)) / 255.0;
+        self.frame.variance(light) > (MIN_CODES * light_per_code).powi(2)
+    }
+
+    /// Checks the values.
+    ///
+    /// # Errors
+    /// When a variance is not from 0 to 1, or a correlation cannot be made.
+    pub fn check(&self) -> Result<(), InputError> {
+        let noises = [("frame", self.frame), ("plate", self.plate)];
+        for (picture, noise) in noises {
+            for (name, value) in [("floor", noise.floor), ("per_light", noise.per_light)] {
+                let checked = check::number(f64::from(value), &(0.0..=1.0));
+                InputError::at(&format!("grain.{picture}.{name}"), checked)?;
+            }
+        }
+        InputError::at(
+            "grain.beside",
+            check::number(f64::from(self.beside), &(0.0..=MAX_CORRELATION)),
+        )?;
+        InputError::at(
+            "grain.channels",
+            check::number(f64::from(self.channels), &(0.0..=1.0)),
+        )?;
+        Ok(())
+    }
+}
+
+impl Noise {
+    fn variance(&self, light: f64) -> f64 {
+        f64::from(self.floor) + f64::from(self.per_light) * light
+    }
+}
+
+/// What blocks all over the picture tell, channel by channel, and the correlation between channels.
+fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
+    let light_of = linear_of_codes();
+    let [columns, rows] = [frame.width_px, frame.height_px].map(|side| side / BLOCK_PX);
+    let step = (columns * rows).div_ceil(MAX_BLOCKS).max(1) as usize;
+    let (mut told, mut common) = (Vec::new(), Vec::new());
+    for block in (0..columns * rows).step_by(step) {
+        let corner = [block % columns, block / columns].map(|at| at * BLOCK_PX);
+        let channels = [0, 1, 2].map(|channel| Channel::new([frame, plate], corner, channel, &light_of));
+        let tell = |pair: [usize; 2]| {
+            let [a, b] = pair.map(|index| channels[index].as_ref());
+            Some(a?.covariance(b?))
+        };
+        if let [Some(red), Some(green), Some(both)] = [[0, 0], [1, 1], [0, 1]].map(tell)
+            && red.min(green) > 0.0
+        {
+            common.push(both / (red * green).sqrt());
+        }
+        told.extend(channels.iter().flatten().map(Channel::told));
+    }
+    (told, median(common.into_iter()))
+}
+
+impl Channel {
+    /// None where a pixel of either picture cannot be used.
+    fn new(pictures: [&Image; 2], corner: [u32; 2], channel: usize, light_of: &[f32; 256]) -> Option<Self> {
+        let [mut frame, mut plate] = [[0.0; N_PX]; 2];
+        let width = pictures[0].width_px;
+        for (picture, values) in pictures.iter().zip([&mut frame, &mut plate]) {
+            for (index, value) in (0..).zip(values.iter_mut()) {
+                let [x, y] = [corner[0] + index % BLOCK_PX, corner[1] + index / BLOCK_PX];
+                let code = *picture.rgba8.get(4 * (y * width + x) as usize + channel)?;
+                if !USABLE_CODES.contains(&code) {
+                    return None;
+                }
+                *value = f64::from(light_of[usize::from(code)]);
+            }
+        }
+        let [light, plate_light] = [&frame, &plate].map(|values| values.iter().sum::<f64>() / N);
+        let scale = light / plate_light;
+        frame.iter_mut().for_each(|value| *value -= light);
+        plate
+            .iter_mut()
+            .for_each(|value| *value = scale * (*value - plate_light));
+        Some(Self {
+            frame,
+            plate,
+            light,
+            scale,
+        })
+    }
+
+    /// Of the frame's noise in two channels: what the plate shows as well is texture.
+    fn covariance(&self, other: &Self) -> f64 {
+        let pixels = 0..N_PX;
+        let sum = pixels
+            .map(|k| self.frame[k] * (other.frame[k] - other.plate[k]))
+            .sum::<f64>();
+        sum / (N - 1.0)
+    }
+
+    fn told(&self) -> Told {
+        let shared = self
+            .frame
+            .iter()
+            .zip(&self.plate)
+            .map(|(a, b)| a * b)
+            .sum::<f64>()
+            / (N - 1.0);
+        let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / (N - 1.0);
+        Told {
+            light: self.light,
+            plate_light: self.light / self.scale,
+            frame: self.covariance(self),
+            plate: (plate - shared) / self.scale.powi(2),
+            beside: self.beside(),
+        }
+    }
+
+    /// Covariance of the noise of pixels side by side.
+    fn beside(&self) -> f64 {
+        let (mut sum, mut n) = (0.0, 0.0);
+        let side = BLOCK_PX as usize;
+        for k in 0..side * side {
+            let right = (k % side + 1 < side).then_some(k + 1);
+            let below = (k + side < side * side).then_some(k + side);
+            for other in right.into_iter().chain(below) {
+                let texture = self.frame[k] * self.plate[other] + self.frame[other] * self.plate[k];
+                sum += self.frame[k] * self.frame[other] - 0.5 * texture;
+                n += 1.0;
+            }
+        }
+        // The mean that was taken out of the block has a part of each pixel's noise.
+        sum / n + self.covariance(self) / N
+    }
+}
+
+/// Medians of the classes of brightness that enough blocks are of: things that only one picture shows are outvoted.
+fn classes(told: Vec<Told>) -> Vec<Told> {
+    let mut classes = vec![Vec::new(); N_CLASSES];
+    for told in told {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "light is from 0 to 1"
+        )]
+        let class = (told.light.sqrt() * N_CLASSES as f64) as usize;
+        classes[class.min(N_CLASSES - 1)].push(told);
+    }
+    let many = classes.into_iter().filter(|class| class.len() >= MIN_BLOCKS);
+    many.map(|class| {
+        let of = |value: fn(&Told) -> f64| median(class.iter().map(value));
+        Told {
+            light: of(|told| told.light),
+            plate_light: of(|told| told.plate_light),
+            frame: of(|told| told.frame),
+            plate: of(|told| told.plate),
+            beside: of(|told| told.beside),
+        }
+    })
+    .filter(|class| class.frame > 0.0)
+    .collect()
+}
+
+/// 0 where there is none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The line through (light, variance) of least relative error, neither of whose numbers is negative.
+fn fitted(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Noise> {
+    let largest = points.clone().map(|(_, variance)| variance).fold(0.0, f64::max);
+    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (light, variance) in points {
+        let weight = 1.0 / variance.max(0.01 * largest).max(1e-12).powi(2);
+        n += weight;
+        x += weight * light;
+        y += weight * variance;
+        xx += weight * light * light;
+        xy += weight * light * variance;
+    }
+    if n == 0.0 {
+        return None;
+    }
+    let spread = n * xx - x * x;
+    let slope = if spread > 1e-9 * n * xx {
+        (n * xy - x * y) / spread
+    } else {
+        0.0
+    };
+    let floor = (y - slope * x) / n;
+    let (floor, slope) = if slope < 0.0 {
+        (y / n, 0.0)
+    } else if floor < 0.0 {
+        (0.0, xy / xx)
+    } else {
+        (floor, slope)
+    };
+    Some(Noise {
+        floor: narrowed(floor, 1.0),
+        per_light: narrowed(slope, 1.0),
+    })
+}
+
+/// Between 0 and `most`, 0 for what is no number.
+#[allow(clippy::cast_possible_truncation, reason = "of the range of a single")]
+fn narrowed(value: f64, most: f64) -> f32 {
+    if value.is_finite() {
+        value.clamp(0.0, most) as f32
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,115 @@
+//! `composite` with grain: what is added to made pixels, against the reference, and how a picture's noise is measured.
+
+use app_core::frame::FrameInput;
+use app_core::grain::{Grain, Noise};
+use app_core::preset::Preset;
+use app_core::scene::Image;
+use app_core::session::{Capture, Session};
+use desk::files::{BUNDLED_SESSION, Folder};
+use harness::open_core;
+use reference::grain::grain_at;
+
+/// A frame of the bundled session in which the llama steps.
+const FRAME: usize = 2;
+const VARIANCE: f32 = 2e-4;
+
+fn grain() -> Grain {
+    Grain {
+        frame: Noise {
+            floor: VARIANCE,
+            per_light: 0.0,
+        },
+        plate: Noise::default(),
+        beside: 0.4,
+        channels: 0.3,
+    }
+}
+
+fn linear(code: u8) -> f64 {
+    let encoded = f64::from(code) / 255.0;
+    if encoded <= 0.04045 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+fn session() -> Capture {
+    Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap()
+}
+
+fn drawn(grain: Option<Grain>) -> Image {
+    let session = session();
+    let mut core = open_core();
+    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    let input = FrameInput::from(&session.frame(FRAME).unwrap()).with_grain(grain);
+    core.frame(&input).unwrap();
+    core.read_picture().unwrap()
+}
+
+/// Pixels either keep the camera's noise or have the reference's, of at most its variance; many have all of it, and the mean
+/// in linear light stays.
+#[test]
+fn made_pixels_have_the_reference_noise() {
+    let (clean, grained) = (drawn(None), drawn(Some(grain())));
+    let deviation = f64::from(VARIANCE).sqrt();
+    let (mut n_full, mut sum) = (0, 0.0);
+    for (index, codes) in (0..).zip(clean.rgba8.chunks(4).zip(grained.rgba8.chunks(4))) {
+        let at = [
+            index % clean.width_px.cast_signed(),
+            index / clean.width_px.cast_signed(),
+        ];
+        let noise = grain_at(at, 1, f64::from(grain().beside), f64::from(grain().channels));
+        for channel in 0..3 {
+            let [before, after] = [codes.0, codes.1].map(|codes| linear(codes[channel]));
+            let (added, most) = (after - before, deviation * noise[channel]);
+            // Both pictures are rounded, and a software driver's codes are 0.14 off.
+            let slack = 1.3
+                * (linear(codes.1[channel].saturating_add(1)) - before)
+                    .abs()
+                    .max(0.004);
+            assert!(
+                added * most.signum() > -slack && added.abs() < most.abs() + slack,
+                "{at:?}: {added} of {most}"
+            );
+            let is_full = most.abs() > 0.02 && added / most > 0.8;
+            n_full += i32::from(is_full);
+            sum += added;
+        }
+    }
+    assert!(n_full > 1000, "{n_full} have all of it");
+    let mean = sum / f64::from(3 * clean.width_px * clean.height_px);
+    assert!(mean.abs() < 1e-4, "{mean}");
+}
+
+#[test]
+fn noise_is_measured() {
+    let session = session();
+    let plate = &session.scene().plates[0].image;
+    let clean = session.frame(FRAME).unwrap().image.as_ref().clone();
+    assert_eq!(Grain::measured(&clean, plate), None, "of a clean picture");
+    let mut noisy = clean.clone();
+    let wanted = |light: f64| 2e-5 + 1.4e-3 * light;
+    for (index, codes) in (0..).zip(noisy.rgba8.chunks_mut(4)) {
+        let at = [
+            index % clean.width_px.cast_signed(),
+            index / clean.width_px.cast_signed(),
+        ];
+        let noise = grain_at(at, 7, 0.4, 0.3);
+        for (code, noise) in codes.iter_mut().zip(noise) {
+            let light = linear(*code);
+            let shown = (light + wanted(light).sqrt() * noise).clamp(0.0, 1.0);
+            *code = (0..=255_u8)
+                .min_by(|a, b| (linear(*a) - shown).abs().total_cmp(&(linear(*b) - shown).abs()))
+                .unwrap();
+        }
+    }
+    let found = Grain::measured(&noisy, plate).unwrap();
+    for light in [0.1, 0.3] {
+        let variance = f64::from(found.frame.floor) + f64::from(found.frame.per_light) * light;
+        let ratio = variance / wanted(light);
+        assert!((0.85..1.2).contains(&ratio), "at {light}: {ratio}");
+    }
+    assert!((found.beside - 0.4).abs() < 0.08, "beside {}", found.beside);
+    assert!((found.channels - 0.3).abs() < 0.08, "channels {}", found.channels);
+}
