@@ -64,7 +64,9 @@ impl Pass {
         let [r, g, b, a] = FAR_MARKS.map(f64::from);
         let far = Color { r, g, b, a };
         let marks = Some(cleared_to(&targets.marks.view, far));
-        let near = inputs.plan.near_physical_toy(BLEED_PX.max(EDGE_PX + soft_px.unsigned_abs()));
+        let near = inputs
+            .plan
+            .near_physical_toy(BLEED_PX.max(EDGE_PX + soft_px.unsigned_abs()));
         recorder.fullscreen_within(&self.draw, &[own], &[marks], near);
     }
 }

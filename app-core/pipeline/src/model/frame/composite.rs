@@ -185,14 +185,15 @@ impl<'a> Inputs<'a> {
             has_detail: u32::from(self.detail.is_some()),
             ..Drawing::zeroed()
         };
-        self.grain.map_or(clean, |PictureGrain { grain, picture }| Drawing {
-            picture,
-            frame_noise: [grain.frame.floor, grain.frame.per_light],
-            plate_noise: [grain.plate.floor, grain.plate.per_light],
-            beside: grain.beside,
-            channels: grain.channels,
-            ..clean
-        })
+        self.grain
+            .map_or(clean, |PictureGrain { grain, picture }| Drawing {
+                picture,
+                frame_noise: [grain.frame.floor, grain.frame.per_light],
+                plate_noise: [grain.plate.floor, grain.plate.per_light],
+                beside: grain.beside,
+                channels: grain.channels,
+                ..clean
+            })
     }
 
     fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 5] {
