@@ -37,17 +37,15 @@ fn white_noise(at: vec2i, picture: u32) -> vec4f {
 // The same in three channels, which share so much of it, as pixels side by side do. Those are means over three pixels each
 // way, of which the outer ones have a weight that gives the correlation 2 w / (1 + 2 w w).
 fn grain_at(at: vec2i, picture: u32, beside: f32, channels: f32) -> vec3f {
-  var noise = white_noise(at, picture);
-  if beside > 0.0 {
-    let weight = beside / (1.0 + sqrt(max(1.0 - 2.0 * beside * beside, 0.0)));
-    var sum = vec4f(0.0);
-    for (var y = -1; y <= 1; y++) {
-      for (var x = -1; x <= 1; x++) {
-        let far = select(1.0, weight, x != 0) * select(1.0, weight, y != 0);
-        sum += far * white_noise(at + vec2i(x, y), picture);
-      }
+  // Also where it is 0: Mesa 22.3's software driver fails on a uniform that decides whether a loop runs.
+  let weight = beside / (1.0 + sqrt(max(1.0 - 2.0 * beside * beside, 0.0)));
+  var sum = vec4f(0.0);
+  for (var y = -1; y <= 1; y++) {
+    for (var x = -1; x <= 1; x++) {
+      let far = select(1.0, weight, x != 0) * select(1.0, weight, y != 0);
+      sum += far * white_noise(at + vec2i(x, y), picture);
     }
-    noise = sum / (1.0 + 2.0 * weight * weight);
   }
+  let noise = sum / (1.0 + 2.0 * weight * weight);
   return sqrt(1.0 - channels) * noise.xyz + sqrt(channels) * noise.w;
 }

@@ -6,7 +6,7 @@ const FAR_MARKS = vec4f(1.0, 0.0, 1.0, 1.0);
 // Alpha of the marks of a thing, and of one before the toy: codes 204 and 153.
 const THING: f32 = 0.8;
 const BEFORE_TOY: f32 = 0.6;
-// Half of what tells them apart.
+// A quarter of what tells them apart.
 const TELLS_THINGS: f32 = 0.05;
 
 fn marks_at(region_texel: vec2i) -> vec4f {

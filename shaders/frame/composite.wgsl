@@ -16,7 +16,7 @@
 //#import common/channels
 //#import common/covered
 //#import common/fullscreen
-//#import common/grain
+//#import common/made_grain
 //#import common/marks
 //#import common/soft_toy
 
@@ -31,11 +31,6 @@ struct Drawing {
   beside: f32,
   channels: f32,
 }
-
-// Whether made pixels are given the camera's noise.
-override HAS_GRAIN: bool = false;
-// Part of a pixel's variance that may be missing.
-const ENOUGH_MISSING: f32 = 0.2;
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var physical_ambient: texture_2d<f32>;
@@ -127,26 +122,6 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
-// Variance that the receiver's pixel lacks of what the camera's pixels have there.
-var<private> missing: vec3f;
-
-// Of a pixel of which `own` is the frame's `f`, and which has the plate `b` times `lit`.
-fn missing_beside(color: vec3f, own: f32, f: vec3f, b: vec3f, lit: vec3f) -> vec3f {
-  let wanted = variance_of(drawing.frame_noise, color);
-  let made = (1.0 - own) * lit;
-  let left = wanted - own * own * variance_of(drawing.frame_noise, f) - made * made * variance_of(drawing.plate_noise, b);
-  return select(vec3f(0.0), left, left > ENOUGH_MISSING * wanted);
-}
-
-// A colour with the noise of this variance, of the same mean.
-fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
-  if all(variance <= vec3f(0.0)) { return color; }
-  let at = texel + vec2i(globals.region_origin_px);
-  let noise = sqrt(max(variance, vec3f(0.0))) * grain_at(at, drawing.picture, drawing.beside, drawing.channels);
-  let room = max(min(color, 1.0 - color), vec3f(0.0));
-  return color + clamp(noise, -room, room);
-}
-
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
 // the camera pixel where toy and receiver mix: 1 where the change is little. `f` is the frame there, `evident` are its marks;
@@ -171,17 +146,17 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // Beyond the receivers nothing changes but that the real toy goes.
-  if !is_hit(point) {
-    *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
-    let color = mix(lit, f, evident.r);
-    if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b.rgb, fit.gain.rgb); }
-    return color;
-  }
   // A thing stays as the camera saw it.
   if is_thing(evident) && evident.b == 1.0 {
     *change = vec4f(0.0);
     return f;
+  }
+  // Beyond the receivers nothing changes but that the real toy goes.
+  if !is_hit(point) {
+    *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
+    let color = mix(lit, f, evident.r);
+    if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
+    return color;
   }
   let models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
@@ -209,7 +184,7 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
   *change = vec4f(lit * (after - before), keep_mixed);
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
-  if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b.rgb, fit.gain.rgb * (after + residual)); }
+  if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
   return color;
 }
 
@@ -263,13 +238,6 @@ fn stillness(texel: vec2i) -> f32 {
   let most = max(change_at(texel), max(beside, above_and_below));
   if most == 1.0 || !is_soft() { return 1.0 - most; }
   return 1.0 - max(most, change_around(texel));
-}
-
-// A pixel of which so much is a toy that has moved: its colours are means of those beside a point, which have less noise.
-fn grained_toy(color: vec3f, texel: vec2i, moved: f32) -> vec3f {
-  if !HAS_GRAIN { return color; }
-  let of_toy = (1.0 - resampled_variance(drawing.beside)) * variance_of(drawing.frame_noise, color);
-  return grained(color, texel, mix(missing, of_toy, moved));
 }
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {

@@ -6,10 +6,14 @@ use glam::{DMat4, DVec3};
 
 use super::photograph::Photograph;
 use super::pose;
+use super::pose::adapt::{Adapted, Surface, adapt};
 use super::report::ModelAlignment;
 use super::shape::Shape;
 use app_scene::scene::Scene;
 use app_scene::toy::{Toy, ToyError};
+
+/// Points that are displaced by less, over the most that any is, count as not displaced.
+const TOLD: f64 = 0.01;
 
 /// A toy whose outline is farther from that of its model, in pixels, is somewhere else or another one: no model is adapted to it. Of those
 /// that were displaced by 1 mm, or have a fifth of the triangles, outlines came to 1.3.
@@ -29,7 +33,7 @@ impl Photograph {
         world_from_object: &DMat4,
     ) -> Result<Option<AdaptedModel>, ToyError> {
         let camera_from_object = self.camera_from_object(world_from_object);
-        let posed = |scene: &Scene| -> Result<pose::Surface, ToyError> {
+        let posed = |scene: &Scene| -> Result<Surface, ToyError> {
             let shape = Shape::new(scene, &camera_from_object)?;
             Ok((shape, pose::Paint::new(scene, &camera_from_object)?))
         };
@@ -41,7 +45,7 @@ impl Photograph {
             object_from_camera: camera_from_object.inverse(),
         };
         let displaced = |displacements_m: &[DVec3]| posed(&adapting.displaced(displacements_m)?);
-        let found = pose::adapt((&given, &normals), self.pyramid(), displaced)?;
+        let found = adapt((&given, &normals), self.pyramid(), displaced)?;
         let Some(found) = found else { return Ok(None) };
         Ok(Some(AdaptedModel {
             toy: adapting.displaced(&found.displacements_m)?.toy,
@@ -94,4 +98,26 @@ fn normals(toy: &Toy, shape: &Shape) -> Vec<DVec3> {
         }
     }
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
+}
+
+impl ModelAlignment {
+    pub(crate) fn new(found: &Adapted, picture_px: f64) -> Self {
+        let most_m = found
+            .displacements_m
+            .iter()
+            .fold(0.0, |most: f64, one| most.max(one.length()));
+        // Where no outline tells anything, nothing is displaced.
+        let told = found
+            .displacements_m
+            .iter()
+            .filter(|one| one.length() > TOLD * most_m);
+        let squares: Vec<f64> = told.map(|one| one.length_squared()).collect();
+        Self {
+            displaced_m: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
+            most_displaced_m: most_m,
+            n_pieces: found.n_pieces,
+            outlines_px: found.outlines_px.map(|outline_px| picture_px * outline_px),
+            evidence: found.evidence,
+        }
+    }
 }

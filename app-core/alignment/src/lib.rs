@@ -86,6 +86,9 @@ pub use report::{
 };
 pub use warning::AlignmentWarning;
 
+/// A model is adapted in one of the first views that it does not fit, or never: each try takes about a second.
+const MOST_ADAPTATIONS: usize = 2;
+
 /// Each plate takes as long as a frame; more than so many stay as they are given.
 const MOST_ALIGNED_PLATES: usize = 32;
 
@@ -127,7 +130,7 @@ impl Alignment {
             world_from_object: input.world_from_object,
             lights: None,
             scene: None,
-            things: None,
+            things: input.things.clone(),
             sharpness: input.sharpness,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
@@ -142,7 +145,7 @@ impl Alignment {
             .with_camera(self.camera)
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
-            .with_things(self.things.clone().or_else(|| input.things.clone()))
+            .with_things(self.things.clone())
             .with_sharpness(self.sharpness)
     }
 }
@@ -175,6 +178,8 @@ pub struct Aligner {
     are_shadows_withheld: bool,
     /// Once it was adapted.
     model: Option<ModelAlignment>,
+    /// How often another model was looked for.
+    n_adaptations: usize,
     /// Once it was needed.
     probe: Option<ProbeReport>,
 }
@@ -197,6 +202,7 @@ impl Aligner {
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
+            n_adaptations: 0,
             probe: None,
         }
     }
@@ -278,10 +284,14 @@ impl Aligner {
         let Some(pose) = &mut seen.view.report else {
             return Ok(seen);
         };
-        let is_near = pose.shown_px() <= MOST_ADAPTED_PX;
-        if self.model.is_some() || !is_near || !pose::is_doubtful(pose) {
+        // Limits are in pixels of the largest level, which may be smaller than the picture.
+        let picture_px = seen.photograph.pyramid().picture_px();
+        let is_near = pose.shown_px() <= MOST_ADAPTED_PX * picture_px;
+        let is_tried = self.model.is_some() || self.n_adaptations >= MOST_ADAPTATIONS;
+        if is_tried || !is_near || !pose::adapt::is_doubtful(pose, picture_px) {
             return Ok(seen);
         }
+        self.n_adaptations += 1;
         if let Some(adapted) = seen
             .photograph
             .adapted(&self.scene, &seen.view.world_from_object)?

@@ -9,6 +9,7 @@ use super::photograph::MOST_OUTLINE_PX;
 use super::view::Seen;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
+use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 /// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
@@ -150,23 +151,34 @@ impl Aligner {
         let known: Arc<[Light]> = kept
             .as_ref()
             .map_or(Arc::clone(&given), |kept| kept.in_use().into());
-        let things = if self.are_shadows_withheld {
+        // A toy that is not where it is thought to be shows the place, as if something stood before it.
+        let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
+        let things = if !are_told {
             None
         } else {
             seen.photograph.things(&self.scene, &seen.input, &known)?
         };
         let clear = things.as_ref().map(|things| seen.clear_of(things));
         let looked_at = clear.as_ref().unwrap_or(seen);
+        let before = Arc::clone(&self.scene);
         let lights = match kept {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(given, looked_at)?,
         };
-        self.things = if self.are_shadows_withheld || lights.in_use() == &*known {
+        let things = if !are_told || lights.in_use() == &*known {
             things
         } else {
-            seen.photograph
-                .things(&self.scene, &seen.input, lights.in_use())?
+            // Plates may be in another light now.
+            let is_same = Arc::ptr_eq(&before, &self.scene);
+            let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
+            let photograph = &relit.as_ref().unwrap_or(seen).photograph;
+            photograph.things(&self.scene, &seen.input, lights.in_use())?
         };
+        // The same marks stay the same ones, of which nothing is learned anew.
+        let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
+        if !self.things.as_ref().is_some_and(is_same) {
+            self.things = things;
+        }
         Ok(lights)
     }
 

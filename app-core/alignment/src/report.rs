@@ -6,7 +6,6 @@ use glam::DVec3;
 use serde::{Serialize, Serializer};
 
 use crate::no_light::NoLight;
-use crate::pose::Adapted;
 use crate::probe::ProbeReport;
 use app_scene::lens::Distortion;
 use app_scene::scene::Light;
@@ -113,28 +112,6 @@ pub struct ModelAlignment {
     pub evidence: f64,
 }
 
-impl ModelAlignment {
-    pub(crate) fn new(found: &Adapted, picture_px: f64) -> Self {
-        let most_m = found
-            .displacements_m
-            .iter()
-            .fold(0.0, |most: f64, one| most.max(one.length()));
-        // Where no outline tells anything, nothing is displaced.
-        let told = found
-            .displacements_m
-            .iter()
-            .filter(|one| one.length() > TOLD * most_m);
-        let squares: Vec<f64> = told.map(|one| one.length_squared()).collect();
-        Self {
-            displaced_m: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
-            most_displaced_m: most_m,
-            n_pieces: found.n_pieces,
-            outlines_px: found.outlines_px.map(|outline_px| picture_px * outline_px),
-            evidence: found.evidence,
-        }
-    }
-}
-
 /// How a toy is on a plane that it may stand on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stand {
@@ -167,9 +144,6 @@ impl PoseAlignment {
         }
     }
 }
-
-/// Points that are displaced by less, over the most that any is, count as not displaced.
-const TOLD: f64 = 0.01;
 
 /// A model whose outline is off by more, along some centimetres of it, is not the toy, in pixels: the softer a picture, the more it may be.
 ///

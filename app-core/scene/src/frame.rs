@@ -153,6 +153,11 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        if let Some(things) = &self.things {
+            let [width_px, height_px] = things.size_px().to_array();
+            InputError::at("things", check::picture_size(width_px, height_px))?;
+            check::camera("things.camera", things.camera())?;
+        }
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))
     }

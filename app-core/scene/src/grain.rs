@@ -1,8 +1,7 @@
 //! Grain: the noise of a picture, measured against a plate of the same view.
 
-use crate::frame::FrameInput;
 use crate::geometry::color::{linear_of_codes, linear_per_srgb};
-use crate::scene::{Image, InputError, Scene, check};
+use crate::scene::{Camera, Image, InputError, Scene, check};
 
 /// Side of a block of pixels in which noise is told from texture.
 const BLOCK_PX: u32 = 8;
@@ -66,9 +65,9 @@ impl Grain {
     /// That of a frame, against the first plate that the very same camera took; none where there is no such plate, or where
     /// [`Grain::measured`] finds none.
     #[must_use]
-    pub fn of(scene: &Scene, input: &FrameInput) -> Option<Self> {
-        let plate = scene.plates.iter().find(|plate| plate.camera == input.camera)?;
-        Self::measured(input.image.rgba(), &plate.image)
+    pub fn of(scene: &Scene, image: &Image, camera: &Camera) -> Option<Self> {
+        let plate = scene.plates.iter().find(|plate| plate.camera == *camera)?;
+        Self::measured(image, &plate.image)
     }
 
     /// Measures a picture against a plate of the same view and size: what both show is no noise. None where the picture is

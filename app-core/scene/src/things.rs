@@ -71,6 +71,12 @@ impl Things {
         Arc::ptr_eq(&self.marks, &other.marks)
     }
 
+    /// Whether they say the same, wherever they are in memory.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.camera == other.camera && self.marks == other.marks
+    }
+
     /// Whether there is any mark.
     #[must_use]
     pub fn has_any(&self) -> bool {

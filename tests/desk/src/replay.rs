@@ -252,7 +252,7 @@ impl Shot<'_> {
     /// What the core is given.
     pub(crate) fn input(&self, preset: Preset) -> FrameInput {
         let recorded = FrameInput::from(&self.frame);
-        let grain = Grain::of(self.session.scene(), &recorded);
+        let grain = Grain::of(self.session.scene(), recorded.image.rgba(), &recorded.camera);
         self.alignments
             .input(self.index, &self.frame, preset)
             .with_grain(grain)

@@ -15,7 +15,7 @@ use crate::picture::{Color, Level, index_in, noise_deviation, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
-use app_scene::scene::Light;
+use app_scene::scene::{Light, MAX_LIGHTS};
 
 /// What is looked at around toy and shadows, over their size.
 const BEYOND: f64 = 0.3;
@@ -41,7 +41,7 @@ const FIRST_DEVIATION: f32 = 0.08;
 const LEAST_DEVIATION: f32 = 0.012;
 /// What anything else shows lies evenly between none and that many plates.
 const MOST_RATIO: f32 = 1.5;
-/// A pixel from which the model takes less can have the shadow of nothing.
+/// Where the model takes less of the light no shadow is expected.
 const CHANGED: f32 = 0.12;
 /// Rounds of the mixture.
 const N_ROUNDS: usize = 4;
@@ -86,7 +86,7 @@ pub(crate) fn compare(
         .map(|light| Lamp::new(light, &camera_from_world, shape.centre));
     let lamps = lamps.collect::<Option<Vec<_>>>()?;
     let mut raster = Rasterizer::default();
-    if lamps.is_empty() {
+    if lamps.is_empty() || lamps.len() > MAX_LIGHTS {
         return None;
     }
     let rect = around(&mut raster, (shape, receivers), level, &lamps);

@@ -44,8 +44,10 @@ pub(crate) struct Adapted {
 pub(crate) type Surface = (Shape, Paint);
 
 /// Whether the outline is off by so much along some centimetres that another shape is tried: more than pictures of cameras are as a rule.
-pub(crate) fn is_doubtful(pose: &PoseAlignment) -> bool {
-    pose.model_px > AS_A_RULE * most_model_px(pose.spread_px)
+/// `picture_px` are the picture's pixels in one of the largest level.
+pub(crate) fn is_doubtful(pose: &PoseAlignment, picture_px: f64) -> bool {
+    let [model_px, spread_px] = [pose.model_px, pose.spread_px].map(|px| px / picture_px);
+    model_px > AS_A_RULE * most_model_px(spread_px)
 }
 
 /// The model whose outline is that of the picture; none where the picture does not speak for another one than that given. `displaced` is the

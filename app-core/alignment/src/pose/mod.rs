@@ -7,7 +7,7 @@
 //! They solve for the offset of the whole outline as well, and with the feet of the toy on their plane (`standing`) for its size
 //! (`settle`). Which of these poses the picture speaks for is one decision (`decide`).
 
-mod adapt;
+pub(super) mod adapt;
 mod contour;
 mod decide;
 mod edge;
@@ -42,7 +42,6 @@ use placement::Placement;
 use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
-pub(super) use adapt::{Adapted, Surface, adapt, is_doubtful};
 pub(super) use paint::Paint;
 pub(super) use resting::find_resting;
 pub(super) use standing::{Ground, Plane, feet};

@@ -176,7 +176,8 @@ impl Sight<'_> {
     fn marks(&self, level: &Level, found: &Found) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
         let size_px = largest.frame.size_px;
-        let per_px = level.frame.size_px.as_dvec2() / size_px.as_dvec2();
+        // A level leaves out an odd last row and column: it is half as large as the one above, not stretched.
+        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
         let toy = Toy::of(self, largest);
         let codes = largest
             .plate

@@ -197,7 +197,10 @@ impl Place {
         }
         match done.result {
             Ok(alignment) => self.apply(&done.given, &done.aligner, alignment),
-            Err(reason) => self.verdict = Some(Verdict::Failed(reason.to_string())),
+            Err(reason) => {
+                self.things = None;
+                self.verdict = Some(Verdict::Failed(reason.to_string()));
+            }
         }
         self.aligner = Some(done.aligner);
         true
@@ -214,12 +217,14 @@ impl Place {
     /// The thread of an alignment did not come to an end: begins with a new one.
     pub(super) fn begin_anew(&mut self) {
         self.aligner = Some(Aligner::new(Arc::clone(&self.scene)));
+        self.things = None;
     }
 
     fn apply(&mut self, given: &Camera, aligner: &Aligner, alignment: Alignment) {
         let verdict = verdict(&alignment);
         if let Verdict::Missed { .. } = verdict {
             self.n_misses = self.n_misses.saturating_add(1);
+            self.things = None;
             self.verdict = Some(verdict);
             return;
         }

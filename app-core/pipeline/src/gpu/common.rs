@@ -31,6 +31,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "grain",
     "grid",
     "hemispheres",
+    "made_grain",
     "marks",
     "material",
     "model",

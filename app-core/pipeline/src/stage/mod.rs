@@ -409,7 +409,8 @@ impl Stage {
             };
             gpu.write(&self.plates.views, &[views]);
         }
-        if let Some(things) = &self.things {
+        // What marks are drawn for follows the view.
+        if let Some(things) = self.things.as_ref().filter(|_| change >= Change::View) {
             let world_from_plane = self.layout().world_from_anchor();
             things.follow(gpu, &footprint.view, &method.region(), &world_from_plane);
         }
@@ -437,7 +438,7 @@ impl Stage {
                 reason: "it is the one that is there",
             });
         }
-        if change < Change::View {
+        if change < Change::View && keeps_sharpness {
             report.skipped.push(SkippedWork {
                 what: "capture path",
                 reason: "scene, pose and camera are known",

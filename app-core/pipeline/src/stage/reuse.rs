@@ -134,6 +134,7 @@ impl Stage {
         // What was injected belongs to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
+        let is_placement_outdated = mem::take(&mut state.is_placement_outdated);
         let is_known = state.image.as_ref().is_some_and(|known| known.is(&input.image));
         let (known, given) = (state.things.as_ref(), self.things.as_ref().map(Things::given));
         let are_things_known = match (known, given) {
@@ -146,13 +147,9 @@ impl Stage {
         state.things = given.cloned();
         if !has_grids {
             Reuse::Nothing
-        } else if is_fit_outdated {
+        } else if is_placement_outdated || is_fit_outdated {
             Reuse::Targets
-        } else if !are_things_known {
-            Reuse::SceneState
-        } else if mem::take(&mut state.is_placement_outdated) {
-            Reuse::Targets
-        } else if !is_within || are_settings_outdated {
+        } else if !are_things_known || !is_within || are_settings_outdated {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region

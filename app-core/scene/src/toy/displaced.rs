@@ -11,6 +11,7 @@ use super::moment::Pose;
 use super::rig::RigPose;
 use super::shadow_indices::first_alike;
 use super::surface::Surface;
+use crate::geometry::bounds::Bounds;
 
 impl Toy {
     /// For each vertex the first that coincides with it in every pose: those of one are displaced alike, or the surface tears.
@@ -47,19 +48,25 @@ impl Toy {
     }
 }
 
+/// No vertex is displaced by more, over the diagonal of its geometry's box.
+const MOST_OF_EXTENT: f64 = 0.1;
+
 /// A geometry with each vertex moved by the mean of what those that draw it ask for.
 fn displaced(geometry: &Geometry, drawn: &[&Surface], pose: &RigPose, displacements: &[DVec3]) -> Geometry {
     let mut out = geometry.clone();
+    let bounds = Bounds::around(geometry.positions.iter().map(|position| position.as_dvec3()));
+    let most = MOST_OF_EXTENT * (bounds.max - bounds.min).length();
     for (vertex, position) in out.positions.iter_mut().enumerate() {
         let in_mesh = drawn.iter().filter_map(|surface| {
             let displacement = *displacements.get(surface.first_vertex + vertex)?;
             let anchor_from_mesh = surface.anchor_from_mesh(geometry, vertex, pose);
             let in_mesh = anchor_from_mesh.matrix3.inverse() * displacement;
-            in_mesh.is_finite().then_some(in_mesh)
+            // A pose that all but flattens a part tells nothing of its shape.
+            (in_mesh.length() <= most).then_some(in_mesh)
         });
-        let sum: DVec3 = in_mesh.sum();
+        let (sum, n_told) = in_mesh.fold((DVec3::ZERO, 0.0), |(sum, n), one| (sum + one, n + 1.0));
         if sum != DVec3::ZERO {
-            *position = (position.as_dvec3() + sum / drawn.len() as f64).as_vec3();
+            *position = (position.as_dvec3() + sum / n_told).as_vec3();
         }
     }
     turn_normals(geometry, &mut out);

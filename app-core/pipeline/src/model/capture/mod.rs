@@ -127,6 +127,7 @@ impl CapturePath<'_> {
         passes
             .validity
             .encode(recorder, &self.validity_inputs(), &of.validity);
+        self.mark_things(recorder);
         let maps = &self.captured.light;
         self.lighting
             .encode_light_visibility(recorder, self.light, self.physical(), maps);
