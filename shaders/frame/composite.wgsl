@@ -16,6 +16,7 @@
 //#import common/channels
 //#import common/covered
 //#import common/fullscreen
+//#import common/borders
 //#import common/made_grain
 //#import common/marks
 //#import common/soft_toy
@@ -69,33 +70,11 @@ const OUTLIER_ALL: f32 = 0.3;
 // colour.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
-// Distance over which the toy's colours bleed into a pixel beside it.
-const BLEED_PX: f32 = 6.0;
 // Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from
 // which it is
 // what bled into it.
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
-
-// 1 inside, falling to 0 at an inner border of the region.
-fn inside_border(region_px: vec2f) -> f32 {
-  let to_edge = vec4f(region_px, globals.region_size_px - region_px);
-  let fade = select(vec4f(1.0), to_edge / globals.border_px, globals.border_px > vec4f(0.0));
-  return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
-}
-
-// Whether the toy's surface beside this texel of the toy box is no longer in its place. None is near the border of the box,
-// unless that is the region's.
-fn has_moved_beside(texel: vec2i) -> bool {
-  var most = 0.0;
-  for (var k = 0u; k < 16u; k++) {
-    let turn = f32(k) * 0.78539816;
-    let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
-    let tap = texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
-    most = max(most, textureLoad(moved_mask, clamped_to_box(tap), 0).r);
-  }
-  return most > 0.0;
-}
 
 // How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
 fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {

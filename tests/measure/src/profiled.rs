@@ -51,16 +51,15 @@ pub enum ProfileError {
 pub fn task(name: &str) -> Option<&'static str> {
     let index = match name {
         "align" | "placement" => 0,
-        "masks" | "eligible" | "census" | "gbuffer" | "validity" | "withhold" | "moved_mask" | "coverage" => {
-            1
-        }
-        "toy" | "appearance" | "tint" | "tint_fill" | "self_shadow" => 2,
+        "masks" | "eligible" | "census" | "gbuffer" | "validity" | "things" | "withhold" | "moved_mask"
+        | "coverage" => 1,
+        "toy" | "appearance" | "rim" | "tint" | "tint_fill" | "self_shadow" => 2,
         "warp" | "occlusion" => 3,
         // What is sampled of the real shadow: by a search there, by a fit and a residual here.
         "search" | "lit" | "fit" | "fit_solve" | "residual" | "fill" | "detail" => 4,
         "box_filter" => 5,
         "pcss" => 6,
-        "plate" | "estimate" => 7,
+        "plate" | "soften" | "estimate" => 7,
         "camera_planes" | "retarget" | "composite" | "present" | "screen" => 8,
         _ => return None,
     };

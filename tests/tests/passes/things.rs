@@ -53,7 +53,6 @@ fn things_in_the_mask() {
 #[test]
 fn a_fault_in_marking_things_is_found() {
     let faults = [
-        ("at.z <= 0.0 { return 0u; }", "at.z <= -1e9 { return 0u; }"),
         ("CODE_BEFORE_TOY: u32 = 2u", "CODE_BEFORE_TOY: u32 = 3u"),
         ("MIXED_PX: f32 = 2.0", "MIXED_PX: f32 = 1.0"),
         ("of_toy, marks.r, THING", "of_toy, marks.b, THING"),

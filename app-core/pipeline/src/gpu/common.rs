@@ -16,6 +16,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "behind",
     "between_cells",
     "between_tints",
+    "borders",
     "cells",
     "channels",
     "completed",
