@@ -36,6 +36,7 @@ mod kept_lights;
 mod laid;
 mod light_search;
 mod lights;
+mod median;
 mod no_light;
 mod observer;
 mod outlines;
@@ -245,10 +246,7 @@ impl Aligner {
     /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
     pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
         error::check(&self.scene, input)?;
-        let given: Arc<[Light]> = match &input.lights {
-            Some(lights) => Arc::clone(lights),
-            None => self.scene.lights.as_slice().into(),
-        };
+        let given = input.lights_in(&self.scene);
         let input = &self.with_ratio(input, &given)?;
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         // Lights that were found stay as long as no others are listed.
@@ -344,10 +342,7 @@ impl Aligner {
     /// As [`Self::align`].
     pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
         error::check(&self.scene, input)?;
-        let given = input
-            .lights
-            .clone()
-            .unwrap_or_else(|| self.scene.lights.as_slice().into());
+        let given = input.lights_in(&self.scene);
         let lights = self.about(&given, input)?;
         Ok(ratio::find_lens(&self.scene, input, &lights))
     }

@@ -1,11 +1,9 @@
 //! What a photograph shows beside camera, toy and lights, where these stay as they are given.
 
-use std::sync::Arc;
-
 use super::error::{self, AlignError};
 use super::photograph::Photograph;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Light, Scene};
+use app_scene::scene::Scene;
 
 /// Looks at frames that are shown as they are given.
 #[derive(Debug, Default)]
@@ -39,14 +37,10 @@ impl Observer {
 }
 
 fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
-    let lights: Arc<[Light]> = match &input.lights {
-        Some(lights) => Arc::clone(lights),
-        None => scene.lights.as_slice().into(),
-    };
     let photograph = Photograph::new(scene, input, None);
     let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
     // Things are told by what a plate shows that is as soft.
     let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
-    let things = photograph.things(scene, input, &lights)?;
+    let things = photograph.things(scene, input, &input.lights_in(scene))?;
     Ok(input.clone().with_things(things).with_sharpness(sharpness))
 }

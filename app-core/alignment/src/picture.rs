@@ -71,19 +71,10 @@ impl Picture {
     /// The value at a place in pixels, bilinear between the centres of four; none where one of them is unknown.
     pub(super) fn sample(&self, at_px: DVec2) -> Option<Color> {
         let is_inside = at_px.cmpge(DVec2::ZERO).all() && at_px.cmple(self.size_px.as_dvec2()).all();
-        let corner = is_inside.then(|| (at_px - 0.5).floor())?;
-        let [right, down] = (at_px - 0.5 - corner).as_vec2().to_array();
-        let corner = corner.as_ivec2();
-        let four = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|step| self.get(corner + step));
-        let weights = [
-            (1.0 - right) * (1.0 - down),
-            right * (1.0 - down),
-            (1.0 - right) * down,
-            right * down,
-        ];
+        let four = is_inside.then(|| bilinear(at_px - 0.5))?;
         let mut sum = [0.0; 3];
-        for (color, weight) in four.into_iter().zip(weights) {
-            let color = color?;
+        for (at, weight) in four {
+            let color = self.get(at)?;
             sum = [0, 1, 2].map(|channel| sum[channel] + weight * color[channel]);
         }
         Some(sum)
@@ -123,6 +114,19 @@ impl Picture {
             pixels: places(size_px).map(mean).collect(),
         }
     }
+}
+
+/// The four points of whole numbers around a point, and their weights.
+pub(super) fn bilinear(at: DVec2) -> [(IVec2, f32); 4] {
+    let corner = at.floor();
+    let [right, down] = (at - corner).as_vec2().to_array();
+    let corner = corner.as_ivec2();
+    [
+        (corner, (1.0 - right) * (1.0 - down)),
+        (corner + IVec2::X, right * (1.0 - down)),
+        (corner + IVec2::Y, (1.0 - right) * down),
+        (corner + IVec2::ONE, right * down),
+    ]
 }
 
 /// Steps within three deviations, and their weights; the sum of these is 1.

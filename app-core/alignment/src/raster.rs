@@ -34,6 +34,15 @@ impl Coverage {
         value.copied().unwrap_or(0.0)
     }
 
+    /// Whether it covers a part of a pixel in a square around one, of so many pixels to each side.
+    pub(super) fn is_near(&self, at: IVec2, reach_px: i32) -> bool {
+        let reach = -reach_px..=reach_px;
+        let mut around = reach
+            .clone()
+            .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
+        around.any(|step| self.at(at + step) > 0.0)
+    }
+
     /// Depth at a pixel's centre, in metres; infinite where there is no mesh.
     pub(super) fn depth_m(&self, at: IVec2) -> f32 {
         let depth = self.index(at).and_then(|index| self.depths_m.get(index));

@@ -7,7 +7,8 @@
 use glam::{DVec2, IVec2};
 use nalgebra::{Matrix3, Vector3};
 
-use super::picture::{Level, Mask, gaussian, index_in, places};
+use super::median::median;
+use super::picture::{Level, Mask, bilinear, gaussian, index_in, places};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
@@ -197,13 +198,7 @@ fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
     let ratios = of_frame.values.iter().zip(&of_plate.values);
     let ratios: Vec<f32> = ratios.map(|(f, b)| f / b.max(DARKEST)).collect();
     let told = places(size_px).zip(&ratios).filter(|(at, _)| !unlike.has(*at));
-    let mut told: Vec<f32> = told.map(|(_, ratio)| *ratio).collect();
-    if told.is_empty() {
-        return None;
-    }
-    let middle = told.len() / 2;
-    let (_, median, _) = told.select_nth_unstable_by(middle, f32::total_cmp);
-    let exposure = median.max(f32::MIN_POSITIVE);
+    let exposure = median(told.map(|(_, ratio)| *ratio), f32::total_cmp)?.max(f32::MIN_POSITIVE);
     for (at, ratio) in places(size_px).zip(&ratios) {
         if (ratio / exposure - 1.0).abs() > SAME_LIGHT {
             unlike.mark(at);
@@ -282,17 +277,9 @@ fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
     }
     let mut taps = Vec::new();
     for (step, weight) in gaussian(deviation_px) {
-        let at = f64::from(step) * axis_px / deviation_px;
-        let corner = at.floor();
-        let [right, down] = (at - corner).as_vec2().to_array();
-        let four = [
-            (IVec2::ZERO, (1.0 - right) * (1.0 - down)),
-            (IVec2::X, right * (1.0 - down)),
-            (IVec2::Y, (1.0 - right) * down),
-            (IVec2::ONE, right * down),
-        ];
+        let four = bilinear(f64::from(step) * axis_px / deviation_px);
         let near = four.into_iter().filter(|(_, part)| *part > 0.0);
-        taps.extend(near.map(|(offset, part)| (corner.as_ivec2() + offset, weight * part)));
+        taps.extend(near.map(|(offset, part)| (offset, weight * part)));
     }
     taps
 }

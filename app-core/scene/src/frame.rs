@@ -7,7 +7,7 @@ use glam::DMat4;
 use crate::camera_frame::CameraImage;
 use crate::grain::Grain;
 use crate::scene::check;
-use crate::scene::{Camera, InputError, Light, LightEstimate, Pose};
+use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
 use crate::sharpness::Sharpness;
 use crate::things::Things;
 
@@ -139,6 +139,13 @@ impl FrameInput {
     pub fn with_grain(mut self, grain: Option<Grain>) -> Self {
         self.grain = grain;
         self
+    }
+
+    /// The lights that are listed for it: its own, or those of the scene.
+    #[must_use]
+    pub fn lights_in(&self, scene: &Scene) -> Arc<[Light]> {
+        let own = self.lights.clone();
+        own.unwrap_or_else(|| scene.lights.as_slice().into())
     }
 
     /// Validates the input.

@@ -214,7 +214,9 @@ pub fn replay_aligned(
     for index in indices {
         let frame = session.frame(index)?;
         alignments.align(session.scene(), index, &frame)?;
+        let recorded = FrameInput::from(&frame);
         let shot = Shot {
+            grain: Grain::of(session.scene(), recorded.image.rgba(), &recorded.camera),
             session,
             alignments,
             index,
@@ -245,17 +247,17 @@ pub(crate) struct Shot<'a> {
     pub(crate) alignments: &'a Alignments,
     pub(crate) index: usize,
     pub(crate) frame: SessionFrame,
+    /// Of the camera's picture.
+    pub(crate) grain: Option<Grain>,
     pub(crate) truth: Option<Truth>,
 }
 
 impl Shot<'_> {
     /// What the core is given.
     pub(crate) fn input(&self, preset: Preset) -> FrameInput {
-        let recorded = FrameInput::from(&self.frame);
-        let grain = Grain::of(self.session.scene(), recorded.image.rgba(), &recorded.camera);
         self.alignments
             .input(self.index, &self.frame, preset)
-            .with_grain(grain)
+            .with_grain(self.grain)
     }
 
     fn failed(&self, reason: CoreError) -> ReplayError {

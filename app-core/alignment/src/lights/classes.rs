@@ -11,6 +11,7 @@ use super::backdrop::QUADRATIC;
 use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
+use crate::median::median;
 use crate::picture::{Color, Level, index_in, noise_deviation, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
@@ -131,23 +132,18 @@ fn around(
 
 /// Median of frame over plate in the open, for each channel; none where nothing is.
 fn open_gain(shadows: &Shadows<'_>, taken: &[Vec<f32>]) -> Option<Color> {
-    let open = shadows.pixels.iter().enumerate().filter(|(index, pixel)| {
-        taken.iter().all(|taken| taken[*index] < OPEN)
-            && pixel.precision.iter().all(|precision| *precision > 0.0)
-    });
+    let open = shadows
+        .pixels
+        .iter()
+        .enumerate()
+        .filter(|(index, pixel)| taken.iter().all(|taken| taken[*index] < OPEN) && pixel.is_told());
     let ratios: Vec<Color> = open.map(|(_, pixel)| ratio(pixel.frame, pixel.plate)).collect();
     medians(&ratios)
 }
 
 fn medians(colors: &[Color]) -> Option<Color> {
-    if colors.is_empty() {
-        return None;
-    }
-    Some([0, 1, 2].map(|channel| {
-        let mut values: Vec<f32> = colors.iter().map(|color| color[channel]).collect();
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f32::total_cmp).1
-    }))
+    let of = |channel: usize| median(colors.iter().map(|color| color[channel]), f32::total_cmp);
+    Some([of(0)?, of(1)?, of(2)?])
 }
 
 fn ratio(frame: Color, plate: Color) -> Color {
@@ -183,13 +179,7 @@ fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -
         taken[lamp][index] > HIDDEN && others.map(|(_, taken)| taken[index]).all(|taken| taken < OPEN)
     };
     let votes: Vec<Color> = (0..shadows.pixels.len())
-        .filter(|index| is_hidden(*index))
-        .filter(|index| {
-            shadows.pixels[*index]
-                .precision
-                .iter()
-                .all(|precision| *precision > 0.0)
-        })
+        .filter(|index| is_hidden(*index) && shadows.pixels[*index].is_told())
         .filter_map(|index| implied(shadows, index, taken[lamp][index], gain))
         .collect();
     let mean = |vote: &Color| vote.iter().sum::<f32>() / 3.0;
@@ -377,13 +367,8 @@ impl<'a> Mixture<'a> {
             .compared
             .iter()
             .filter(|compared| compared.receiver > 0.5 && compared.is_changed());
-        let mut away: Vec<f32> = near.map(Compared::away).collect();
-        if away.is_empty() {
-            return LEAST_DEVIATION;
-        }
-        let middle = away.len() / 2;
-        let median = *away.select_nth_unstable_by(middle, f32::total_cmp).1;
-        (1.4826 * median).clamp(LEAST_DEVIATION, FIRST_DEVIATION)
+        let away = median(near.map(Compared::away), f32::total_cmp).unwrap_or(0.0);
+        (1.4826 * away).clamp(LEAST_DEVIATION, FIRST_DEVIATION)
     }
 }
 

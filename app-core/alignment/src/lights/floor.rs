@@ -34,6 +34,13 @@ pub(super) struct FloorPixel {
     pub(super) precision: Color,
 }
 
+impl FloorPixel {
+    /// Whether all channels of it say something.
+    pub(super) fn is_told(&self) -> bool {
+        self.precision.iter().all(|precision| *precision > 0.0)
+    }
+}
+
 /// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate. `around` is the toy's centre
 /// in camera space, and a length in metres that places are told in.
 pub(super) fn floor_pixels(
@@ -46,7 +53,7 @@ pub(super) fn floor_pixels(
     // A receiver on its own gets no light of another, and a plate shows what it is like.
     let is_even = receivers.len() == 1 && level.plate.is_some();
     let n_terms = if is_even { 1 } else { QUADRATIC };
-    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !is_near_toy(coverage, *at));
+    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !coverage.is_near(*at, CLEAR_PX));
     let pixels = clear.filter_map(|at| {
         let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
         let frame = level.frame.get(at)?;
@@ -80,10 +87,4 @@ fn precision(frame: f32, plate: f32, unexplained: f32) -> f32 {
     } else {
         0.0
     }
-}
-
-fn is_near_toy(coverage: &Coverage, at: IVec2) -> bool {
-    let mut around =
-        (-CLEAR_PX..=CLEAR_PX).flat_map(|y| (-CLEAR_PX..=CLEAR_PX).map(move |x| IVec2::new(x, y)));
-    around.any(|step| coverage.at(at + step) > 0.0)
 }

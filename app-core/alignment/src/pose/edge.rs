@@ -112,33 +112,37 @@ pub(super) fn measure(
     optics: Optics,
     half_px: f64,
 ) -> Vec<Measured> {
-    let edges = Edges::new(beside, elements, half_px);
-    let pieces = edges.pieces(optics);
-    let measured = elements
-        .iter()
-        .zip(&pieces)
-        .filter_map(|(element, piece)| piece.measured(element));
-    measured.collect()
+    measured_by(beside, elements, (optics, half_px), Piece::measured)
 }
 
-/// The same, trusted by how well its step explains the pixels of each piece, whatever it is that a piece shows.
+/// The same, trusted by how well its step explains the pixels of each piece.
 pub(super) fn measure_explained(
     beside: &Beside<'_>,
     elements: &[Element],
     optics: Optics,
     half_px: f64,
 ) -> Vec<Measured> {
-    let edges = Edges::new(beside, elements, half_px);
-    let pieces = edges.pieces(optics);
-    let measured = elements.iter().zip(&pieces).filter_map(|(element, piece)| {
+    measured_by(beside, elements, (optics, half_px), |piece, element| {
         let measured = piece.measured(element)?;
         let precision = 1.0 / (1.0 / measured.precision + piece.unexplained_px2());
         Some(Measured {
             precision,
             ..measured
         })
-    });
-    measured.collect()
+    })
+}
+
+fn measured_by(
+    beside: &Beside<'_>,
+    elements: &[Element],
+    (optics, half_px): (Optics, f64),
+    of: impl Fn(&Piece, &Element) -> Option<Measured>,
+) -> Vec<Measured> {
+    let pieces = Edges::new(beside, elements, half_px).pieces(optics);
+    let measured = elements.iter().zip(&pieces);
+    measured
+        .filter_map(|(element, piece)| of(piece, element))
+        .collect()
 }
 
 /// The pixels beside an outline, each with what it would show of toy and background alone.

@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::settle::{ALIKE, OFFSET_PX};
 use super::sightings::Sighting;
+use crate::median::median;
 use crate::robust;
 use crate::shape::Shape;
 
@@ -83,7 +84,7 @@ impl Field {
             return None;
         }
         let process = Process::new(skin, sightings, camera);
-        let far_px = FAR * median(process.offsets.iter()).max(LEAST_MEDIAN_PX);
+        let far_px = FAR * median_size(process.offsets.iter()).max(LEAST_MEDIAN_PX);
         let near: Vec<f64> = weights(&process.offsets, far_px);
         let mut robust = near.clone();
         let mut prior = None;
@@ -91,7 +92,7 @@ impl Field {
             let (best, pulls) = process.likeliest(&robust, prior.filter(|_| round >= N_LOOKED_FOR))?;
             prior = Some(best);
             let left = &process.offsets - process.covariance(best) * &pulls;
-            let scale_px = (ROBUST * median(left.iter())).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX);
+            let scale_px = (ROBUST * median_size(left.iter())).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX);
             let fitting = weights(&left, scale_px).into_iter().zip(&near);
             robust = fitting
                 .map(|(weight, near)| weight.max(LEAST_WEIGHT) * near)
@@ -263,8 +264,6 @@ fn weights(offsets: &DVector<f64>, scale_px: f64) -> Vec<f64> {
 }
 
 /// Of absolute values; 0 where there are none.
-fn median<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
-    let mut values: Vec<f64> = values.map(|value| value.abs()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
+fn median_size<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    median(values.map(|value| value.abs()), f64::total_cmp).unwrap_or(0.0)
 }

@@ -4,6 +4,7 @@ use glam::{DVec2, IVec2, UVec2};
 
 use super::error::ProbeError;
 use super::surface::Surface;
+use crate::median::median;
 use app_scene::disjoint::DisjointSets;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::Image;
@@ -77,7 +78,7 @@ pub(super) fn find(image: &Image, surface: &Surface<'_>) -> Result<Vec<Highlight
     }
     let highlights = (0..n_regions).map(|region| {
         let [bright, halo, around] = [0, 1, 2].map(|ring| &rings[ring][region]);
-        let background = median(around.iter().map(|at| light(*at)).collect());
+        let background = median(around.iter().map(|at| light(*at)), f64::total_cmp).unwrap_or(0.0);
         let weighted = bright
             .iter()
             .chain(halo)
@@ -97,12 +98,6 @@ fn rgb(image: &Image, at: UVec2) -> [u8; 3] {
         Some(&[r, g, b]) => [r, g, b],
         _ => [0; 3],
     }
-}
-
-/// 0 of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The rectangle of a picture that can show a probe.

@@ -1,6 +1,7 @@
 //! How likely colours of the plate are a thing's, and how likely the receiver's.
 
 use super::codes::Codes;
+use crate::median::median;
 use crate::picture::Color;
 
 /// Bins along each channel.
@@ -18,7 +19,7 @@ pub(super) struct Colors {
     likelier: Vec<f32>,
     /// Parts of the place.
     of_place: Vec<f32>,
-    /// Of the colour that half of the place is likelier of.
+    /// The part that its median colour has.
     usual: f32,
 }
 
@@ -53,29 +54,18 @@ impl Colors {
         ((self.usual / (self.part_of_place(color) + UNSEEN)).ln() - RARE).max(0.0)
     }
 
-    /// Median over pixels of a picture.
+    /// Median over pixels of a picture; 0 where nothing is known of any.
     pub(super) fn median(&self, picture: &Codes, pixels: &[usize]) -> f32 {
-        median(
-            pixels
-                .iter()
-                .filter_map(|index| self.likelier(picture.pixels[*index])),
-        )
+        let likelier = pixels
+            .iter()
+            .filter_map(|index| self.likelier(picture.pixels[*index]));
+        median(likelier, f32::total_cmp).unwrap_or(0.0)
     }
 
     /// None where a colour or its like is not known.
     pub(super) fn likelier(&self, color: Color) -> Option<f32> {
         self.likelier.get(bin(color)?).copied()
     }
-}
-
-/// The middle one of some numbers; 0 of none.
-pub(super) fn median(numbers: impl Iterator<Item = f32>) -> f32 {
-    let mut numbers: Vec<f32> = numbers.collect();
-    if numbers.is_empty() {
-        return 0.0;
-    }
-    let middle = numbers.len() / 2;
-    *numbers.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 /// Of sorted parts of 1: that below which half of the whole lies.

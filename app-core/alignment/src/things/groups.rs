@@ -37,6 +37,12 @@ pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<u
     groups
 }
 
+/// Whether most of the nine pixels around one, itself among them, are so.
+pub(super) fn most_around(at: IVec2, is_so: impl Fn(IVec2) -> bool) -> bool {
+    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
+    around.filter(|at| is_so(*at)).count() >= 5
+}
+
 /// The place of a pixel by its index.
 #[allow(
     clippy::cast_possible_truncation,

@@ -11,7 +11,7 @@ use super::codes::{Codes, apart};
 use super::colors::Colors;
 use super::groups::{STEPS, groups};
 use super::seeds::{Seed, Seeds};
-use crate::picture::{index_in, places};
+use crate::picture::{bilinear, index_in, places};
 
 /// Cost of a step: for itself, for each code that the plate changes by, and for each part of a log likelihood that speaks against it.
 const OF_STEP: f32 = 0.3;
@@ -87,21 +87,11 @@ impl Grown {
 
     /// The thing at a place in pixels, between the centres of pixels by how much nearer it is.
     pub(super) fn at(&self, place: DVec2) -> Option<usize> {
-        let corner = (place - 0.5).floor();
-        let [right, down] = (place - 0.5 - corner).as_vec2().to_array();
-        let corner = corner.as_ivec2();
-        let four = [
-            (IVec2::ZERO, (1.0 - right) * (1.0 - down)),
-            (IVec2::X, right * (1.0 - down)),
-            (IVec2::Y, (1.0 - right) * down),
-            (IVec2::ONE, right * down),
-        ];
         let last = self.size_px - 1;
         let mut sum = 0.0;
         let mut thing = None;
-        for (step, weight) in four {
-            let at = (corner + step).clamp(IVec2::ZERO, last);
-            let index = index_in(self.size_px, at)?;
+        for (at, weight) in bilinear(place - 0.5) {
+            let index = index_in(self.size_px, at.clamp(IVec2::ZERO, last))?;
             sum += weight * self.nearer[index].clamp(-FARTHEST, FARTHEST);
             thing = thing.or(self.thing[index]);
         }

@@ -24,7 +24,7 @@ use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::Light;
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
-use groups::{groups, place_of};
+use groups::{groups, most_around, place_of};
 use grown::Grown;
 use seeds::{Seed, Seeds};
 
@@ -137,7 +137,7 @@ fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) 
     }
     let mut wrong = Mask::new(size_px);
     for at in places(size_px) {
-        let near_toy = (-2..=2).any(|y| (-2..=2).any(|x| toy.coverage.at(at + IVec2::new(x, y)) > 0.0));
+        let near_toy = toy.coverage.is_near(at, WRONG_PX);
         let differs = index_in(size_px, at).is_some_and(|index| differs[index]);
         if grown.of_pixel(at).is_some() && (near_toy || differs) {
             wrong.mark(at);
@@ -258,8 +258,7 @@ impl Toy {
 
     /// Whether most pixels around one of the toy look as they should.
     fn is_shown(&self, at: IVec2, frame: &Codes) -> bool {
-        let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
-        self.coverage.at(at) > 0.0 && around.filter(|at| self.is_as_expected(*at, frame)).count() >= 5
+        self.coverage.at(at) > 0.0 && most_around(at, |at| self.is_as_expected(at, frame))
     }
 
     /// Things before the toy that a level's frame alone shows, of each whether it is one: none where no such thing is seen beside the toy,
@@ -306,24 +305,18 @@ impl Toy {
     /// Whether a pixel shows the toy rather than a thing, which may lie in the toy's shadow: around it the picture is nearer to what the
     /// toy should look like than to the plate in any light.
     fn shows(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-        if self.coverage.at(at) == 0.0 {
-            return false;
-        }
-        let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
-        let toy = around.filter(|at| match (frame.get(*at), plate.get(*at), self.expected(*at)) {
+        let is_toy = |at: IVec2| match (frame.get(at), plate.get(at), self.expected(at)) {
             (Some(frame), Some(plate), Some(toy)) => apart(frame, toy) < from_shaded(frame, plate),
             _ => false,
-        });
-        toy.count() >= 5
+        };
+        self.coverage.at(at) > 0.0 && most_around(at, is_toy)
     }
 }
 
 /// Whether most pixels around one are as in the plate, in less light: such as in the shadow of a thing.
 fn is_shade(at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
-    let colors = around.filter_map(|at| frame.get(at).zip(plate.get(at)));
-    colors
-        .filter(|(frame, plate)| from_shaded(*frame, *plate) < 0.5 * UNLIKE_CODES)
-        .count()
-        >= 5
+    most_around(at, |at| {
+        let colors = frame.get(at).zip(plate.get(at));
+        colors.is_some_and(|(frame, plate)| from_shaded(frame, plate) < 0.5 * UNLIKE_CODES)
+    })
 }

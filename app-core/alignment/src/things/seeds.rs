@@ -3,9 +3,10 @@
 use glam::IVec2;
 
 use super::codes::{Codes, UNLIKE_CODES, from_shaded};
-use super::colors::{Colors, median};
-use super::groups::groups;
+use super::colors::Colors;
+use super::groups::{groups, most_around};
 use crate::lights::Compared;
+use crate::median::median;
 use crate::picture::{Color, index_in};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
@@ -20,8 +21,6 @@ const SHADOWED: f32 = 0.25;
 const OPEN: f32 = 0.02;
 /// A model that leaves less light of the plate tells nothing of it.
 const LEAST_LIGHT: f32 = 0.05;
-/// Of the nine pixels around a seed of a thing as many are seeds.
-const LEAST_AROUND: usize = 5;
 /// An open pixel shows a receiver if its colour is so much likelier the place's than a thing's, as a log, and that part of the place is of it.
 const LIKE_PLACE: f32 = 1.5;
 const COMMON: f32 = 0.02;
@@ -101,12 +100,9 @@ impl Seeds {
         index_in(self.size_px, at).map_or(Seed::None, |index| self.seeds[index])
     }
 
-    /// Leaves seeds of things with enough of them around.
+    /// Leaves seeds of things amid others.
     fn drop_lone(&mut self) {
-        let is_lone = |at: IVec2| {
-            let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
-            around.filter(|at| self.get(*at) == Seed::Thing).count() < LEAST_AROUND
-        };
+        let is_lone = |at: IVec2| !most_around(at, |at| self.get(at) == Seed::Thing);
         let kept = crate::picture::places(self.size_px).zip(&self.seeds);
         let kept = kept.map(|(at, seed)| {
             if *seed == Seed::Thing && is_lone(at) {
@@ -132,20 +128,16 @@ impl Seeds {
         let in_frame = Colors::of(seeds(lit).into_iter(), of_place());
         for group in &groups {
             let [by_frame, by_plate] = [in_frame.median(lit, group), in_plate.median(plate, group)];
-            let differs = median(
-                group
-                    .iter()
-                    .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index])),
-            );
+            let differs = group
+                .iter()
+                .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index]));
+            let differs = median(differs, f32::total_cmp).unwrap_or(0.0);
             let seed = told([by_frame, by_plate], differs, group.len());
             for index in group {
                 self.seeds[*index] = seed;
             }
         }
-        self.colors = [Seed::Thing, Seed::WrongPlate].map(|seed| {
-            let seeds = self.of(seed).into_iter();
-            Colors::of(seeds.map(|index| plate.pixels[index]), of_place())
-        });
+        self.colors = self.colors_against(&place, plate);
         for index in &self.open {
             let color = plate.pixels[*index];
             let is_like = |colors: &Colors| {
@@ -158,16 +150,16 @@ impl Seeds {
                 self.seeds[*index] = Seed::Receiver;
             }
         }
-        let receivers = self.of(Seed::Receiver);
-        self.colors = self.colors_against(&receivers, plate);
+        self.colors = self.colors_against(&self.of(Seed::Receiver), plate);
     }
 
-    fn colors_against(&self, receivers: &[usize], plate: &Codes) -> [Colors; 2] {
+    /// Of things, and of what the plate alone shows, against some pixels of the place.
+    fn colors_against(&self, place: &[usize], plate: &Codes) -> [Colors; 2] {
         [Seed::Thing, Seed::WrongPlate].map(|seed| {
             let seeds = self.of(seed).into_iter();
             Colors::of(
                 seeds.map(|index| plate.pixels[index]),
-                receivers.iter().map(|index| plate.pixels[*index]),
+                place.iter().map(|index| plate.pixels[*index]),
             )
         })
     }
