@@ -78,6 +78,7 @@ fn rust_sources() -> Vec<Source> {
         "app-core/shell/src",
         "tests/desk/src",
         "tests/desk/tests",
+        "tests/film/src",
         "tests/measure/src",
         "tests/reference/src",
         "tests/view/src",
