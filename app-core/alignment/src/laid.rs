@@ -36,6 +36,23 @@ pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Ve
     }))
 }
 
+/// The plane under an upright toy that stands: its feet's, or below its lowest point if it has no three feet that bear it; +Y is its normal.
+pub(super) fn plane_under(scene: &Scene, world_from_object: &DMat4, up: DVec3) -> Result<DMat4, ToyError> {
+    let shape = Shape::new(scene, world_from_object)?;
+    let lowest = shape.points.iter().min_by(|a, b| a.dot(up).total_cmp(&b.dot(up)));
+    let plane = Plane {
+        normal: up,
+        point: lowest.copied().unwrap_or(shape.centre),
+    };
+    let normal = feet(&shape, &plane).map_or(up, |[a, b, c]| {
+        let across = (b - a).cross(c - a).normalize_or(up);
+        across * across.dot(up).signum()
+    });
+    let point = feet(&shape, &plane).map_or(plane.point, |[a, b, c]| (a + b + c) / 3.0);
+    let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
+    Ok(DMat4::from_rotation_translation(turn, point))
+}
+
 fn plane_of(receiver: &Receiver) -> Plane {
     let [normal, point] = [receiver.world_from_plane.y_axis, receiver.world_from_plane.w_axis];
     Plane {

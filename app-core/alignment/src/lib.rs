@@ -55,6 +55,7 @@ mod robust;
 mod shape;
 mod softness;
 mod things;
+mod toy_search;
 mod view;
 mod warning;
 mod withheld;
@@ -85,6 +86,7 @@ pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
     LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
 };
+pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 
 /// A model is adapted in one of the first views that it does not fit, or never: each try takes about a second.

@@ -221,6 +221,16 @@ impl Pyramid {
         self.levels.iter().rposition(is_enough).unwrap_or(0)
     }
 
+    /// A level whose silhouettes are cheap: of 7,000 pixels at most.
+    pub(super) fn tiny(&self) -> Level {
+        const MOST_PIXELS: i32 = 7000;
+        let mut level = self.levels[Self::SMALLEST].clone();
+        while level.frame.size_px.x * level.frame.size_px.y > MOST_PIXELS {
+            level = level.halved();
+        }
+        level
+    }
+
     /// A level from 0, the largest, to [`Pyramid::SMALLEST`].
     pub(super) fn level(&self, level: usize) -> &Level {
         &self.levels[level]

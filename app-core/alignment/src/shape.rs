@@ -69,7 +69,7 @@ impl Shape {
     /// The same shape with the vertices within each cell of a side merged to their mean, and without triangles that collapse.
     ///
     /// Source: Rossignac and Borrel 1993.
-    fn merged(&self, cell_m: f64) -> Self {
+    pub(super) fn merged(&self, cell_m: f64) -> Self {
         let mut cells: BTreeMap<[i64; 3], u32> = BTreeMap::new();
         let mut sums: Vec<(DVec3, f64)> = Vec::new();
         let places: Vec<u32> = self

@@ -19,6 +19,7 @@ mod odds;
 mod owners;
 mod paint;
 mod placement;
+mod regions;
 mod resting;
 mod settle;
 mod sides;
@@ -43,6 +44,8 @@ use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
 pub(super) use paint::Paint;
+pub use regions::ViewDirection;
+pub(super) use regions::guesses;
 pub(super) use resting::find_resting;
 pub(super) use standing::{Ground, Plane, feet};
 

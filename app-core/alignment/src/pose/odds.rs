@@ -71,7 +71,7 @@ impl Odds {
 }
 
 /// Of a pixel's colour, and of its ratio to the plate, or its colour again without one.
-fn logarithms(level: &Level, at: IVec2) -> Option<(Color, Color)> {
+pub(super) fn logarithms(level: &Level, at: IVec2) -> Option<(Color, Color)> {
     let log = |color: Color| color.map(|value| (value.max(0.0) + FLOOR).ln());
     let color = log(level.frame.get(at)?);
     let Some(plate) = &level.plate else {

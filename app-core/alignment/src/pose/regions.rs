@@ -1,0 +1,261 @@
+//! Where an upright toy may be in a picture, seen from given directions: the first guess if no pose is known.
+//!
+//! A silhouette in the right place has the toy's colours within it, and beside it the plate, lit or in shadow. So the colours within and
+//! the ratios to the plate beside it each fill as few bins of a histogram as possible: the sum of both entropies is least there. No
+//! colour of the model is needed, and no threshold separates toy and shadow.
+//!
+//! Source: region-based pose estimation (Rosenhahn et al. 2007; Prisacariu and Reid 2012, PWP3D), with the ratio to the plate in place of
+//! the background's colours.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
+
+use super::odds::logarithms;
+use crate::picture::{Color, Level, index_in, places};
+use crate::raster::{Rasterizer, project};
+use crate::shape::Shape;
+use app_scene::scene::Intrinsics;
+
+/// Width of a bin of colours, in natural logarithms of light.
+const BIN: f32 = 0.25;
+/// Of all pixels, what may have any colour at all, and how many bins that are.
+const ANY_COLOR: f64 = 0.02;
+const N_LIKELY_BINS: f64 = 500.0;
+/// A pixel changed if a channel's ratio to the plate is farther from the median's, in natural logarithms.
+const CHANGED: f32 = 0.12;
+/// What changed is toy and shadow: sizes of the toy's silhouette over that.
+const SHARES: [f64; 7] = [0.95, 0.8, 0.66, 0.55, 0.45, 0.36, 0.28];
+/// Sizes over the picture's where no plate tells what changed.
+const SHARES_OF_PICTURE: [f64; 7] = [0.3, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035];
+/// A silhouette has to be that far within the picture, as a part of its pixels.
+const LEAST_INSIDE: f64 = 0.8;
+/// Pixels between places that are tried.
+const STRIDE_PX: i32 = 2;
+/// Pixels around what changed that are looked at, over the square root of its area.
+const MARGIN: f64 = 0.35;
+
+/// A direction from which an upright toy is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewDirection {
+    /// Turn of the toy about its upright axis, in radians: at 0 the model's +Z points to the camera, at a quarter turn to the right of
+    /// the picture.
+    pub turn_rad: f64,
+    /// Angle of the camera above the toy's horizon, in radians.
+    pub elevation_rad: f64,
+}
+
+impl ViewDirection {
+    /// Rotation from an upright toy's space to that of a camera which looks at it.
+    fn camera_from_upright(self) -> DQuat {
+        DQuat::from_rotation_x(self.elevation_rad) * DQuat::from_rotation_y(self.turn_rad)
+    }
+}
+
+/// A place of the toy, and how badly its silhouette divides the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guess {
+    /// From the space that its shape was given in.
+    pub(crate) camera_from_upright: DMat4,
+    /// Mean entropy of a pixel, in nats.
+    pub(crate) cost: f64,
+}
+
+/// The best place for each direction, the best first. The shape is upright, its middle at `shape.centre`.
+pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]) -> Vec<Guess> {
+    let regions = Regions::new(level);
+    let guesses = directions
+        .iter()
+        .filter_map(|direction| regions.best(shape, *direction));
+    let mut guesses: Vec<Guess> = guesses.collect();
+    guesses.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    guesses
+}
+
+/// The pixels of a level that are looked at, each with its bins.
+struct Regions<'a> {
+    k: &'a Intrinsics,
+    size_px: IVec2,
+    /// Bins of the colour and of the ratio to the plate; none where nothing is known, or beside what is looked at.
+    bins: Vec<Option<[u32; 2]>>,
+    /// Number of bins of colours and of ratios.
+    n_bins: [usize; 2],
+    /// How often each ratio is seen.
+    ratios: Vec<f64>,
+    n: f64,
+    /// Sizes of silhouettes, in pixels.
+    areas_px: Vec<f64>,
+    /// What is looked at.
+    from_px: IVec2,
+    to_px: IVec2,
+}
+
+impl<'a> Regions<'a> {
+    fn new(level: &'a Level) -> Self {
+        let size_px = level.frame.size_px;
+        let (areas_px, from_px, to_px) = extent(level);
+        let is_within = |at: IVec2| at.cmpge(from_px).all() && at.cmplt(to_px).all();
+        let mut known: [BTreeMap<[i32; 3], u32>; 2] = [BTreeMap::new(), BTreeMap::new()];
+        let mut bin_of = |which: usize, color: Color| {
+            #[allow(clippy::cast_possible_truncation, reason = "logarithms of light")]
+            let bin = color.map(|value| (value / BIN).round() as i32);
+            let next = known[which].len();
+            #[allow(clippy::cast_possible_truncation, reason = "no more than there are pixels")]
+            *known[which].entry(bin).or_insert(next as u32)
+        };
+        let bins = places(size_px).map(|at| {
+            let (color, ratio) = logarithms(level, at).filter(|_| is_within(at))?;
+            Some([bin_of(0, color), bin_of(1, ratio)])
+        });
+        let bins: Vec<Option<[u32; 2]>> = bins.collect();
+        let n_bins = [known[0].len(), known[1].len()];
+        let mut ratios = vec![0.0; n_bins[1]];
+        for [_, ratio] in bins.iter().flatten() {
+            ratios[*ratio as usize] += 1.0;
+        }
+        Self {
+            k: &level.intrinsics,
+            size_px,
+            n: ratios.iter().sum(),
+            bins,
+            n_bins,
+            ratios,
+            areas_px,
+            from_px,
+            to_px,
+        }
+    }
+
+    /// The best place in a direction, in any size.
+    fn best(&self, shape: &Shape, direction: ViewDirection) -> Option<Guess> {
+        let rotation = DMat4::from_quat(direction.camera_from_upright());
+        let upright = rotation * DMat4::from_translation(-shape.centre);
+        let mut depth_m = 10.0 * shape.radius_m;
+        let mut best: Option<Guess> = None;
+        for area_px in &self.areas_px {
+            let mut silhouette = self.silhouette(shape, &upright, depth_m);
+            // Twice, since a near toy looks another way than a far one.
+            for _ in 0..2 {
+                depth_m = (depth_m * (silhouette.len() as f64 / area_px).sqrt()).max(1.5 * shape.radius_m);
+                silhouette = self.silhouette(shape, &upright, depth_m);
+            }
+            let found = self.best_place(&silhouette);
+            let Some((at_px, cost)) = found.filter(|(_, cost)| best.is_none_or(|best| *cost < best.cost))
+            else {
+                continue;
+            };
+            best = Some(Guess {
+                camera_from_upright: self.placed(at_px.as_dvec2(), depth_m) * upright,
+                cost,
+            });
+        }
+        best
+    }
+
+    /// A toy that is seen in the middle of the picture, moved to be seen elsewhere in the same way.
+    fn placed(&self, at_px: DVec2, depth_m: f64) -> DMat4 {
+        let ray = DVec3::new(at_px.x / self.k.fx_px, -at_px.y / self.k.fy_px, -1.0);
+        let turn = DQuat::from_rotation_arc(DVec3::NEG_Z, ray.normalize());
+        DMat4::from_translation(depth_m * ray) * DMat4::from_quat(turn)
+    }
+
+    /// Pixels of the toy in the middle of the picture, against the principal point.
+    fn silhouette(&self, shape: &Shape, camera_from_upright: &DMat4, depth_m: f64) -> Vec<IVec2> {
+        let moved = DMat4::from_translation(DVec3::new(0.0, 0.0, -depth_m)) * *camera_from_upright;
+        let points = shape.points.iter().map(|point| moved.transform_point3(*point));
+        let k = Intrinsics {
+            cx_px: self.size_px.x.into(),
+            cy_px: self.size_px.y.into(),
+            ..*self.k
+        };
+        let corners = project(points, &k);
+        let coverage = Rasterizer::default().coverage(&corners, &shape.faces, 2 * self.size_px);
+        let covered = coverage.pixels().filter(|at| coverage.at(*at) >= 0.5);
+        covered.map(|at| at - self.size_px).collect()
+    }
+
+    /// The shift from the principal point at which a silhouette explains the picture best.
+    fn best_place(&self, silhouette: &[IVec2]) -> Option<(IVec2, f64)> {
+        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
+        let span = (self.to_px - self.from_px) / STRIDE_PX;
+        let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - middle);
+        let (best, _) = self.best_of(silhouette, coarse)?;
+        let fine = places(IVec2::splat(2 * STRIDE_PX - 1)).map(|at| best + at - (STRIDE_PX - 1));
+        self.best_of(silhouette, fine)
+    }
+
+    fn best_of(&self, silhouette: &[IVec2], shifts: impl Iterator<Item = IVec2>) -> Option<(IVec2, f64)> {
+        let costs = shifts.filter_map(|shift| Some((shift, self.cost(silhouette, shift)?)));
+        costs.min_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// Mean entropy of a pixel; none where the silhouette leaves what is looked at.
+    fn cost(&self, silhouette: &[IVec2], shift: IVec2) -> Option<f64> {
+        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
+        let mut colors = vec![0.0; self.n_bins[0]];
+        let mut ratios = self.ratios.clone();
+        let mut n_inside = 0.0;
+        for at in silhouette {
+            let bins = index_in(self.size_px, *at + shift + middle).and_then(|index| self.bins[index]);
+            let Some([color, ratio]) = bins else { continue };
+            colors[color as usize] += 1.0;
+            ratios[ratio as usize] -= 1.0;
+            n_inside += 1.0;
+        }
+        let is_inside = n_inside >= LEAST_INSIDE * silhouette.len() as f64 && n_inside > 0.0;
+        is_inside.then(|| (entropy(&colors, n_inside) + entropy(&ratios, self.n - n_inside)) / self.n)
+    }
+}
+
+/// Of so many values that are distributed over bins, in nats.
+fn entropy(counts: &[f64], n: f64) -> f64 {
+    let used = counts.iter().filter(|count| **count > 0.0);
+    let terms = used.map(|count| {
+        let density = (1.0 - ANY_COLOR) * count / n + ANY_COLOR / N_LIKELY_BINS;
+        -count * density.ln()
+    });
+    terms.sum()
+}
+
+/// Sizes that the toy's silhouette may have, and the rectangle to look at: around what changed, if a plate says what that is.
+fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
+    let size_px = level.frame.size_px;
+    let n_pixels = f64::from(size_px.x * size_px.y);
+    let whole = (
+        SHARES_OF_PICTURE.map(|share| share * n_pixels).to_vec(),
+        IVec2::ZERO,
+        size_px,
+    );
+    if level.plate.is_none() {
+        return whole;
+    }
+    let ratios: Vec<(IVec2, Color)> = places(size_px)
+        .filter_map(|at| Some((at, logarithms(level, at)?.1)))
+        .collect();
+    let median = [0, 1, 2].map(|channel| {
+        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
+        values.sort_by(f32::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    });
+    let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
+    let changed: Vec<IVec2> = ratios
+        .iter()
+        .filter_map(|(at, ratio)| is_changed(ratio).then_some(*at))
+        .collect();
+    if changed.is_empty() {
+        return whole;
+    }
+    let n_changed = changed.len() as f64;
+    // A speck far away is no part of it.
+    let [x, y] = [0, 1].map(|axis| {
+        let mut values: Vec<i32> = changed.iter().map(|at| at[axis]).collect();
+        values.sort_unstable();
+        let last = values.len() - 1;
+        [values[last / 100], values[last - last / 100]]
+    });
+    #[allow(clippy::cast_possible_truncation, reason = "pixels")]
+    let margin_px = (MARGIN * n_changed.sqrt()).ceil() as i32;
+    let from_px = (IVec2::new(x[0], y[0]) - margin_px).max(IVec2::ZERO);
+    let to_px = (IVec2::new(x[1], y[1]) + margin_px + 1).min(size_px);
+    (SHARES.map(|share| share * n_changed).to_vec(), from_px, to_px)
+}

@@ -1,0 +1,298 @@
+//! Search for an upright toy of which only the model and the photograph are known.
+//!
+//! For each direction from which it may be seen, its silhouette is laid over a tiny picture (`pose::guesses`). The best guesses are
+//! followed to the outline as given poses are, and what meets the outline is compared with the model's own colours: a toy that looks
+//! alike from two sides is told apart by its paint, or reported as ambiguous.
+
+use glam::{DMat4, DVec3, IVec2};
+
+use crate::camera::{Finder, corrected};
+use crate::error::{AlignError, check};
+use crate::laid::plane_under;
+use crate::photograph::{MOST_OUTLINE_PX, Photograph};
+use crate::pose::{self, Paint, Start};
+use crate::report::PoseDeviation;
+use crate::shape::Shape;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Camera, Plate, PoseUncertainty, Scene};
+
+pub use crate::pose::ViewDirection;
+
+/// Guesses that are followed to the outline, at most.
+const N_FOLLOWED: usize = 24;
+/// Poses that are refined to the end, at most.
+const N_REFINED: usize = 6;
+/// A pose whose outline is farther from the picture's, in pixels, is not refined.
+const MOST_REFINED_PX: f64 = 2.0;
+/// Guesses that must lead to a pose: a wrong pose is a chance that one of them meets.
+const LEAST_SUPPORT: usize = 2;
+/// Poses are one if the toy's middle is nearer, over its radius, and they are turned by less, in radians.
+const SAME_PLACE: f64 = 0.03;
+const SAME_TURN_RAD: f64 = 0.1;
+/// Side of the cells that points of a silhouette are merged in, over the toy's radius.
+const CELL: f64 = 0.02;
+/// Another pose is a rival if its outline is no farther than that many times the best one's, and as many pixels more.
+const RIVAL: f64 = 1.5;
+const RIVAL_PX: f64 = 0.1;
+/// A rival whose colours differ by no more than that many times what the best one's differ by cannot be told from it.
+const ALIKE: f64 = 1.1;
+/// Colours that differ by more, in natural logarithms, differ by that.
+const MOST_DIFFERENT: f64 = 1.0;
+/// Linear light below which noise alone tells values apart.
+const DARK: f64 = 0.004;
+/// Pixels of the level in which colours are compared, at least.
+const COMPARED_PIXELS: i32 = 60_000;
+/// How far the camera of a plate that was taken from the hand may be from that of the photograph.
+const HAND_M: f64 = 0.1;
+const HAND_RAD: f64 = 0.11;
+
+/// A pose of the toy that meets the photograph's outline.
+#[derive(Clone, Copy, Debug)]
+pub struct FoundToy {
+    /// From object space to world.
+    pub world_from_object: DMat4,
+    /// Root mean square distance of the outline, in pixels.
+    pub outline_px: f64,
+    /// Mean difference of the toy's colours from those of the lit model, in natural logarithms: 1 at most.
+    pub color_difference: f64,
+    /// One deviation of the pose.
+    pub deviation: PoseDeviation,
+    /// The plane under its feet, +Y up: that of the table if the toy stands.
+    pub world_from_table: DMat4,
+}
+
+/// Result of a search for a toy.
+#[derive(Clone, Debug, Default)]
+pub struct ToySearch {
+    /// Poses that meet the outline and cannot be told apart, the likeliest first: one if the search succeeded.
+    pub found: Vec<FoundToy>,
+    /// Distance of the nearest outline that was reached, in pixels; none if too little of any was seen. It is robust: an outline that is far off
+    /// comes to about two.
+    pub nearest_px: Option<f64>,
+    /// The cameras of the plates: others than given if their pictures say so.
+    pub plate_cameras: Vec<Camera>,
+}
+
+/// Finds an upright toy. `input.world_from_object` has it upright in its size, wherever, and world's +Y is up for it; the camera stays.
+///
+/// Plates may be taken from the hand: up to 10 cm and 6 degrees from the photograph. The first receiver is where the table is about.
+///
+/// # Errors
+/// As [`Aligner::align`](crate::Aligner::align).
+pub fn find_toy(
+    scene: &Scene,
+    input: &FrameInput,
+    directions: &[ViewDirection],
+) -> Result<ToySearch, AlignError> {
+    check(scene, input)?;
+    let mut scene = Scene::clone(scene);
+    scene.uncertainty.are_receivers_guessed = true;
+    let are_plates_moved = register_plates(&mut scene, input);
+    let search = Search::new(&scene, input)?;
+    let followed = search.followed(directions)?;
+    let nearest_px = followed.first().map(|pose| pose.outline_px);
+    let mut found = told_apart(search.refined(&followed)?);
+    if let [one] = &mut found[..]
+        && are_plates_moved
+    {
+        // The plates were registered by a guess of the table's plane, which the toy now says.
+        scene.receivers.truncate(1);
+        for receiver in &mut scene.receivers {
+            receiver.world_from_plane = one.world_from_table;
+        }
+        register_plates(&mut scene, input);
+        *one = Search::new(&scene, input)?
+            .refine(&one.world_from_object)?
+            .unwrap_or(*one);
+    }
+    Ok(ToySearch {
+        nearest_px: found.first().map(|found| found.outline_px).or(nearest_px),
+        found,
+        plate_cameras: scene.plates.iter().map(|plate| plate.camera).collect(),
+    })
+}
+
+/// Corrects the cameras of the plates, each against the photograph. Whether any is another then.
+fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
+    let photograph = Plate {
+        image: input.image.rgba().clone(),
+        camera: input.camera,
+    };
+    let from_hand = PoseUncertainty {
+        position_m: Some(HAND_M),
+        rotation_rad: Some(HAND_RAD),
+    };
+    let mut is_any_moved = false;
+    for plate in &mut scene.plates {
+        let of_plate = (&plate.image, &plate.camera, None);
+        let known = (std::slice::from_ref(&photograph), &scene.receivers[..]);
+        let (camera, _) = corrected(&plate.camera, Finder::default().find(of_plate, known, &from_hand));
+        is_any_moved |= camera != plate.camera;
+        plate.camera = camera;
+    }
+    is_any_moved
+}
+
+struct Search<'a> {
+    scene: &'a Scene,
+    input: &'a FrameInput,
+    photograph: Photograph,
+    /// In world space.
+    upright: Shape,
+}
+
+/// A pose that was followed.
+#[derive(Clone, Copy)]
+struct Followed {
+    world_from_object: DMat4,
+    outline_px: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(scene: &'a Scene, input: &'a FrameInput) -> Result<Self, AlignError> {
+        Ok(Self {
+            photograph: Photograph::new(scene, input, None),
+            upright: Shape::new(scene, &input.world_from_object)?,
+            scene,
+            input,
+        })
+    }
+
+    /// The best guesses, followed by coarse and fine rounds, the nearest outline first.
+    fn followed(&self, directions: &[ViewDirection]) -> Result<Vec<Followed>, AlignError> {
+        let silhouette = self.upright.merged(CELL * self.upright.radius_m);
+        let tiny = self.photograph.pyramid().tiny();
+        let mut followed = Vec::new();
+        for guess in pose::guesses(&silhouette, &tiny, directions)
+            .iter()
+            .take(N_FOLLOWED)
+        {
+            let start = self.world_from_upright(&guess.camera_from_upright) * self.input.world_from_object;
+            let tried = self.photograph.tried_pose(self.scene, (&start, Start::Given))?;
+            followed.extend(tried.map(|(world_from_object, outline_px)| Followed {
+                world_from_object,
+                outline_px,
+            }));
+        }
+        followed.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
+        Ok(followed)
+    }
+
+    fn world_from_upright(&self, camera_from_upright: &DMat4) -> DMat4 {
+        self.input.camera.world_from_camera * *camera_from_upright
+    }
+
+    /// Different poses whose outline is met once they are refined, the nearest first.
+    fn refined(&self, followed: &[Followed]) -> Result<Vec<FoundToy>, AlignError> {
+        let mut found: Vec<FoundToy> = Vec::new();
+        let mut most_px = MOST_REFINED_PX;
+        for pose in self.supported(followed).into_iter().take(N_REFINED) {
+            if pose.outline_px > most_px {
+                break;
+            }
+            let Some(refined) = self.refine(&pose.world_from_object)? else {
+                continue;
+            };
+            // Before they are refined rivals are as near to the outline, too.
+            most_px = most_px.min(RIVAL * pose.outline_px + RIVAL_PX);
+            let is_known =
+                |known: &FoundToy| self.are_one(&known.world_from_object, &refined.world_from_object);
+            if !found.iter().any(is_known) {
+                found.push(refined);
+            }
+        }
+        found.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
+        Ok(found)
+    }
+
+    /// Each pose that enough guesses lead to, once.
+    fn supported(&self, followed: &[Followed]) -> Vec<Followed> {
+        let mut poses: Vec<(Followed, usize)> = Vec::new();
+        for one in followed {
+            let known = poses
+                .iter_mut()
+                .find(|(pose, _)| self.are_one(&pose.world_from_object, &one.world_from_object));
+            match known {
+                Some((_, support)) => *support += 1,
+                None => poses.push((*one, 1)),
+            }
+        }
+        let supported = poses.into_iter().filter(|(_, support)| *support >= LEAST_SUPPORT);
+        supported.map(|(pose, _)| pose).collect()
+    }
+
+    /// The pose near one, if its outline is met.
+    fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
+        let given = self.input.clone().with_world_from_object(*world_from_object);
+        let pose = self.photograph.pose(self.scene, &given, None)?;
+        let Some(report) = pose.report.filter(|report| report.shown_px() <= MOST_OUTLINE_PX) else {
+            return Ok(None);
+        };
+        // The turn and shift from where it was given upright.
+        let moved = pose.world_from_object * self.input.world_from_object.inverse();
+        let up = moved.transform_vector3(DVec3::Y).normalize_or(DVec3::Y);
+        Ok(Some(FoundToy {
+            world_from_object: pose.world_from_object,
+            outline_px: report.shown_px(),
+            color_difference: self.color_difference(&pose.world_from_object)?,
+            deviation: report.deviation,
+            world_from_table: plane_under(self.scene, &pose.world_from_object, up)?,
+        }))
+    }
+
+    fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
+        let middle = self
+            .input
+            .world_from_object
+            .inverse()
+            .transform_point3(self.upright.centre);
+        let moved_m = a.transform_point3(middle).distance(b.transform_point3(middle));
+        let [turn_a, turn_b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
+        let turned_rad = (turn_b * turn_a.inverse()).to_scaled_axis().length();
+        moved_m < SAME_PLACE * self.upright.radius_m && turned_rad < SAME_TURN_RAD
+    }
+
+    /// Of the toy in the photograph from its model in the light that explains it best; the most if too little of it is seen.
+    fn color_difference(&self, world_from_object: &DMat4) -> Result<f64, AlignError> {
+        let shape = self.photograph.shape(self.scene, world_from_object)?;
+        let camera_from_object = self.photograph.camera_from_object(world_from_object);
+        let paint = Paint::new(self.scene, &camera_from_object)?;
+        let level = self
+            .photograph
+            .pyramid()
+            .level(self.photograph.level_of(COMPARED_PIXELS));
+        let coverage = pose::covered(&shape, level);
+        let Some(shown) = paint.shown(level, &coverage) else {
+            return Ok(MOST_DIFFERENT);
+        };
+        let is_within = |at: IVec2| coverage.at(at) >= 1.0;
+        let pixels = coverage.pixels().zip(shown).filter(|(at, _)| is_within(*at));
+        let (mut sum, mut n) = (0.0, 0.0);
+        for (at, shown) in pixels {
+            let (Some(shown), Some(seen)) = (shown, level.frame.get(at)) else {
+                continue;
+            };
+            let differ = DVec3::from_array([0, 1, 2].map(|channel| {
+                let [a, b] = [seen[channel], shown[channel]].map(|light| f64::from(light).max(0.0) + DARK);
+                (a / b).ln().abs().min(MOST_DIFFERENT)
+            }));
+            sum += differ.element_sum() / 3.0;
+            n += 1.0;
+        }
+        Ok(if n > 0.0 { sum / n } else { MOST_DIFFERENT })
+    }
+}
+
+/// Of poses that are sorted by their outlines those that may be right: the best by its colours among those that meet the outline about as
+/// well, and what cannot be told from it.
+fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
+    let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + RIVAL_PX) else {
+        return found;
+    };
+    let mut rivals: Vec<FoundToy> = found;
+    rivals.retain(|rival| rival.outline_px <= most_px);
+    rivals.sort_by(|a, b| a.color_difference.total_cmp(&b.color_difference));
+    let most = rivals.first().map_or(0.0, |best| ALIKE * best.color_difference);
+    rivals.retain(|rival| rival.color_difference <= most);
+    rivals
+}
