@@ -36,21 +36,29 @@ pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Ve
     }))
 }
 
-/// The plane under an upright toy that stands: its feet's, or below its lowest point if it has no three feet that bear it; +Y is its normal.
+/// Feet that lean less from the model's own ground, in radians, are modelled no better: it stands upright.
+const LEAST_LEAN_RAD: f64 = 0.012;
+
+/// The plane under an upright toy that stands; +Y is its normal. It is that of the toy's feet, if these clearly lean, or if there are
+/// none the level plane of its lowest point.
 pub(super) fn plane_under(scene: &Scene, world_from_object: &DMat4, up: DVec3) -> Result<DMat4, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
     let lowest = shape.points.iter().min_by(|a, b| a.dot(up).total_cmp(&b.dot(up)));
-    let plane = Plane {
+    let level = Plane {
         normal: up,
         point: lowest.copied().unwrap_or(shape.centre),
     };
-    let normal = feet(&shape, &plane).map_or(up, |[a, b, c]| {
+    let of_feet = feet(&shape, &level).map(|[a, b, c]| {
         let across = (b - a).cross(c - a).normalize_or(up);
-        across * across.dot(up).signum()
+        Plane {
+            normal: across * across.dot(up).signum(),
+            point: (a + b + c) / 3.0,
+        }
     });
-    let point = feet(&shape, &plane).map_or(plane.point, |[a, b, c]| (a + b + c) / 3.0);
-    let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
-    Ok(DMat4::from_rotation_translation(turn, point))
+    let leans = |plane: &Plane| plane.normal.dot(up) < LEAST_LEAN_RAD.cos();
+    let plane = of_feet.filter(leans).unwrap_or(level);
+    let turn = DQuat::from_rotation_arc(DVec3::Y, plane.normal);
+    Ok(DMat4::from_rotation_translation(turn, plane.point))
 }
 
 fn plane_of(receiver: &Receiver) -> Plane {

@@ -2,3 +2,7 @@
 //! photographed one by one get their in-between frames.
 
 #![forbid(unsafe_code)]
+
+pub mod length;
+pub mod new;
+pub mod photograph;

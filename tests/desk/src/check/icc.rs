@@ -57,7 +57,8 @@ fn has_curve(curve: Option<&ToneReprCurve>) -> bool {
 }
 
 /// The description of a profile, the first of its translations.
-fn name(profile: &ColorProfile) -> Option<String> {
+#[must_use]
+pub fn name(profile: &ColorProfile) -> Option<String> {
     let name = match profile.description.as_ref()? {
         ProfileText::PlainString(text) => text,
         ProfileText::Localizable(texts) => &texts.first()?.value,

@@ -3,7 +3,7 @@
 pub mod aligned_session;
 mod icc;
 mod keys;
-mod overlay;
+pub mod overlay;
 mod pictures;
 mod sense;
 
@@ -26,7 +26,8 @@ use crate::opened::Opened;
 use crate::output::{remove_file, write_png};
 use crate::stored::Stored;
 
-pub use pictures::wrong_of_picture;
+pub use icc::name as profile_name;
+pub use pictures::{foreign as foreign_colours, wrong_of_picture};
 
 /// File name of the drawing.
 const DRAWING: &str = "check.png";

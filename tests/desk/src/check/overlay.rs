@@ -9,9 +9,9 @@ use super::pixel;
 use crate::gizmo::dot;
 
 /// Of what was given: red.
-pub(super) const GIVEN: [u8; 3] = [255, 40, 40];
+pub const GIVEN: [u8; 3] = [255, 40, 40];
 /// Of what was aligned: green.
-pub(super) const ALIGNED: [u8; 3] = [40, 255, 60];
+pub const ALIGNED: [u8; 3] = [40, 255, 60];
 /// Of receivers: blue.
 const RECEIVERS: [u8; 3] = [70, 120, 255];
 /// Lines of a receiver's grid around the toy, how far apart, and dots along each.
@@ -20,7 +20,7 @@ const LINE_M: f64 = 0.05;
 const N_DOTS: i32 = 400;
 
 /// Draws outlines of toy and shadows.
-pub(super) fn outlines(picture: &mut Image, outlines: &Outlines, color: [u8; 3]) {
+pub fn outlines(picture: &mut Image, outlines: &Outlines, color: [u8; 3]) {
     let shadows = outlines.shadows.iter().flatten();
     for at_px in outlines.toy.iter().chain(shadows) {
         dot(picture, *at_px, color);
@@ -28,7 +28,7 @@ pub(super) fn outlines(picture: &mut Image, outlines: &Outlines, color: [u8; 3])
 }
 
 /// Draws a grid on each receiver around the foot of the toy: a line every 5 cm.
-pub(super) fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) {
+pub fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) {
     for receiver in &scene.receivers {
         let toy = input.world_from_object.w_axis.truncate();
         let foot = receiver.world_from_plane.inverse().transform_point3(toy);

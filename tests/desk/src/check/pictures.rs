@@ -106,7 +106,8 @@ fn bits(decoder: &impl ImageDecoder) -> u16 {
 /// Which colours a picture is in; none where that is sRGB, or nothing is said.
 ///
 /// Of a PNG's chunks the first of these counts. Source: PNG specification (W3C, third edition), section 4.3.
-fn foreign(bytes: &[u8], profile: Option<&[u8]>) -> Option<String> {
+#[must_use]
+pub fn foreign(bytes: &[u8], profile: Option<&[u8]>) -> Option<String> {
     let chunk = |name: &[u8; 4]| {
         png_chunks(bytes)
             .find(|chunk| chunk.0 == *name)

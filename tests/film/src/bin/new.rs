@@ -1,0 +1,99 @@
+//! Makes a session of photographs.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clap::Parser;
+use desk::program::{exit_code, print};
+use film::length::metres;
+use film::new::{DRAWING, View, Wanted, new};
+use glam::DVec3;
+
+/// Make a session of photographs: the place without the toy, then the toy on it. The toy is the marker: camera, table and lights
+/// are found by it. If that is not sure the program says why, and writes nothing.
+#[derive(Parser)]
+#[command(name = "new", bin_name = "cargo xtask new")]
+struct Args {
+    /// Photographs of the place without the toy, if there are any, and one of the toy last; PNG or JPEG
+    #[arg(required = true, value_name = "PLATE... PHOTO")]
+    photographs: Vec<PathBuf>,
+    /// The toy's model, a .glb
+    #[arg(long, value_name = "TOY.glb")]
+    toy: PathBuf,
+    /// Folder to be made
+    #[arg(long, value_name = "SESSION")]
+    out: PathBuf,
+    /// The toy's height as it stands, such as 12cm [default: the model's, in metres]
+    #[arg(long, value_name = "LENGTH", value_parser = metres)]
+    height: Option<f64>,
+    /// The pose that the toy was made in: a clip of the model and seconds in it [default: as authored]
+    #[arg(long, value_name = "CLIP@TIME", value_parser = moment)]
+    pose: Option<(String, f64)>,
+    /// Focal length as on 35 mm film, in millimetres [default: the photograph's, by its EXIF]
+    #[arg(long, value_name = "MM", value_parser = millimetres)]
+    focal_35mm: Option<f64>,
+    /// The side of the toy that is seen: front, left, back or right, and low or high after a comma [default: all are tried]
+    #[arg(long, default_value = None, value_name = "SIDE[,HEIGHT]")]
+    view: Option<View>,
+    /// The model's axis that points up as it stands: +x, -x, +y, -y, +z or -z
+    #[arg(long, default_value = "+y", value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+    up: DVec3,
+    /// How far the toy's lowest points are above the table, if it does not stand on it
+    #[arg(long, value_name = "LENGTH", value_parser = metres)]
+    lifted: Option<f64>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(Args::parse()))
+}
+
+fn run(args: Args) -> anyhow::Result<()> {
+    let wanted = Wanted {
+        photographs: args.photographs,
+        toy: args.toy,
+        height_m: args.height,
+        moment: args.pose,
+        focal_35mm: args.focal_35mm,
+        view: args.view.unwrap_or_default(),
+        up: args.up,
+        lifted_m: args.lifted.unwrap_or(0.0),
+    };
+    let made = new(&wanted, &args.out)?;
+    let mut lines = made.facts;
+    lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.push(format!(
+        "{}: look at the outlines in {DRAWING}; then `cargo xtask animate {0}`",
+        args.out.display()
+    ));
+    print(&(lines.join("\n") + "\n"))
+}
+
+/// `CLIP@TIME`; a clip's name may have an @ itself.
+fn moment(text: &str) -> Result<(String, f64), String> {
+    let wanted = || format!("{text:?} is not CLIP@SECONDS");
+    let (clip, time) = text.rsplit_once('@').ok_or_else(wanted)?;
+    let time: f64 = time.trim_end_matches('s').parse().map_err(|_| wanted())?;
+    if clip.is_empty() || !time.is_finite() || time < 0.0 {
+        return Err(wanted());
+    }
+    Ok((clip.to_owned(), time))
+}
+
+fn millimetres(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.trim_end_matches("mm").trim().parse().ok();
+    number
+        .filter(|mm| (1.0..=2000.0).contains(mm))
+        .with_context(|| format!("{text:?} is no focal length between 1 and 2000 mm"))
+        .map_err(|error| error.to_string())
+}
+
+fn axis(text: &str) -> Result<DVec3, String> {
+    let axis = match text.trim_start_matches(['+', '-']) {
+        "x" => DVec3::X,
+        "y" => DVec3::Y,
+        "z" => DVec3::Z,
+        _ => return Err(format!("{text:?} is none of +x, -x, +y, -y, +z and -z")),
+    };
+    Ok(if text.starts_with('-') { -axis } else { axis })
+}

@@ -1,0 +1,218 @@
+//! Where toy, table, cameras and lights are, by the photographs.
+
+use app_core::alignment::{Aligner, Alignment, FoundToy, Outlines, PoseAlignment, find_toy};
+use app_core::frame::FrameInput;
+use app_core::scene::{Camera, Image, Light, Plate, Receiver, Scene, Surface};
+use desk::check::overlay;
+use glam::{DMat4, DVec2, DVec3};
+
+use super::{Given, NewError, Side, Wanted};
+
+/// Where the table is thought to be before the toy is found: in metres before the camera, which looks down on it by that angle.
+const TABLE_AWAY_M: f64 = 0.5;
+const TABLE_DOWN_RAD: f64 = 0.7;
+/// Half the sides of a table that nobody has measured, over the diagonal of the toy's box, and at least.
+const TABLE: f64 = 6.0;
+const LEAST_TABLE_M: f64 = 0.3;
+/// A table whose slope is known worse, in radians, is worth a warning.
+const UNSURE_RAD: f64 = 0.01;
+/// The part of a shadow that may be left unexplained without one.
+const UNEXPLAINED: f64 = 0.3;
+
+/// What was found; world is the table's space: the origin under the toy's middle, +Y up, +Z towards the camera.
+pub(super) struct Found {
+    pub(super) scene: Scene,
+    pub(super) input: FrameInput,
+    alignment: Alignment,
+    toy: FoundToy,
+    turn_rad: f64,
+}
+
+/// Finds all by the photographs.
+pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
+    let camera = given.camera();
+    let plates = given.plates.iter().map(|plate| Plate {
+        image: plate.image.clone().into(),
+        camera,
+    });
+    let down = DMat4::from_rotation_x(TABLE_DOWN_RAD);
+    let guessed = DMat4::from_translation(TABLE_AWAY_M * DVec3::NEG_Z) * down;
+    let image = &given.photograph.image;
+    let scene = Scene::new(
+        [image.width_px, image.height_px],
+        given.toy.clone(),
+        given.upright,
+        vec![table(guessed, given)],
+    )
+    .with_physical_pose(given.pose.clone())
+    .with_plates(plates.collect());
+    let input = FrameInput::new(image.clone(), camera, given.upright);
+    let search = find_toy(&scene, &input, &wanted.view.directions())?;
+    let toy = match &search.found[..] {
+        [] => return Err(not_found(given, search.nearest_px).into()),
+        [toy] => *toy,
+        several => {
+            let mut sides: Vec<Side> = several.iter().map(|toy| Side::of_turn(turn_rad(toy, given))).collect();
+            sides.dedup();
+            return Err(NewError::Ambiguous { sides }.into());
+        }
+    };
+    aligned(given, wanted, (scene, &search.plate_cameras), toy)
+}
+
+/// Lays world into the table, and looks for the lights.
+fn aligned(
+    given: &Given,
+    wanted: &Wanted,
+    (mut scene, plate_cameras): (Scene, &[Camera]),
+    toy: FoundToy,
+) -> anyhow::Result<Found> {
+    let world_from_camera = world_from_camera(given, wanted, &toy);
+    let placed = |camera: &Camera| Camera {
+        world_from_camera: world_from_camera * camera.world_from_camera,
+        ..*camera
+    };
+    for (plate, camera) in scene.plates.iter_mut().zip(plate_cameras) {
+        plate.camera = placed(camera);
+    }
+    scene.world_from_object = world_from_camera * toy.world_from_object;
+    scene.receivers = vec![table(DMat4::IDENTITY, given)];
+    let camera = placed(&given.camera());
+    let input = FrameInput::new(given.photograph.image.clone(), camera, scene.world_from_object);
+    let mut aligner = Aligner::new(scene);
+    let alignment = aligner.align(&input)?;
+    let mut scene = Scene::clone(aligner.scene());
+    let input = alignment.applied_to(&input);
+    scene.world_from_object = input.world_from_object;
+    let is_found = |_: &&_| alignment.report.assumed.is_none();
+    scene.lights = alignment.lights.as_deref().filter(is_found).unwrap_or_default().to_vec();
+    Ok(Found {
+        turn_rad: turn_rad(&toy, given),
+        scene,
+        input,
+        alignment,
+        toy,
+    })
+}
+
+/// From the camera's space, in which the toy was found, to the table's.
+fn world_from_camera(given: &Given, wanted: &Wanted, toy: &FoundToy) -> DMat4 {
+    let up = toy.world_from_table.y_axis.truncate().normalize_or(DVec3::Y);
+    let middle = toy.world_from_object.transform_point3(given.middle());
+    let above_m = (middle - toy.world_from_table.w_axis.truncate()).dot(up);
+    let origin = middle - (above_m + wanted.lifted_m) * up;
+    let towards = -origin - (-origin).dot(up) * up;
+    let z = towards.normalize_or(up.any_orthonormal_vector());
+    let x = up.cross(z);
+    let camera_from_world =
+        DMat4::from_cols(x.extend(0.0), up.extend(0.0), z.extend(0.0), origin.extend(1.0));
+    camera_from_world.inverse()
+}
+
+/// How the toy is turned to the camera: 0 if its front is seen.
+fn turn_rad(toy: &FoundToy, given: &Given) -> f64 {
+    let moved = toy.world_from_object * given.upright.inverse();
+    let middle = toy.world_from_object.transform_point3(given.middle());
+    let up = moved.transform_vector3(DVec3::Y).normalize_or(DVec3::Y);
+    // A model that was turned upright keeps its axes but for that turn.
+    let front = moved.transform_vector3(DVec3::Z);
+    let to_camera = (-middle - (-middle).dot(up) * up).normalize_or(DVec3::Z);
+    let right = up.cross(to_camera);
+    front.dot(right).atan2(front.dot(to_camera))
+}
+
+fn table(world_from_plane: DMat4, given: &Given) -> Receiver {
+    let [min, max] = given.corners;
+    let diagonal_m = given.upright.transform_vector3(max - min).length();
+    Receiver {
+        name: "table".to_owned(),
+        world_from_plane,
+        half_extent_m: DVec2::splat((TABLE * diagonal_m).max(LEAST_TABLE_M)),
+        surface: Surface::Textured,
+    }
+}
+
+fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
+    let reached = match nearest_px {
+        None => "too little of any outline is seen".to_owned(),
+        Some(px) => format!("the nearest outline stays {px:.1} px from the photograph's, or is met by chance alone"),
+    };
+    let plate = if given.plates.is_empty() {
+        "Photograph the place without the toy as well, from the same stand. "
+    } else {
+        ""
+    };
+    NewError::NotFound {
+        reached,
+        advice: format!(
+            "{plate}Check that the model is this toy in this pose (--pose CLIP@TIME), that it stands with its +Y up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
+        ),
+    }
+}
+
+impl Found {
+    /// The photograph with the outlines of toy and shadows, and a grid on the table.
+    pub(super) fn drawn(&self, given: &Given) -> anyhow::Result<Image> {
+        let mut picture = given.photograph.image.clone();
+        overlay::receivers(&mut picture, &self.scene, &self.input);
+        overlay::outlines(&mut picture, &Outlines::of(&self.scene, &self.input)?, overlay::ALIGNED);
+        Ok(picture)
+    }
+
+    /// What was found.
+    pub(super) fn facts(&self) -> Vec<String> {
+        let camera = self.input.camera.world_from_camera.w_axis.truncate();
+        let toy = self.input.world_from_object.w_axis.truncate();
+        let down_deg = (camera.y / camera.length()).clamp(-1.0, 1.0).asin().to_degrees();
+        let mut facts = vec![format!(
+            "the toy is found: its {} is seen from {:.2} m, {down_deg:.0} degrees above the table; its outline is {:.2} px from the photograph's, its place known to {:.2} mm along the view",
+            Side::of_turn(self.turn_rad),
+            camera.distance(toy),
+            self.pose().map_or(self.toy.outline_px, PoseAlignment::shown_px),
+            1e3 * self.toy.deviation.depth_m,
+        )];
+        facts.extend(self.alignment.report.discovered.iter().enumerate().map(|(index, light)| {
+            let away = light.distance_m.map_or("far away".to_owned(), |metres| format!("{metres:.2} m away"));
+            format!(
+                "light {index} is found by its shadow: {away}, {:.1} degrees wide, {:.0} % of the light",
+                2.0 * light.angular_radius_rad.to_degrees(),
+                100.0 * light.share
+            )
+        }));
+        facts
+    }
+
+    fn pose(&self) -> Option<&PoseAlignment> {
+        self.alignment.report.pose.as_ref()
+    }
+
+    /// What may be wrong, and what is lost.
+    pub(super) fn warnings(&self, given: &Given) -> Vec<String> {
+        let mut warnings: Vec<String> = self.alignment.warnings.iter().map(ToString::to_string).collect();
+        if given.plates.is_empty() {
+            warnings.push(
+                "there is no photograph of the place without the toy: what the toy and its shadow hide is estimated, and the lights are found less well"
+                    .to_owned(),
+            );
+        }
+        let slope_rad = self.toy.deviation.rotation_rad;
+        if slope_rad > UNSURE_RAD {
+            warnings.push(format!(
+                "the table's slope is known to {:.1} degrees alone",
+                slope_rad.to_degrees()
+            ));
+        }
+        if let Some(part) = self.alignment.report.unexplained.filter(|part| *part > UNEXPLAINED) {
+            warnings.push(format!(
+                "{:.0} % of the shadow stays unexplained: look at the drawing before going on",
+                100.0 * part
+            ));
+        }
+        warnings
+    }
+
+    /// Lights that were found.
+    pub(super) fn lights(&self) -> &[Light] {
+        &self.scene.lights
+    }
+}

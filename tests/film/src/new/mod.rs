@@ -1,0 +1,196 @@
+//! A session of photographs alone: the toy is the marker. Where it is in the photograph says where the camera was, its feet where the
+//! table is, and its shadow where the lights are.
+
+mod error;
+mod found;
+mod view;
+mod written;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::Context;
+use app_core::scene::{Camera, Intrinsics, Pose};
+use app_core::toy::Toy;
+use desk::output::write_png;
+use glam::{DMat4, DVec3};
+
+use crate::photograph::{Photograph, focal_px};
+
+pub use error::NewError;
+pub use view::{Side, View};
+
+/// File name of the drawing in the session's folder.
+pub const DRAWING: &str = "found.png";
+
+/// Heights that a toy without a stated one may have by its model, in metres.
+const LIKELY_M: [f64; 2] = [0.01, 1.0];
+/// No model is read that is larger.
+const MOST_TOY_BYTES: u64 = 512 << 20;
+
+/// Which photographs, and what is known beside them.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Photographs of the place without the toy, and that of the toy last.
+    pub photographs: Vec<PathBuf>,
+    /// The model, a .glb.
+    pub toy: PathBuf,
+    /// The toy's height as it stands, in metres; that of the model if nobody says it.
+    pub height_m: Option<f64>,
+    /// The clip and the moment in seconds of the pose that the toy was made in; as authored without one.
+    pub moment: Option<(String, f64)>,
+    /// Focal length as on 35 mm film, in millimetres, in place of the photograph's own.
+    pub focal_35mm: Option<f64>,
+    /// From where the toy is seen.
+    pub view: View,
+    /// The model's axis that points up, of unit length.
+    pub up: DVec3,
+    /// How far the toy's lowest points are above the table, in metres.
+    pub lifted_m: f64,
+}
+
+/// What was made.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// What was found and done, as sentences.
+    pub facts: Vec<String>,
+    /// What may be wrong.
+    pub warnings: Vec<String>,
+}
+
+/// What is read before anything is searched.
+struct Given {
+    plates: Vec<Photograph>,
+    photograph: Photograph,
+    toy: Arc<Toy>,
+    toy_bytes: Vec<u8>,
+    pose: Pose,
+    intrinsics: Intrinsics,
+    /// The toy in its size and upright about the origin.
+    upright: DMat4,
+    /// Corners of the model's box in that pose, in object space.
+    corners: [DVec3; 2],
+    facts: Vec<String>,
+}
+
+/// Makes a session's folder of photographs.
+///
+/// # Errors
+/// When `out` is there already, a file cannot be read, or the toy is not found for sure: nothing is written then.
+pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
+    anyhow::ensure!(!out.exists(), "{}: is there already", out.display());
+    let given = read(wanted)?;
+    let found = found::find(&given, wanted)?;
+    written::write(&given, &found, wanted, out)?;
+    write_png(&out.join(DRAWING), &found.drawn(&given)?)?;
+    let mut facts = given.facts.clone();
+    facts.extend(found.facts());
+    Ok(Made {
+        facts,
+        warnings: found.warnings(&given),
+    })
+}
+
+fn read(wanted: &Wanted) -> anyhow::Result<Given> {
+    let mut photographs = Vec::new();
+    for path in &wanted.photographs {
+        photographs.push(Photograph::read(path)?);
+    }
+    let photograph = photographs.pop().context("a photograph of the toy is needed")?;
+    let plates = photographs;
+    for plate in &plates {
+        same_size(plate, &photograph)?;
+    }
+    let stated_px = wanted.focal_35mm.map(|focal_35mm| focal_px(focal_35mm, &photograph.image));
+    let focal_px = stated_px.or(photograph.focal_px).ok_or_else(|| NewError::NoFocalLength {
+        path: photograph.path.clone(),
+    })?;
+    let (toy, toy_bytes) = read_toy(&wanted.toy)?;
+    let pose = match &wanted.moment {
+        None => Pose::Authored,
+        Some((clip, time_secs)) => Pose::Clip {
+            clip: toy.find_clip(clip)?,
+            time_secs: *time_secs,
+        },
+    };
+    let bounds = toy.bounds_of_pose(&pose)?;
+    let corners = [bounds.min, bounds.max].map(|corner| corner.as_dvec3());
+    let upright = upright(corners, wanted)?;
+    let facts = plates.iter().chain([&photograph]).flat_map(|photograph| {
+        let name = photograph.path.display();
+        photograph.notes.iter().map(move |note| format!("{name}: {note}"))
+    });
+    let image = &photograph.image;
+    Ok(Given {
+        intrinsics: Intrinsics {
+            fx_px: focal_px,
+            fy_px: focal_px,
+            cx_px: 0.5 * f64::from(image.width_px),
+            cy_px: 0.5 * f64::from(image.height_px),
+        },
+        facts: facts.collect(),
+        plates,
+        photograph,
+        toy: toy.into(),
+        toy_bytes,
+        pose,
+        upright,
+        corners,
+    })
+}
+
+fn same_size(plate: &Photograph, photograph: &Photograph) -> Result<(), NewError> {
+    let size_px = |photograph: &Photograph| [photograph.image.width_px, photograph.image.height_px];
+    let [own, expected] = [size_px(plate), size_px(photograph)];
+    if own == expected {
+        return Ok(());
+    }
+    Err(NewError::Size {
+        path: plate.path.clone(),
+        size_px: own,
+        expected_px: expected,
+    })
+}
+
+fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
+    let name = path.display().to_string();
+    let length = std::fs::metadata(path).with_context(|| name.clone())?.len();
+    anyhow::ensure!(length <= MOST_TOY_BYTES, "{name}: is larger than {} MiB", MOST_TOY_BYTES >> 20);
+    let bytes = std::fs::read(path).with_context(|| name.clone())?;
+    Ok((Toy::from_glb(&name, &bytes)?, bytes))
+}
+
+/// Turns the model upright, and scales it to its height.
+fn upright([min, max]: [DVec3; 2], wanted: &Wanted) -> Result<DMat4, NewError> {
+    let turn = DMat4::from_quat(glam::DQuat::from_rotation_arc(wanted.up, DVec3::Y));
+    let heights = (0..8).map(|corner| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+        turn.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).y
+    });
+    let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), y| {
+        (least.min(y), most.max(y))
+    });
+    let own_m = highest - lowest;
+    let is_likely = (LIKELY_M[0]..=LIKELY_M[1]).contains(&own_m);
+    let height_m = wanted.height_m.or(is_likely.then_some(own_m));
+    let height_m = height_m.ok_or(NewError::NoHeight { own: own_m })?;
+    if !(own_m.is_normal() && own_m > 0.0) {
+        return Err(NewError::Flat);
+    }
+    Ok(DMat4::from_scale(DVec3::splat(height_m / own_m)) * turn)
+}
+
+impl Given {
+    /// A camera at the origin of its own space.
+    fn camera(&self) -> Camera {
+        Camera {
+            intrinsics: self.intrinsics,
+            world_from_camera: DMat4::IDENTITY,
+        }
+    }
+
+    /// The middle of the toy's box, in object space.
+    fn middle(&self) -> DVec3 {
+        0.5 * (self.corners[0] + self.corners[1])
+    }
+}

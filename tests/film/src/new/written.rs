@@ -1,0 +1,83 @@
+//! The session's folder.
+
+use std::path::Path;
+
+use app_core::scene::{Camera, Image};
+use app_core::session::record::{
+    BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, LightRecord, PoseRecord, ReceiverRecord,
+    ToyRecord,
+};
+use app_core::session::{Capture, Session};
+use desk::files::{Folder, SESSION_FILE};
+use desk::output::{make_folder, write_png, write_whole};
+
+use super::found::Found;
+use super::{Given, Wanted};
+
+const TOY: &str = "toy.glb";
+const PHOTOGRAPH: &str = "photograph.png";
+
+fn plate_file(index: usize) -> String {
+    format!("plate_{index}.png")
+}
+
+/// Writes a folder and reads it once, so that what is written is a session; the index is written last.
+pub(super) fn write(given: &Given, found: &Found, wanted: &Wanted, out: &Path) -> anyhow::Result<()> {
+    make_folder(out)?;
+    write_whole(&out.join(TOY), &given.toy_bytes)?;
+    let plates = given.plates.iter().enumerate();
+    for (index, plate) in plates {
+        write_png(&out.join(plate_file(index)), &plate.image)?;
+    }
+    write_png(&out.join(PHOTOGRAPH), &given.photograph.image)?;
+    let index = Index::from(record(given, found, wanted));
+    let mut json = serde_json::to_vec_pretty(&index)?;
+    json.push(b'\n');
+    write_whole(&out.join(SESSION_FILE), &json)?;
+    Capture::open(Folder::open(out)?)?.frame(0)?;
+    Ok(())
+}
+
+fn record(given: &Given, found: &Found, wanted: &Wanted) -> CaptureRecord {
+    let Image {
+        width_px, height_px, ..
+    } = given.photograph.image;
+    let scene = &found.scene;
+    let columns = |camera: &Camera| camera.world_from_camera.to_cols_array();
+    let plates = scene.plates.iter().enumerate();
+    let (clip, time) = match &wanted.moment {
+        Some((clip, time_secs)) => (Some(clip.clone()), *time_secs),
+        None => (None, 0.0),
+    };
+    let stem = given.photograph.path.file_stem().unwrap_or_default();
+    CaptureRecord {
+        name: stem.to_string_lossy().into_owned(),
+        width: width_px,
+        height: height_px,
+        encoding: Encoding::Srgb,
+        intrinsics: (&given.intrinsics).into(),
+        lens: None,
+        toy: ToyRecord {
+            file: TOY.to_owned(),
+            world_from_object: scene.world_from_object.to_cols_array(),
+            physical_pose: PoseRecord { clip, time },
+            resting: scene.resting,
+        },
+        receivers: scene.receivers.iter().map(ReceiverRecord::from).collect(),
+        lights: found.lights().iter().map(LightRecord::from).collect(),
+        backgrounds: plates
+            .map(|(index, plate)| BackgroundRecord {
+                image: plate_file(index),
+                intrinsics: None,
+                world_from_camera: columns(&plate.camera),
+            })
+            .collect(),
+        frames: vec![FrameRecord {
+            image: PHOTOGRAPH.to_owned(),
+            world_from_camera: columns(&found.input.camera),
+            ..FrameRecord::default()
+        }],
+        probe: None,
+        uncertainty: None,
+    }
+}
