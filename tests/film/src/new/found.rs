@@ -6,7 +6,7 @@ use app_core::scene::{Camera, Image, Light, Plate, Receiver, Scene, Surface};
 use desk::check::overlay;
 use glam::{DMat4, DVec2, DVec3};
 
-use super::{Given, NewError, Side, Wanted};
+use super::{Given, NewError, Side, Wanted, table};
 
 /// Where the table is thought to be before the toy is found: in metres before the camera, which looks down on it by that angle.
 const TABLE_AWAY_M: f64 = 0.5;
@@ -82,10 +82,11 @@ fn aligned(
     let mut aligner = Aligner::new(scene);
     let alignment = aligner.align(&input)?;
     let mut scene = Scene::clone(aligner.scene());
-    let input = alignment.applied_to(&input);
-    scene.world_from_object = input.world_from_object;
+    let mut input = alignment.applied_to(&input);
     let is_found = |_: &&_| alignment.report.assumed.is_none();
     scene.lights = alignment.lights.as_deref().filter(is_found).unwrap_or_default().to_vec();
+    lower_to_table(given, &mut scene, &mut input)?;
+    scene.world_from_object = input.world_from_object;
     Ok(Found {
         turn_rad: turn_rad(&toy, given),
         scene,
@@ -93,6 +94,28 @@ fn aligned(
         alignment,
         toy,
     })
+}
+
+/// Moves toy and cameras to the height above the table that the shadow says, and the lights with it.
+fn lower_to_table(given: &Given, scene: &mut Scene, input: &mut FrameInput) -> anyhow::Result<()> {
+    if scene.lights.is_empty() || scene.plates.is_empty() {
+        return Ok(());
+    }
+    let lights = scene.lights.clone();
+    let Some(higher_m) = table::higher_m(scene, input, &lights, given.diagonal_m())? else {
+        return Ok(());
+    };
+    let lifted = DMat4::from_translation(-higher_m * DVec3::Y);
+    for plate in &mut scene.plates {
+        plate.camera.world_from_camera = lifted * plate.camera.world_from_camera;
+    }
+    input.camera.world_from_camera = lifted * input.camera.world_from_camera;
+    input.world_from_object = lifted * input.world_from_object;
+    input.lights = None;
+    let aligned = table::aligned_at(scene, input, &lights, 0.0)?;
+    scene.lights = aligned.lights.map_or(lights, |found| found.to_vec());
+    input.lights = Some(scene.lights.clone().into());
+    Ok(())
 }
 
 /// From the camera's space, in which the toy was found, to the table's.
@@ -122,12 +145,10 @@ fn turn_rad(toy: &FoundToy, given: &Given) -> f64 {
 }
 
 fn table(world_from_plane: DMat4, given: &Given) -> Receiver {
-    let [min, max] = given.corners;
-    let diagonal_m = given.upright.transform_vector3(max - min).length();
     Receiver {
         name: "table".to_owned(),
         world_from_plane,
-        half_extent_m: DVec2::splat((TABLE * diagonal_m).max(LEAST_TABLE_M)),
+        half_extent_m: DVec2::splat((TABLE * given.diagonal_m()).max(LEAST_TABLE_M)),
         surface: Surface::Textured,
     }
 }

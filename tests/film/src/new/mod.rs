@@ -3,6 +3,7 @@
 
 mod error;
 mod found;
+mod table;
 mod view;
 mod written;
 
@@ -187,6 +188,12 @@ impl Given {
             intrinsics: self.intrinsics,
             world_from_camera: DMat4::IDENTITY,
         }
+    }
+
+    /// Length of the diagonal of the toy's box, in metres.
+    fn diagonal_m(&self) -> f64 {
+        let [min, max] = self.corners;
+        self.upright.transform_vector3(max - min).length()
     }
 
     /// The middle of the toy's box, in object space.
