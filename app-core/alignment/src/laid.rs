@@ -39,9 +39,13 @@ pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Ve
 /// Feet that lean less from the model's own ground, in radians, are modelled no better: it stands upright.
 const LEAST_LEAN_RAD: f64 = 0.012;
 
-/// The plane under an upright toy that stands; +Y is its normal. It is that of the toy's feet, if these clearly lean, or if there are
-/// none the level plane of its lowest point.
-pub(super) fn plane_under(scene: &Scene, world_from_object: &DMat4, up: DVec3) -> Result<DMat4, ToyError> {
+/// Planes that an upright toy may stand on; +Y is the normal. The first is level, below its lowest point; the second is that of its feet, if
+/// these clearly lean.
+pub(super) fn planes_under(
+    scene: &Scene,
+    world_from_object: &DMat4,
+    up: DVec3,
+) -> Result<Vec<DMat4>, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
     let lowest = shape.points.iter().min_by(|a, b| a.dot(up).total_cmp(&b.dot(up)));
     let level = Plane {
@@ -56,9 +60,13 @@ pub(super) fn plane_under(scene: &Scene, world_from_object: &DMat4, up: DVec3) -
         }
     });
     let leans = |plane: &Plane| plane.normal.dot(up) < LEAST_LEAN_RAD.cos();
-    let plane = of_feet.filter(leans).unwrap_or(level);
-    let turn = DQuat::from_rotation_arc(DVec3::Y, plane.normal);
-    Ok(DMat4::from_rotation_translation(turn, plane.point))
+    let planes = std::iter::once(level).chain(of_feet.filter(leans));
+    Ok(planes
+        .map(|plane| {
+            let turn = DQuat::from_rotation_arc(DVec3::Y, plane.normal);
+            DMat4::from_rotation_translation(turn, plane.point)
+        })
+        .collect())
 }
 
 fn plane_of(receiver: &Receiver) -> Plane {

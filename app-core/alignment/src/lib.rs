@@ -32,6 +32,7 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod hand;
 mod kept_lights;
 mod laid;
 mod light_search;

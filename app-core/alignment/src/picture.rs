@@ -221,11 +221,14 @@ impl Pyramid {
         self.levels.iter().rposition(is_enough).unwrap_or(0)
     }
 
-    /// A level whose silhouettes are cheap: of 7,000 pixels at most.
-    pub(super) fn tiny(&self) -> Level {
-        const MOST_PIXELS: i32 = 7000;
+    /// The largest level of so many pixels at most, or a smaller copy of the smallest.
+    pub(super) fn at_most(&self, n_pixels: i32) -> Level {
+        let is_small = |level: &Level| level.frame.size_px.x * level.frame.size_px.y <= n_pixels;
+        if let Some(level) = self.levels.iter().find(|level| is_small(level)) {
+            return level.clone();
+        }
         let mut level = self.levels[Self::SMALLEST].clone();
-        while level.frame.size_px.x * level.frame.size_px.y > MOST_PIXELS {
+        while !is_small(&level) {
             level = level.halved();
         }
         level

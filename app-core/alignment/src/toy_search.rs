@@ -8,13 +8,15 @@ use glam::{DMat4, DVec3, IVec2};
 
 use crate::camera::{Finder, corrected};
 use crate::error::{AlignError, check};
-use crate::laid::plane_under;
+use crate::hand::photograph_from_plate;
+use crate::laid::planes_under;
 use crate::photograph::{MOST_OUTLINE_PX, Photograph};
+use crate::picture::{Level, Picture, Pyramid};
 use crate::pose::{self, Paint, Start};
 use crate::report::PoseDeviation;
 use crate::shape::Shape;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Camera, Plate, PoseUncertainty, Scene};
+use app_scene::scene::{Camera, Plate, PoseUncertainty, Receiver, Scene};
 
 pub use crate::pose::ViewDirection;
 
@@ -45,12 +47,16 @@ const MOST_DIFFERENT: f64 = 1.0;
 const DARK: f64 = 0.004;
 /// Pixels of the level in which colours are compared, at least.
 const COMPARED_PIXELS: i32 = 60_000;
+/// Pixels of the level in which plates from the hand are registered, at most.
+const REGISTERED_PIXELS: i32 = 120_000;
+/// Pixels of the tiny level, at most.
+const TINY_PIXELS: i32 = 7000;
 /// How far the camera of a plate that was taken from the hand may be from that of the photograph.
 const HAND_M: f64 = 0.1;
 const HAND_RAD: f64 = 0.11;
 
 /// A pose of the toy that meets the photograph's outline.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct FoundToy {
     /// From object space to world.
     pub world_from_object: DMat4,
@@ -60,8 +66,8 @@ pub struct FoundToy {
     pub color_difference: f64,
     /// One deviation of the pose.
     pub deviation: PoseDeviation,
-    /// The plane under its feet, +Y up: that of the table if the toy stands.
-    pub world_from_table: DMat4,
+    /// Planes that it may stand on, +Y up, the level one first; a second one if its three lowest feet lean from that.
+    pub world_from_tables: Vec<DMat4>,
 }
 
 /// Result of a search for a toy.
@@ -90,23 +96,22 @@ pub fn find_toy(
     check(scene, input)?;
     let mut scene = Scene::clone(scene);
     scene.uncertainty.are_receivers_guessed = true;
-    let are_plates_moved = register_plates(&mut scene, input);
+    register_plates(&mut scene, input);
     let search = Search::new(&scene, input)?;
     let followed = search.followed(directions)?;
     let nearest_px = followed.first().map(|pose| pose.outline_px);
     let mut found = told_apart(search.refined(&followed)?);
-    if let [one] = &mut found[..]
-        && are_plates_moved
-    {
+    if let [one] = &mut found[..] {
         // The plates were registered by a guess of the table's plane, which the toy now says.
         scene.receivers.truncate(1);
-        for receiver in &mut scene.receivers {
-            receiver.world_from_plane = one.world_from_table;
+        for (receiver, world_from_table) in scene.receivers.iter_mut().zip(&one.world_from_tables) {
+            receiver.world_from_plane = *world_from_table;
         }
-        register_plates(&mut scene, input);
-        *one = Search::new(&scene, input)?
-            .refine(&one.world_from_object)?
-            .unwrap_or(*one);
+        if register_plates(&mut scene, input)
+            && let Some(refined) = Search::new(&scene, input)?.refine(&one.world_from_object)?
+        {
+            *one = refined;
+        }
     }
     Ok(ToySearch {
         nearest_px: found.first().map(|found| found.outline_px).or(nearest_px),
@@ -117,23 +122,65 @@ pub fn find_toy(
 
 /// Corrects the cameras of the plates, each against the photograph. Whether any is another then.
 fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
-    let photograph = Plate {
-        image: input.image.rgba().clone(),
-        camera: input.camera,
-    };
-    let from_hand = PoseUncertainty {
-        position_m: Some(HAND_M),
-        rotation_rad: Some(HAND_RAD),
-    };
     let mut is_any_moved = false;
     for plate in &mut scene.plates {
-        let of_plate = (&plate.image, &plate.camera, None);
-        let known = (std::slice::from_ref(&photograph), &scene.receivers[..]);
-        let (camera, _) = corrected(&plate.camera, Finder::default().find(of_plate, known, &from_hand));
+        let camera = registered(plate, input, &scene.receivers);
         is_any_moved |= camera != plate.camera;
         plate.camera = camera;
     }
     is_any_moved
+}
+
+/// The camera of a plate against the photograph: the best that is found near the given one, farther away, and by corners that both show.
+fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver]) -> Camera {
+    let from_hand = PoseUncertainty {
+        position_m: Some(HAND_M),
+        rotation_rad: Some(HAND_RAD),
+    };
+    let turned = photograph_from_plate(&level_with(plate, input)).map(|turn| Camera {
+        world_from_camera: plate.camera.world_from_camera * DMat4::from_quat(turn),
+        ..plate.camera
+    });
+    let starts = [
+        Some((plate.camera, PoseUncertainty::default())),
+        Some((plate.camera, from_hand)),
+        turned.map(|turned| (turned, from_hand)),
+    ];
+    let tries = starts.into_iter().flatten().filter_map(|(start, uncertainty)| {
+        let mut plate = plate.clone();
+        plate.camera = start;
+        follow(&mut plate, input, receivers, &uncertainty).map(|loss| (loss, plate.camera))
+    });
+    let best = tries.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    best.map_or(plate.camera, |(_, camera)| camera)
+}
+
+/// Moves the camera of a plate, which shows the table alone, until it meets the photograph; returns what is left. Twice, since the table is
+/// seen elsewhere in the plate once its camera is another one.
+fn follow(
+    plate: &mut Plate,
+    input: &FrameInput,
+    receivers: &[Receiver],
+    uncertainty: &PoseUncertainty,
+) -> Option<f64> {
+    let mut loss = None;
+    for _ in 0..2 {
+        let known = (std::slice::from_ref(&*plate), receivers);
+        let photograph = (input.image.rgba(), &input.camera, None);
+        let found = Finder::default().find(photograph, known, uncertainty)?;
+        let (camera, _) = corrected(&input.camera, Some(found));
+        let moved = input.camera.world_from_camera * camera.world_from_camera.inverse();
+        loss = Some(if camera == input.camera { found.losses[0] } else { found.losses[1] });
+        plate.camera.world_from_camera = moved * plate.camera.world_from_camera;
+    }
+    loss
+}
+
+/// Photograph and plate as they were taken, small.
+fn level_with(plate: &Plate, input: &FrameInput) -> Level {
+    let [frame, plate] = [input.image.rgba(), &plate.image].map(|image| Picture::decode(image));
+    let pyramid = Pyramid::new(frame, Some(plate), input.camera.intrinsics);
+    pyramid.at_most(REGISTERED_PIXELS)
 }
 
 struct Search<'a> {
@@ -164,7 +211,7 @@ impl<'a> Search<'a> {
     /// The best guesses, followed by coarse and fine rounds, the nearest outline first.
     fn followed(&self, directions: &[ViewDirection]) -> Result<Vec<Followed>, AlignError> {
         let silhouette = self.upright.merged(CELL * self.upright.radius_m);
-        let tiny = self.photograph.pyramid().tiny();
+        let tiny = self.photograph.pyramid().at_most(TINY_PIXELS);
         let mut followed = Vec::new();
         for guess in pose::guesses(&silhouette, &tiny, directions)
             .iter()
@@ -243,7 +290,7 @@ impl<'a> Search<'a> {
             outline_px: report.shown_px(),
             color_difference: self.color_difference(&pose.world_from_object)?,
             deviation: report.deviation,
-            world_from_table: plane_under(self.scene, &pose.world_from_object, up)?,
+            world_from_tables: planes_under(self.scene, &pose.world_from_object, up)?,
         }))
     }
 

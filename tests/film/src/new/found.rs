@@ -1,8 +1,9 @@
 //! Where toy, table, cameras and lights are, by the photographs.
 
-use app_core::alignment::{Aligner, Alignment, FoundToy, Outlines, PoseAlignment, find_toy};
+use anyhow::Context;
+use app_core::alignment::{Aligner, Alignment, AlignmentWarning, FoundToy, Outlines, PoseAlignment, find_toy};
 use app_core::frame::FrameInput;
-use app_core::scene::{Camera, Image, Light, Plate, Receiver, Scene, Surface};
+use app_core::scene::{Camera, Image, Light, Plate, PoseUncertainty, Receiver, Scene, Surface};
 use desk::check::overlay;
 use glam::{DMat4, DVec2, DVec3};
 
@@ -50,79 +51,73 @@ pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
     let search = find_toy(&scene, &input, &wanted.view.directions())?;
     let toy = match &search.found[..] {
         [] => return Err(not_found(given, search.nearest_px).into()),
-        [toy] => *toy,
+        [toy] => toy.clone(),
         several => {
             let mut sides: Vec<Side> = several.iter().map(|toy| Side::of_turn(turn_rad(toy, given))).collect();
             sides.dedup();
             return Err(NewError::Ambiguous { sides }.into());
         }
     };
-    aligned(given, wanted, (scene, &search.plate_cameras), toy)
+    let mut found: Option<Found> = None;
+    for world_from_table in &toy.world_from_tables {
+        let laid = world_from_camera(given, wanted, &toy, world_from_table);
+        let other = aligned(given, (&scene, &search.plate_cameras), &toy, &laid)?;
+        if found.as_ref().is_none_or(|found| other.unexplained() < found.unexplained()) {
+            found = Some(other);
+        }
+    }
+    let mut found = found.context("no plane under the toy")?;
+    let is_floating = toy.world_from_tables.len() > 1 || wanted.lifted_m > 0.0;
+    found.scene.resting = is_floating.then_some(false);
+    found.lower_to_table(given)?;
+    Ok(found)
 }
 
 /// Lays world into the table, and looks for the lights.
 fn aligned(
     given: &Given,
-    wanted: &Wanted,
-    (mut scene, plate_cameras): (Scene, &[Camera]),
-    toy: FoundToy,
+    (scene, plate_cameras): (&Scene, &[Camera]),
+    toy: &FoundToy,
+    world_from_camera: &DMat4,
 ) -> anyhow::Result<Found> {
-    let world_from_camera = world_from_camera(given, wanted, &toy);
     let placed = |camera: &Camera| Camera {
-        world_from_camera: world_from_camera * camera.world_from_camera,
+        world_from_camera: *world_from_camera * camera.world_from_camera,
         ..*camera
     };
+    let mut scene = scene.clone();
     for (plate, camera) in scene.plates.iter_mut().zip(plate_cameras) {
         plate.camera = placed(camera);
     }
-    scene.world_from_object = world_from_camera * toy.world_from_object;
+    scene.world_from_object = *world_from_camera * toy.world_from_object;
     scene.receivers = vec![table(DMat4::IDENTITY, given)];
+    // Its place against the table comes from the toy; plates were registered to it.
+    scene.uncertainty.camera = PoseUncertainty {
+        position_m: Some(0.0),
+        rotation_rad: Some(0.0),
+    };
     let camera = placed(&given.camera());
     let input = FrameInput::new(given.photograph.image.clone(), camera, scene.world_from_object);
     let mut aligner = Aligner::new(scene);
     let alignment = aligner.align(&input)?;
     let mut scene = Scene::clone(aligner.scene());
-    let mut input = alignment.applied_to(&input);
+    let input = alignment.applied_to(&input);
     let is_found = |_: &&_| alignment.report.assumed.is_none();
     scene.lights = alignment.lights.as_deref().filter(is_found).unwrap_or_default().to_vec();
-    lower_to_table(given, &mut scene, &mut input)?;
     scene.world_from_object = input.world_from_object;
     Ok(Found {
-        turn_rad: turn_rad(&toy, given),
+        turn_rad: turn_rad(toy, given),
         scene,
         input,
         alignment,
-        toy,
+        toy: toy.clone(),
     })
 }
 
-/// Moves toy and cameras to the height above the table that the shadow says, and the lights with it.
-fn lower_to_table(given: &Given, scene: &mut Scene, input: &mut FrameInput) -> anyhow::Result<()> {
-    if scene.lights.is_empty() || scene.plates.is_empty() {
-        return Ok(());
-    }
-    let lights = scene.lights.clone();
-    let Some(higher_m) = table::higher_m(scene, input, &lights, given.diagonal_m())? else {
-        return Ok(());
-    };
-    let lifted = DMat4::from_translation(-higher_m * DVec3::Y);
-    for plate in &mut scene.plates {
-        plate.camera.world_from_camera = lifted * plate.camera.world_from_camera;
-    }
-    input.camera.world_from_camera = lifted * input.camera.world_from_camera;
-    input.world_from_object = lifted * input.world_from_object;
-    input.lights = None;
-    let aligned = table::aligned_at(scene, input, &lights, 0.0)?;
-    scene.lights = aligned.lights.map_or(lights, |found| found.to_vec());
-    input.lights = Some(scene.lights.clone().into());
-    Ok(())
-}
-
 /// From the camera's space, in which the toy was found, to the table's.
-fn world_from_camera(given: &Given, wanted: &Wanted, toy: &FoundToy) -> DMat4 {
-    let up = toy.world_from_table.y_axis.truncate().normalize_or(DVec3::Y);
+fn world_from_camera(given: &Given, wanted: &Wanted, toy: &FoundToy, table: &DMat4) -> DMat4 {
+    let up = table.y_axis.truncate().normalize_or(DVec3::Y);
     let middle = toy.world_from_object.transform_point3(given.middle());
-    let above_m = (middle - toy.world_from_table.w_axis.truncate()).dot(up);
+    let above_m = (middle - table.w_axis.truncate()).dot(up);
     let origin = middle - (above_m + wanted.lifted_m) * up;
     let towards = -origin - (-origin).dot(up) * up;
     let z = towards.normalize_or(up.any_orthonormal_vector());
@@ -166,12 +161,41 @@ fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
     NewError::NotFound {
         reached,
         advice: format!(
-            "{plate}Check that the model is this toy in this pose (--pose CLIP@TIME), that it stands with its +Y up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
+            "{plate}Check that all is taken from one place, that the model is this toy in this pose (--pose CLIP@TIME), that it stands with its +Y up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
         ),
     }
 }
 
 impl Found {
+    /// Part of the shadow that the lights leave unexplained: all if there is none.
+    fn unexplained(&self) -> f64 {
+        self.alignment.report.unexplained.unwrap_or(1.0)
+    }
+
+    /// Moves toy and cameras to the height above the table that the shadow says, and the lights with it.
+    fn lower_to_table(&mut self, given: &Given) -> anyhow::Result<()> {
+        let Self { scene, input, .. } = self;
+        if scene.lights.is_empty() || scene.plates.is_empty() {
+            return Ok(());
+        }
+        let lights = scene.lights.clone();
+        let Some(higher_m) = table::higher_m(scene, input, &lights, given.diagonal_m())? else {
+            return Ok(());
+        };
+        let lifted = DMat4::from_translation(-higher_m * DVec3::Y);
+        for plate in &mut scene.plates {
+            plate.camera.world_from_camera = lifted * plate.camera.world_from_camera;
+        }
+        input.camera.world_from_camera = lifted * input.camera.world_from_camera;
+        input.world_from_object = lifted * input.world_from_object;
+        scene.world_from_object = input.world_from_object;
+        input.lights = None;
+        let aligned = table::aligned_at(scene, input, &lights, 0.0)?;
+        scene.lights = aligned.lights.map_or(lights, |found| found.to_vec());
+        input.lights = Some(scene.lights.clone().into());
+        Ok(())
+    }
+
     /// The photograph with the outlines of toy and shadows, and a grid on the table.
     pub(super) fn drawn(&self, given: &Given) -> anyhow::Result<Image> {
         let mut picture = given.photograph.image.clone();
@@ -209,7 +233,10 @@ impl Found {
 
     /// What may be wrong, and what is lost.
     pub(super) fn warnings(&self, given: &Given) -> Vec<String> {
-        let mut warnings: Vec<String> = self.alignment.warnings.iter().map(ToString::to_string).collect();
+        // The table was laid under the toy.
+        let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
+        let others = self.alignment.warnings.iter().filter(is_other);
+        let mut warnings: Vec<String> = others.map(ToString::to_string).collect();
         if given.plates.is_empty() {
             warnings.push(
                 "there is no photograph of the place without the toy: what the toy and its shadow hide is estimated, and the lights are found less well"

@@ -1,0 +1,203 @@
+//! The turn between two photographs of one place that were taken from the hand: corners of the one are found in the other by their
+//! surroundings, and most of them agree on one rotation.
+//!
+//! Some centimetres between the cameras move the picture by parallax, too, which the direct alignment of the table corrects afterwards.
+//!
+//! Source: corners by Shi and Tomasi 1994, normalized cross-correlation, consensus by Fischler and Bolles 1981.
+
+use glam::{DMat3, DQuat, DVec2, DVec3, IVec2};
+
+use crate::picture::{Level, index_in, places};
+use app_scene::scene::Intrinsics;
+
+/// Pixels between the cells in each of which one corner is taken.
+const CELL_PX: i32 = 16;
+/// Half the side of a corner's surroundings, in pixels.
+const HALF_PX: i32 = 6;
+/// How far a corner is looked for, over the picture's width.
+const REACH: f64 = 0.14;
+/// A corner is found if its surroundings correlate by that much.
+const LEAST_CORRELATION: f32 = 0.75;
+/// Tiles look like their neighbours: so many places are kept of a corner, no two nearer than that, in pixels.
+const N_PLACES: usize = 4;
+const APART_PX: i32 = 4;
+/// Corners agree with a rotation if they are no farther from where it has them, over the picture's width: parallax moves them by as much.
+const AGREE: f64 = 0.012;
+/// Corners that have to agree, and their part of all that are found.
+const LEAST_AGREEING: usize = 12;
+const LEAST_PART: f64 = 0.3;
+/// Two corners of the plate are as far apart as those of the photograph, but for that part.
+const MOST_STRETCH: f64 = 0.1;
+/// No hand turns a camera by more between two photographs of one view, in radians.
+const MOST_TURN_RAD: f64 = 0.2;
+/// Rotations with which that part of the most corners agree are as good.
+const SAME: f64 = 0.95;
+/// No turn explains that part of what the best one does: the camera stood still.
+const STOOD: f64 = 0.9;
+
+/// Brightness of a picture, rows from the top.
+struct Gray {
+    size_px: IVec2,
+    values: Vec<f32>,
+}
+
+/// A corner of the photograph, and places of the plate that look like it, the likest first; as directions in the cameras' spaces.
+struct Match {
+    of_photograph: DVec3,
+    of_plate: Vec<DVec3>,
+}
+
+/// Rotation from the plate's camera to the photograph's; none if it is none, or the pictures do not say it.
+pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
+    let plate = level.plate.as_ref()?;
+    let [photograph, plate] = [&level.frame, plate].map(|picture| Gray {
+        size_px: picture.size_px,
+        values: places(picture.size_px)
+            .map(|at| picture.get(at).map_or(f32::NAN, |[r, g, b]| (r + g + b).max(0.0).sqrt()))
+            .collect(),
+    });
+    let matches: Vec<Match> = photograph
+        .corners()
+        .into_iter()
+        .filter_map(|corner| {
+            let found = plate.find(&photograph, corner);
+            (!found.is_empty()).then(|| Match {
+                of_photograph: ray(&level.intrinsics, corner),
+                of_plate: found.into_iter().map(|at| ray(&level.intrinsics, at)).collect(),
+            })
+        })
+        .collect();
+    let most_rad = AGREE * f64::from(level.frame.size_px.x) / level.intrinsics.fx_px;
+    let n_agreeing = |rotation: &DQuat| {
+        let agrees = |one: &&Match| {
+            let mut places = one.of_plate.iter();
+            places.any(|of_plate| (*rotation * *of_plate).distance(one.of_photograph) < most_rad)
+        };
+        matches.iter().filter(agrees).count()
+    };
+    let rotations = hypotheses(&matches).into_iter().map(|rotation| (n_agreeing(&rotation), rotation));
+    let rotations: Vec<(usize, DQuat)> = rotations.collect();
+    let n_best = rotations.iter().map(|(n, _)| *n).max()?;
+    let is_best = |n: usize| n as f64 >= SAME * n_best as f64;
+    // On a pattern that repeats the least turn is the likeliest.
+    let best = rotations.into_iter().filter(|(n, _)| is_best(*n));
+    let (_, best) = best.min_by(|(_, a), (_, b)| angle(a).total_cmp(&angle(b)))?;
+    let is_clear = n_best >= LEAST_AGREEING && n_best as f64 >= LEAST_PART * matches.len() as f64;
+    let stood = n_agreeing(&DQuat::IDENTITY) as f64 >= STOOD * n_best as f64;
+    (is_clear && !stood).then_some(best)
+}
+
+fn angle(rotation: &DQuat) -> f64 {
+    rotation.to_scaled_axis().length()
+}
+
+/// Rotations that two corners have in common, for each corner with some others.
+fn hypotheses(matches: &[Match]) -> Vec<DQuat> {
+    let n = matches.len();
+    let mut rotations = Vec::new();
+    for a in 0..n {
+        // Far along the list, and so far away in the picture.
+        for b in [1, 3, 5].map(|part| (a + part * n / 7) % n) {
+            for of_a in &matches[a].of_plate {
+                for of_b in &matches[b].of_plate {
+                    let of_photograph = [&matches[a], &matches[b]].map(|one| one.of_photograph);
+                    let rotation = rotation_of(of_photograph, [*of_a, *of_b]);
+                    rotations.extend(rotation.filter(|rotation| angle(rotation) < MOST_TURN_RAD));
+                }
+            }
+        }
+    }
+    rotations
+}
+
+fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
+    let at = at.as_dvec2() + DVec2::splat(0.5);
+    DVec3::new((at.x - k.cx_px) / k.fx_px, -(at.y - k.cy_px) / k.fy_px, -1.0).normalize()
+}
+
+/// The rotation from the second pair of directions to the first; none if those of a pair are too near to one another, or pairs are not as
+/// far apart.
+fn rotation_of(photograph: [DVec3; 2], plate: [DVec3; 2]) -> Option<DQuat> {
+    let [apart, of_plate] = [photograph, plate].map(|[a, b]| a.angle_between(b));
+    if (apart - of_plate).abs() > MOST_STRETCH * apart {
+        return None;
+    }
+    let frame = |[a, b]: [DVec3; 2]| {
+        let x = (a + b).try_normalize()?;
+        let z = a.cross(b).try_normalize()?;
+        Some(DMat3::from_cols(x, z.cross(x), z))
+    };
+    Some(DQuat::from_mat3(&(frame(photograph)? * frame(plate)?.transpose())))
+}
+
+impl Gray {
+    fn at(&self, at: IVec2) -> f32 {
+        index_in(self.size_px, at).map_or(f32::NAN, |index| self.values[index])
+    }
+
+    /// The clearest corner of each cell.
+    fn corners(&self) -> Vec<IVec2> {
+        let cells = places(self.size_px / CELL_PX);
+        let corners = cells.filter_map(|cell| {
+            let places = places(IVec2::splat(CELL_PX / 2)).map(|at| CELL_PX * cell + 2 * at);
+            let best = places
+                .map(|at| (self.cornerness(at), at))
+                .filter(|(cornerness, _)| cornerness.is_finite())
+                .max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+            (best.0 > 0.0).then_some(best.1)
+        });
+        corners.collect()
+    }
+
+    /// The lesser eigenvalue of the gradients' covariance around a place; not a number near the border.
+    fn cornerness(&self, at: IVec2) -> f32 {
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for step in places(IVec2::splat(HALF_PX)) {
+            let at = at + 2 * step - HALF_PX;
+            let x = self.at(at + IVec2::X) - self.at(at - IVec2::X);
+            let y = self.at(at + IVec2::Y) - self.at(at - IVec2::Y);
+            (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+        }
+        0.5 * (xx + yy - ((xx - yy).powi(2) + 4.0 * xy * xy).sqrt())
+    }
+
+    /// Where this picture shows the surroundings of a place of another one, the likest first.
+    fn find(&self, other: &Self, place: IVec2) -> Vec<IVec2> {
+        let Some(template) = other.patch(place) else {
+            return Vec::new();
+        };
+        #[allow(clippy::cast_possible_truncation, reason = "pixels")]
+        let reach_px = (REACH * f64::from(self.size_px.x)) as i32;
+        let around = places(IVec2::splat(2 * reach_px + 1)).map(|step| place + step - reach_px);
+        let mut like: Vec<(f32, IVec2)> = around
+            .filter_map(|at| {
+                let patch = self.patch(at)?;
+                let correlation: f32 = patch.iter().zip(&template).map(|(a, b)| a * b).sum();
+                (correlation >= LEAST_CORRELATION).then_some((correlation, at))
+            })
+            .collect();
+        like.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        let mut found: Vec<IVec2> = Vec::new();
+        for (_, at) in like {
+            let is_new = |known: &IVec2| (*known - at).abs().max_element() >= APART_PX;
+            if found.iter().all(is_new) {
+                found.push(at);
+            }
+            if found.len() == N_PLACES {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Every other pixel around a place, less the mean and of unit length; none near the border, or where nothing changes.
+    fn patch(&self, place: IVec2) -> Option<[f32; 49]> {
+        let mut patch = [0.0; 49];
+        for (value, step) in patch.iter_mut().zip(places(IVec2::splat(HALF_PX + 1))) {
+            *value = self.at(place + 2 * step - HALF_PX);
+        }
+        let mean = patch.iter().sum::<f32>() / 49.0;
+        let length = patch.iter().map(|value| (value - mean).powi(2)).sum::<f32>().sqrt();
+        (length.is_finite() && length > 0.0).then(|| patch.map(|value| (value - mean) / length))
+    }
+}
