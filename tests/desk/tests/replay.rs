@@ -15,6 +15,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::wgpu;
 use desk::files::{BUNDLED_SESSION, Folder};
+use desk::frames::Frames;
 use desk::metrics::{Score, Scores, score};
 use desk::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
 use desk::progress::Quiet;
@@ -82,7 +83,7 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     let (session, out) = (bundled(), TemporaryFolder::new("some"));
     fs::write(out.join(REPORT_FILE), "of an earlier run").unwrap();
     let options = |frames| Options {
-        frames: Some(frames),
+        frames: Frames::from(frames),
         out: Some(out.to_owned()),
         ..Options::default()
     };
@@ -132,7 +133,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     let session = Capture::open(Folder::open(&*folder).unwrap()).unwrap();
     let options = Options {
         presets: vec![Preset::Flat, Preset::Balanced],
-        frames: Some(1..2),
+        frames: Frames::from(1..2),
         out: Some(out.to_owned()),
         ..Options::default()
     };
