@@ -134,7 +134,10 @@ const VALIDITY_SWATCHES: &[Swatch] = &[
     swatch(TOY, "one surface of the toy"),
     swatch([0; 3], "mixed: not used"),
 ];
-const MASK_SWATCHES: &[Swatch] = &[swatch([255; 3], "the real toy"), swatch([0; 3], "everything else")];
+const MASK_SWATCHES: &[Swatch] = &[
+    swatch([255; 3], "the real toy"),
+    swatch([0; 3], "everything else"),
+];
 const ELIGIBLE_SWATCHES: &[Swatch] = &[
     swatch(RECEIVER, "the real shadow"),
     swatch(TOY, "the part of it that samples are taken from"),
@@ -218,7 +221,12 @@ pub fn describe(map: Map) -> Option<Shown> {
              (ambient). It is f in the paper.",
             Some(("0: all of it is ambient", "1: all of it is from the lights", GRAY)),
         ),
-        Map::Masks => ("mask", "Object mask", "Where the real toy is in the camera frame (figure 3a of the paper).", None),
+        Map::Masks => (
+            "mask",
+            "Object mask",
+            "Where the real toy is in the camera frame (figure 3a of the paper).",
+            None,
+        ),
         Map::Eligible => (
             "eligible",
             "Shadow masks",

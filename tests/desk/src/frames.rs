@@ -67,10 +67,11 @@ impl FromStr for Frames {
 
 impl fmt::Display for Frames {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self { start, end: None } => write!(out, "{start}.."),
-            Self { start, end: Some(end) } if end == start + 1 => write!(out, "{start}"),
-            Self { start, end: Some(end) } => write!(out, "{start}..{end}"),
+        match (self.start, self.end) {
+            (start, None) => write!(out, "{start}.."),
+            (start, Some(end)) if end == start + 1 => write!(out, "{start}"),
+            (0, Some(end)) => write!(out, "..{end}"),
+            (start, Some(end)) => write!(out, "{start}..{end}"),
         }
     }
 }

@@ -180,9 +180,17 @@ pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
     let regions = Regions::from_mask(&truth.mask);
     regions.check_size("frame", frame)?;
     regions.check_size("truth", &truth.image)?;
-    let pixels = frame.rgba8.as_chunks::<4>().0.iter().zip(truth.image.rgba8.as_chunks::<4>().0);
+    let pixels = frame
+        .rgba8
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .zip(truth.image.rgba8.as_chunks::<4>().0);
     let mut sum = RegionSum::default();
-    for ((frame, truth), _) in pixels.zip(&regions.members).filter(|(_, members)| **members == Regions::FRAME) {
+    for ((frame, truth), _) in pixels
+        .zip(&regions.members)
+        .filter(|(_, members)| **members == Regions::FRAME)
+    {
         sum.add(squared_error(frame, truth), 1.0);
     }
     Ok((sum.n_pixels > 0).then(|| sum.score().rmse))
@@ -191,7 +199,10 @@ pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
 /// Mean over red, green and blue.
 fn squared_error(actual: &[u8], truth: &[u8]) -> f64 {
     let channels = actual.iter().zip(truth).take(3);
-    channels.map(|(actual, truth)| f64::from(actual.abs_diff(*truth)).powi(2)).sum::<f64>() / 3.0
+    channels
+        .map(|(actual, truth)| f64::from(actual.abs_diff(*truth)).powi(2))
+        .sum::<f64>()
+        / 3.0
 }
 
 #[derive(Clone, Copy, Default)]

@@ -8,7 +8,6 @@ mod pull;
 mod table;
 mod withheld;
 
-
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
@@ -21,8 +20,8 @@ use app_pipeline::readback::Map;
 use crate::count::count;
 use crate::planar::{BT601_FULL, planar};
 use crate::sized::{SizePx, sized_input, sized_scene};
-use desk::frames::Frames;
 use desk::alignment::{Alignments, Lights, Ratio};
+use desk::frames::Frames;
 use desk::metrics::Scores;
 use desk::metrics::flicker::Flicker;
 use desk::progress::Quiet;

@@ -100,7 +100,10 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let complaints = complaints(&reports);
     match complaints.first() {
         Some(first) if args.strict => {
-            bail!("{} complaints under --strict, the first: {first}", complaints.len())
+            bail!(
+                "{} complaints under --strict, the first: {first}",
+                complaints.len()
+            )
         }
         _ => Ok(()),
     }

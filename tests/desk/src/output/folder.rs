@@ -52,7 +52,11 @@ impl OutputFolder {
         make_folder(root)?;
         let path = root.join(MANIFEST_FILE);
         let failed = |error| WriteError::new(&path, error);
-        let options = OpenOptions::new().read(true).append(true).create(true).open(&path);
+        let options = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .create(true)
+            .open(&path);
         let manifest = options.map_err(failed)?;
         match manifest.try_lock() {
             Ok(()) => {}
@@ -139,11 +143,17 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
             Some(checksums) => {
                 let bytes = fs::read(&path).map_err(|error| WriteError::new(&path, error))?;
                 if !checksums.contains(&crc32fast::hash(&bytes)) {
-                    return refused("was changed since an earlier run wrote it; choose another folder, or move it away");
+                    return refused(
+                        "was changed since an earlier run wrote it; choose another folder, or move it away",
+                    );
                 }
             }
             None if is_remnant(&file, written) => {}
-            None => return refused("is not of an earlier run; choose an empty folder, or one that a run has made"),
+            None => {
+                return refused(
+                    "is not of an earlier run; choose an empty folder, or one that a run has made",
+                );
+            }
         }
         present.push(path);
     }
@@ -152,7 +162,9 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
 
 /// Whether it is what a killed run has left of a file.
 fn is_remnant(file: &str, written: &HashMap<String, Vec<u32>>) -> bool {
-    let whole = file.strip_suffix(".partial").and_then(|file| file.rsplit_once('.'));
+    let whole = file
+        .strip_suffix(".partial")
+        .and_then(|file| file.rsplit_once('.'));
     whole.is_some_and(|(file, process)| process.parse::<u32>().is_ok() && written.contains_key(file))
 }
 

@@ -27,12 +27,21 @@ function showPresets() {
     viewer.node.hidden = state.isLarge ? viewer.name !== names[0] : !names.includes(viewer.name);
     viewer.larger.textContent = state.isLarge ? "Close" : "Large";
   }
-  for (const button of at("shown").children) button.setAttribute("aria-pressed", names.includes(button.textContent));
+  for (const button of at("shown").children) {
+    const name = button.textContent;
+    button.setAttribute("aria-pressed", state.isLarge ? name === names[0] : names.includes(name));
+  }
   document.body.classList.toggle("large", state.isLarge);
   at("viewers").style.setProperty("--columns", Math.min(shownViewers().length === 4 ? 2 : shownViewers().length, 3));
 }
 
+/* Shows or hides one; of those that are as large as the window, another takes its place. */
 function toggle(name) {
+  if (state.isLarge) {
+    state.presets = [name, ...state.presets.filter(other => other !== name)];
+    show();
+    return;
+  }
   const shown = data.presets.map(preset => preset.report.preset)
     .filter(other => other === name ? !state.presets.includes(name) : state.presets.includes(other));
   if (shown.length > 0) state.presets = shown;

@@ -105,6 +105,7 @@ function listen(viewer) {
   const { stage, handle } = viewer;
   const down = new Map();
   let task = null;
+  let start = null;
   const spread = () => {
     const [a, b] = [...down.values()];
     return { distance: Math.hypot(a[0] - b[0], a[1] - b[1]), middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2] };
@@ -113,6 +114,8 @@ function listen(viewer) {
     const box = stage.getBoundingClientRect();
     moveDivider(100 * (event.clientX - box.left) / box.width);
   };
+  /* A finger that goes up or down scrolls the page, and shall not take the divider along. */
+  const isMeant = event => event.pointerType !== "touch" || event.target === handle || Math.abs(event.clientX - start[0]) > 8;
   const release = event => {
     down.delete(event.pointerId);
     task = down.size === 0 ? null : task === "pinch" ? "pan" : task;
@@ -126,7 +129,8 @@ function listen(viewer) {
     down.set(event.pointerId, [event.clientX, event.clientY]);
     const onHandle = event.target === handle;
     task = down.size > 1 ? "pinch" : state.mode === "divider" && (onHandle || !isZoomed(viewer)) ? "divider" : "pan";
-    if (task === "divider") dragDivider(event);
+    start = [event.clientX, event.clientY];
+    if (task === "divider" && isMeant(event)) dragDivider(event);
     point(pixelUnder(viewer, event));
   });
   stage.addEventListener("pointermove", event => {
@@ -135,8 +139,9 @@ function listen(viewer) {
     if (!before) return;
     const old = down.size > 1 ? spread() : null;
     down.set(event.pointerId, [event.clientX, event.clientY]);
-    if (task === "divider") dragDivider(event);
-    else if (task === "pan") pan(viewer, before[0] - event.clientX, before[1] - event.clientY);
+    if (task === "divider") {
+      if (isMeant(event)) dragDivider(event);
+    } else if (task === "pan") pan(viewer, before[0] - event.clientX, before[1] - event.clientY);
     else if (old) {
       const now = spread();
       pan(viewer, old.middle[0] - now.middle[0], old.middle[1] - now.middle[1]);

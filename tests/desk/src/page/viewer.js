@@ -51,8 +51,8 @@ function makeViewer(preset) {
   const larger = el("button", { type: "button", class: "larger", title: "As large as the window (L)" }, "Large");
   larger.addEventListener("click", () => enlarge(state.isLarge ? null : name));
   const readout = el("p", { class: "readout" });
-  const node = el("article", { class: "viewer" }, el("div", { class: "head" }, el("h2", {}, name), larger),
-    el("div", { class: "choice" }, sides.map(side => el("label", {}, el("b", {}, side.key.toUpperCase()), side.select))), stage, readout,
+  const node = el("article", { class: "viewer" }, el("div", { class: "head" }, el("h2", {}, name),
+    sides.map(side => el("label", {}, el("b", {}, side.key.toUpperCase()), side.select)), larger), stage, readout,
     el("div", { class: "captions" }, sides.map(side => side.caption)));
   const viewer = { preset, name, sides, handle, stage, larger, readout, node, place: { left: 0, top: 0, step: 1 } };
   listen(viewer);

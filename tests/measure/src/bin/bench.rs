@@ -44,7 +44,12 @@ struct Args {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Presets, apart by commas [default: all]
-    #[arg(long = "preset", alias = "presets", value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(
+        long = "preset",
+        alias = "presets",
+        value_name = "NAME,...",
+        value_delimiter = ','
+    )]
     presets: Vec<Preset>,
     /// How often each frame is timed
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
