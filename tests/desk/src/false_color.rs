@@ -129,6 +129,10 @@ impl Shown {
     }
 }
 
+const MASK_CAPTION: &str = "Where the real toy is in the camera frame (figure 3a of the paper).";
+const ELIGIBLE_CAPTION: &str =
+    "The real shadow, and where samples of it may be taken (figures 3b and 3c of the paper).";
+
 const VALIDITY_SWATCHES: &[Swatch] = &[
     swatch(RECEIVER, "the table alone"),
     swatch(TOY, "one surface of the toy"),
@@ -221,18 +225,8 @@ pub fn describe(map: Map) -> Option<Shown> {
              (ambient). It is f in the paper.",
             Some(("0: all of it is ambient", "1: all of it is from the lights", GRAY)),
         ),
-        Map::Masks => (
-            "mask",
-            "Object mask",
-            "Where the real toy is in the camera frame (figure 3a of the paper).",
-            None,
-        ),
-        Map::Eligible => (
-            "eligible",
-            "Shadow masks",
-            "The real shadow, and where samples of it may be taken (figures 3b and 3c of the paper).",
-            None,
-        ),
+        Map::Masks => ("mask", "Object mask", MASK_CAPTION, None),
+        Map::Eligible => ("eligible", "Shadow masks", ELIGIBLE_CAPTION, None),
         Map::SearchTaps => (
             "taps",
             "Sample distance",
