@@ -19,6 +19,15 @@ function el(tag, attributes = {}, ...children) {
   return node;
 }
 
+/* The same of a drawing. */
+const DRAWING = ["http", "www.w3.org/2000/svg"].join("://");
+function draw(tag, attributes, ...children) {
+  const node = document.createElementNS(DRAWING, tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children.flat());
+  return node;
+}
+
 /* Frames that were worked on; the others are the camera frame as it is. */
 const isMoving = frame => Boolean(frame.region);
 const isSteady = frame => isMoving(frame) && frame.ran.every(run => run.path !== "capture");

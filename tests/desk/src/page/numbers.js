@@ -62,8 +62,39 @@ function showNumbers() {
         [...byRegion(data.presets.map(preset => entry(preset).scores)), ...floor(data.presets.map(preset => entry(preset).floor_rmse))]),
       ofAll && table("Mean flicker", heads, ofAll),
       ofFrame && table("Flicker since the frame before", heads, ofFrame)),
-    el("details", { open: wasOpen }, el("summary", {}, "Shadow, frame by frame"),
+    el("details", { open: wasOpen }, el("summary", {}, "Shadow, frame by frame"), curves(),
       table("Choose a number to go to its frame", ["frame", ...heads.slice(1)], everyFrame)));
 }
 const frames = n => `${n} ${n === 1 ? "frame" : "frames"}`;
 const listed = list => list.length > 8 ? `${list.slice(0, 8).join(", ")} and ${list.length - 8} more` : list.join(", ");
+
+/* Error over time: a line for each preset, broken where frames were passed through; a click goes to the frame there. */
+const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const errorOf = frame => isMoving(frame) ? frame.scores?.shadow.rmse ?? null : null;
+function curves() {
+  const n = data.frames.length;
+  const highest = Math.max(...data.presets.flatMap(({ report }) => report.frames.map(frame => errorOf(frame) ?? 0)));
+  if (n < 3 || highest === 0) return null;
+  const [width, height] = [1000, 160];
+  const x = i => width * (i + 0.5) / n;
+  const y = value => height - 4 - (height - 8) * value / highest;
+  const path = ({ report }) => report.frames.map((frame, i) => {
+    const value = errorOf(frame);
+    if (value === null) return "";
+    const isFirst = i === 0 || errorOf(report.frames[i - 1]) === null;
+    return `${isFirst ? "M" : "L"}${x(i).toFixed(1)} ${y(value).toFixed(1)}${isFirst ? "h.1" : ""}`;
+  }).join("");
+  const lines = data.presets.map((preset, i) => draw("path", { d: path(preset), fill: "none", stroke: LINES[i % LINES.length],
+    "stroke-width": 2.5, "stroke-linecap": "round", "vector-effect": "non-scaling-stroke" }));
+  const here = draw("path", { d: `M${x(state.frame)} 0V${height}`, stroke: "currentColor", "stroke-dasharray": "3 3", "vector-effect": "non-scaling-stroke" });
+  const chart = draw("svg", { class: "curves", viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: "none", role: "img",
+    "aria-label": "RMSE of the shadow over time" }, here, lines);
+  chart.addEventListener("click", event => {
+    const box = chart.getBoundingClientRect();
+    go(clamp(Math.floor(n * (event.clientX - box.left) / box.width), 0, n - 1));
+  });
+  const names = data.presets.map(({ report }, i) =>
+    el("span", {}, el("i", { class: "swatch", style: `background: ${LINES[i % LINES.length]}` }), report.preset));
+  return el("figure", {}, el("figcaption", { class: "soft" }, `RMSE of the shadow from 0 to ${highest.toFixed(1)} codes, over frames `
+    + `${data.frames[0].index} to ${data.frames[n - 1].index}. A click goes to the frame there.`, el("div", { class: "swatches" }, names)), chart);
+}

@@ -50,7 +50,7 @@ const processor = of => of.cpu_ms === null ? "" : `, ${ms(of.cpu_ms)} on the pro
 function showTimes() {
   const tells = data.presets.some(preset => preset.report.frames.some(frame => frame.pass_times.length > 0));
   const [one] = data.presets;
-  const steady = bars("A steady frame",
+  const steady = one.report.mean.n_steady > 0 && bars("A steady frame",
     `Device time by pass, mean over ${frames(one.report.mean.n_steady)} that ${one.report.mean.n_steady === 1 ? "moves" : "move"} and in which nothing was learned anew.`,
     ({ report }) => ({ passes: meanPasses(report.frames.filter(isSteady)), note: processor(report.mean) }));
   const start = one.report.frames.findIndex(isMoving);

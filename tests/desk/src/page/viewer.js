@@ -117,23 +117,16 @@ function rampOf(ramp, low, high) {
 /* The difference is made by the browser's own filters: the largest over red, green and blue, times a gain, through a ramp. */
 const errorRamp = data.shown.find(({ name }) => name === "error").legend.ramp;
 function makeFilter() {
-  const NAMESPACE = ["http", "://www.w3.org/2000/svg"].join("");
-  const make = (tag, attributes, ...children) => {
-    const node = document.createElementNS(NAMESPACE, tag);
-    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-    node.append(...children);
-    return node;
-  };
   const gray = channel => Array(3).fill([0, 1, 2].map(i => i === channel ? 1 : 0).join(" ") + " 0 0").join(" ") + " 0 0 0 1 0";
-  const parts = ["r", "g", "b"].map((result, i) => make("feColorMatrix", { in: "SourceGraphic", values: gray(i), result }));
-  const lighter = (a, b, result) => make("feBlend", { mode: "lighten", in: a, in2: b, result });
-  const perChannel = attributes => ["R", "G", "B"].map((name, i) => make(`feFunc${name}`, attributes(i)));
+  const parts = ["r", "g", "b"].map((result, i) => draw("feColorMatrix", { in: "SourceGraphic", values: gray(i), result }));
+  const lighter = (a, b, result) => draw("feBlend", { mode: "lighten", in: a, in2: b, result });
+  const perChannel = attributes => ["R", "G", "B"].map((name, i) => draw(`feFunc${name}`, attributes(i)));
   const gains = perChannel(() => ({ type: "linear", slope: state.gain }));
   const table = perChannel(i => ({ type: "table", tableValues: errorRamp.map(color => color[i] / 255).join(" ") }));
-  const filter = make("filter", { id: "difference", "color-interpolation-filters": "sRGB", x: "0", y: "0", width: "1", height: "1" },
-    ...parts, lighter("r", "g", "rg"), lighter("rg", "b", "most"), make("feComponentTransfer", { in: "most" }, ...gains),
-    make("feComponentTransfer", {}, ...table));
-  document.body.append(make("svg", { width: "0", height: "0", "aria-hidden": "true", style: "position: absolute" }, filter));
+  const filter = draw("filter", { id: "difference", "color-interpolation-filters": "sRGB", x: "0", y: "0", width: "1", height: "1" },
+    ...parts, lighter("r", "g", "rg"), lighter("rg", "b", "most"), draw("feComponentTransfer", { in: "most" }, ...gains),
+    draw("feComponentTransfer", {}, ...table));
+  document.body.append(draw("svg", { width: "0", height: "0", "aria-hidden": "true", style: "position: absolute" }, filter));
   return slope => gains.forEach(gain => gain.setAttribute("slope", slope));
 }
 const setGain = makeFilter();
