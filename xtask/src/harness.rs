@@ -41,7 +41,11 @@ pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -
 
 /// Becomes the program, so that a signal to this process ends it, and none is left behind; if a system has no such thing, the
 /// same as [`run`].
-pub(crate) fn become_program(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
+pub(crate) fn become_program(
+    toolchain: &Toolchain,
+    program: &Program,
+    args: &[OsString],
+) -> Result<ExitCode> {
     #[cfg(unix)]
     {
         use std::os::unix::process::CommandExt;

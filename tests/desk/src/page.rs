@@ -1,5 +1,6 @@
 //! The report as a page: one file to open from disk, with its pictures beside it and nothing from a network.
 
+pub mod film;
 pub(crate) mod pictures;
 pub(crate) mod values;
 
@@ -132,7 +133,7 @@ pub(crate) fn folder_of(preset: &str, n_presets: usize) -> String {
     }
 }
 
-fn html(data: &Data<'_>) -> Result<String, serde_json::Error> {
+fn html(data: &impl Serialize) -> Result<String, serde_json::Error> {
     // No text from a session may end the element that the data stands in.
     let json = serde_json::to_string(data)?.replace('<', "\\u003c");
     // The data comes last: what it holds is not looked at for marks.

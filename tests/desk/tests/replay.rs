@@ -18,6 +18,7 @@ use desk::files::{BUNDLED_SESSION, Folder};
 use desk::frames::Frames;
 use desk::metrics::{Score, Scores, score};
 use desk::output::folder::{MANIFEST_FILE, OutputFolder};
+use desk::page::film::{self, Film, FilmFrame};
 use desk::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE, VALUES_FOLDER};
 use desk::progress::Quiet;
 use desk::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
@@ -207,8 +208,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
         // A filter of the page's own is no file.
         assert!(!page.replace("url(#", "").contains(remote), "{remote}");
     }
-    let (_, data) = page.split_once("id=\"data\">").unwrap();
-    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let data = data_of(&out);
     assert_eq!(data["session"], NAME);
     check_values(&out, "flat/frame_0001.png");
     check_values(&out, "inputs/truth_0001.png");
@@ -236,6 +236,51 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     }
     // Inputs, then picture, error and maps of each preset, the lights over the photograph among them.
     assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 5 + 2 + 11));
+}
+
+#[test]
+fn the_page_of_a_film_says_what_each_frame_is_made_of() {
+    let out = TemporaryFolder::new("film");
+    let output = OutputFolder::take(&out).unwrap();
+    let scores = |rmse| {
+        let score = Score { rmse, ssim: 1.0 };
+        Scores {
+            shadow: score,
+            toy: score,
+            edge: score,
+            frame: score,
+        }
+    };
+    let frame = |index: usize| FilmFrame {
+        index: 1001 + index,
+        time_secs: index as f64 / 24.0,
+        picture: picture_file(1001 + index),
+        words: vec![format!("key {index} </script>")],
+        scores: Some(scores(1.0 + 2.0 * index as f64)),
+        ..FilmFrame::default()
+    };
+    let pictures = bundled().frame(0).unwrap().image;
+    film::write_picture(&output, &picture_file(1001), &pictures).unwrap();
+    let film = Film {
+        title: "walk",
+        size_px: [640, 360],
+        pictures: Vec::new(),
+        frames: vec![frame(0), frame(1)],
+    };
+    film::write(&output, &film).unwrap();
+    check_values(&out, &picture_file(1001));
+    let data = data_of(&out);
+    assert_eq!(data["frames"][1]["index"], 1002);
+    let report = &data["presets"][0]["report"];
+    assert_eq!(report["frames"][1]["words"][0], "key 1 </script>");
+    assert_eq!(report["mean_of_moving"]["scores"]["toy"]["rmse"], 2.0);
+}
+
+/// What a page hands to its script.
+fn data_of(out: &Path) -> serde_json::Value {
+    let page = fs::read_to_string(out.join(PAGE_FILE)).unwrap();
+    let (_, data) = page.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
 }
 
 /// The script that hands a picture's bytes to the page has all of them.

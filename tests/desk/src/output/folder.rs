@@ -144,15 +144,13 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
                 let bytes = fs::read(&path).map_err(|error| WriteError::new(&path, error))?;
                 if !checksums.contains(&crc32fast::hash(&bytes)) {
                     return refused(
-                        "was changed since an earlier run wrote it; choose another folder, or move it away",
+                        "was changed since an earlier run wrote it; move it away, or choose another folder",
                     );
                 }
             }
             None if is_remnant(&file, written) => {}
             None => {
-                return refused(
-                    "is not of an earlier run; choose an empty folder, or one that a run has made",
-                );
+                return refused("is not of an earlier run; move it away, or choose another folder");
             }
         }
         present.push(path);

@@ -28,9 +28,11 @@ function draw(tag, attributes, ...children) {
   return node;
 }
 
+/* Of a film there are pictures, words and errors; of a replay there are times, too, and what was found. */
+const isFilm = Boolean(data.is_film);
 /* Frames that were worked on; the others are the camera frame as it is. */
-const isMoving = frame => Boolean(frame.region);
-const isSteady = frame => isMoving(frame) && frame.ran.every(run => run.path !== "capture");
+const isMoving = frame => isFilm || Boolean(frame.region);
+const isSteady = frame => isMoving(frame) && !isFilm && frame.ran.every(run => run.path !== "capture");
 /* The order of work puts the project's own presets before the ones that it is compared with. */
 const LAST = ["paper", "flat"];
 const place = preset => LAST.indexOf(preset.report.preset);

@@ -61,6 +61,8 @@ function makeFit() {
 }
 
 function showSkipped() {
+  at("skipped").hidden = isFilm;
+  if (isFilm) return;
   const lists = data.presets.map(preset => el("div", {}, el("b", {}, preset.report.preset),
     el("ul", {}, entry(preset).skipped.map(({ what, reason }) => el("li", {}, `${what}: ${reason}`)))));
   const wasOpen = at("skipped").querySelector("details")?.open ?? false;
@@ -70,7 +72,7 @@ function showSkipped() {
 
 function showWarnings() {
   const tell = warnings => data.presets.flatMap(preset => warnings(preset).map(text => [text, preset.report.preset]));
-  const ofFrame = preset => [...entry(preset).session_warnings, ...entry(preset).alignment?.warnings ?? [], ...entry(preset).warnings];
+  const ofFrame = preset => [entry(preset).session_warnings, entry(preset).alignment?.warnings, entry(preset).warnings].flatMap(list => list ?? []);
   const all = [...tell(preset => preset.report.warnings), ...tell(ofFrame)];
   at("warnings").replaceChildren(...unique(all.map(([text]) => text)).map(text => {
     const presets = unique(all.filter(([other]) => other === text).map(([, preset]) => preset));
@@ -79,3 +81,15 @@ function showWarnings() {
   }));
 }
 
+
+/* What the frame is made of; of a replay, why it was passed through. Its line stays if another frame has words. */
+function wordsOf(frame) {
+  const passed = isMoving(frame) ? [] : [`Passed through as the camera saw it: ${frame.skipped[0]?.reason ?? "no reason was given"}.`];
+  return frame.words ?? passed;
+}
+
+function showWords() {
+  const [one] = data.presets;
+  at("words").hidden = one.report.frames.every(frame => wordsOf(frame).length === 0);
+  at("words").textContent = wordsOf(entry(one)).join(" \u00b7 ");
+}

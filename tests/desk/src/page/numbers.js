@@ -29,13 +29,14 @@ function showNumbers() {
   const heads = ["", ...data.presets.map(preset => preset.report.preset)];
   const title = el("h2", {}, "Error against the truth");
   const means = data.presets.map(preset => preset.report.mean_of_moving);
+  at("numbers").hidden = isFilm && !means[0].scores;
   if (!data.presets.some(preset => preset.report.mean.scores)) {
     at("numbers").replaceChildren(title, el("p", { class: "soft" }, "The session has no truth to compare with."));
     return;
   }
   const byRegion = scores => REGIONS.map(region => row(region, scoreCells(scores.map(of => of?.[region] ?? null))));
-  const floor = values => values.some(value => value !== null)
-    ? [row("floor", values.map(value => value === null ? "\u2013" : value.toFixed(2)), { class: "floor" })] : [];
+  const floor = values => values.some(value => (value ?? null) !== null)
+    ? [row("floor", values.map(value => value?.toFixed(2) ?? "\u2013"), { class: "floor" })] : [];
   const flicker = all => all.some(Boolean)
     ? REGIONS.map(region => row(region, all.map(of => of?.[region].toFixed(2) ?? "\u2013"))) : null;
   const ofFrame = flicker(data.presets.map(preset => entry(preset).flicker));
@@ -54,7 +55,8 @@ function showNumbers() {
   at("numbers").replaceChildren(title,
     el("p", { class: "soft" }, "Large: RMSE in codes of 255, lower is better. Small: SSIM, 1 is equal.",
       several ? " Bold: the best." : "",
-      ofAll && " Flicker: RMSE of what changes from frame to frame, less what changes in the truth.", ` ${FLOOR_WORDS}`),
+      ofAll && " Flicker: RMSE of what changes from frame to frame, less what changes in the truth.",
+      means.some(of => (of.floor_rmse ?? null) !== null) && ` ${FLOOR_WORDS}`),
     el("div", { class: "columns" },
       means.some(of => of.scores) && table(`Mean over ${frames(means[0].n_scored)} that move${left}`, heads,
         [...byRegion(means.map(of => of.scores)), ...floor(means.map(of => of.floor_rmse))]),

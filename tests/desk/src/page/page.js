@@ -5,6 +5,7 @@ function show() {
   at("frame").value = state.frame;
   at("frame-name").textContent = `Frame ${index}, at ${entry(data.presets[0]).time_secs.toFixed(2)} s`;
   showPresets();
+  showWords();
   viewers.forEach(showViewer);
   showModes();
   placePictures();
@@ -93,6 +94,7 @@ function showQuickly(frame) {
   state.frame = frame;
   at("frame").value = frame;
   at("frame-name").textContent = `Frame ${data.frames[frame].index}, at ${times_secs[frame].toFixed(2)} s`;
+  showWords();
   shownViewers().forEach(showViewer);
   const ahead = (frame + 4) % data.frames.length;
   for (const viewer of shownViewers()) {
@@ -218,11 +220,12 @@ at("speed").append(...[[0.125, "1/8"], [0.25, "1/4"], [0.5, "1/2"], [1, "1"], [2
   el("option", { value, selected: value === 1 }, `\u00d7 ${text}`)));
 at("amount-ramp").style.background = `linear-gradient(to right, ${errorRamp.map(color => `rgb(${color.join(" ")})`).join(", ")})`;
 const [{ report }] = data.presets;
-document.title = `${data.session || "Session"} \u2013 replay`;
+document.title = `${data.session || "Session"} \u2013 ${isFilm ? "film" : "replay"}`;
 at("session").textContent = data.session || "Session without a name";
 const nMoving = report.frames.filter(isMoving).length;
-at("facts").textContent = `${frames(data.frames.length)} of ${data.size_px.join(" \u00d7 ")} px, ${nMoving} of them moving, with `
-  + `${data.presets.map(preset => preset.report.preset).join(", ")} on ${report.adapter}`;
+const sizes = `${frames(data.frames.length)} of ${data.size_px.join(" \u00d7 ")} px`;
+at("facts").textContent = isFilm ? `${sizes}, ${length_secs.toFixed(2)} s`
+  : `${sizes}, ${nMoving} of them moving, with ${data.presets.map(preset => preset.report.preset).join(", ")} on ${report.adapter}`;
 at("software").hidden = !report.is_software;
 at("frame").max = data.frames.length - 1;
 at("frame").addEventListener("input", event => go(Number(event.target.value)));

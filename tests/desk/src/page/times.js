@@ -1,7 +1,7 @@
 /* Times: a steady frame first, since that is what each frame costs in the long run; the first frame apart. */
 
 /* Every pass has its colour on the whole page: neighbours in the order of work are far apart in hue, and differ in lightness. */
-const passNames = unique(data.presets.flatMap(preset => preset.report.frames.flatMap(frame => frame.ran.map(run => run.pass))));
+const passNames = unique(data.presets.flatMap(preset => preset.report.frames.flatMap(frame => (frame.ran ?? []).map(run => run.pass))));
 function colorOf(pass) {
   const index = passNames.indexOf(pass);
   return `hsl(${(index * 137.5) % 360} ${index % 2 ? 45 : 75}% ${[58, 74, 84][index % 3]}%)`;
@@ -48,6 +48,8 @@ function bars(title, words, of) {
 const processor = of => of.cpu_ms === null ? "" : `, ${ms(of.cpu_ms)} on the processor, ${ms(of.wall_ms)} until read back`;
 
 function showTimes() {
+  at("times").hidden = isFilm;
+  if (isFilm) return;
   const tells = data.presets.some(preset => preset.report.frames.some(frame => frame.pass_times.length > 0));
   const [one] = data.presets;
   const steady = one.report.mean.n_steady > 0 && bars("A steady frame",

@@ -36,9 +36,10 @@ const short = value => value.toFixed(4).replace(/^0/, "");
 
 /* One picture's values at a pixel, in words. */
 function valueText(file, [x, y]) {
-  const values = file ? valuesOf(file) : "none";
+  if (!file) return { text: "colours as its legend says", codes: null };
+  const values = valuesOf(file);
   if (values === "wait") return { text: "\u2026", codes: null };
-  if (values === "none") return { text: "colours as its legend says", codes: null };
+  if (values === "none") return { text: "its values are not at hand", codes: null };
   const codes = [...values.data.slice(4 * (y * values.width + x), 4 * (y * values.width + x) + 3)];
   return { text: `${codes.join(" ")}, linear ${codes.map(code => short(linear(code))).join(" ")}`, codes };
 }

@@ -24,7 +24,7 @@ function held(centre, scale, stage) {
 
 /* The middle of what was worked on. */
 function middle() {
-  const region = data.presets.flatMap(preset => preset.report.frames).find(isMoving)?.region;
+  const region = data.presets.flatMap(preset => preset.report.frames).find(frame => frame.region)?.region;
   return [0, 1].map(i => region ? region.origin_px[i] + region.size_px[i] / 2 : data.size_px[i] / 2);
 }
 

@@ -36,7 +36,8 @@ function makeViewer(preset) {
   const name = preset.report.preset;
   const sides = ["a", "b"].map(key => {
     const select = el("select", { "aria-label": `${name}, picture ${key.toUpperCase()}` }, choices(preset));
-    select.value = key === "a" ? "before" : "after";
+    const first = shared()[0]?.name ?? offered(preset)[1]?.name ?? "after";
+    select.value = key === "a" ? first : "after";
     const image = el("img", { draggable: "false", alt: "" });
     const missing = el("span", { class: "missing", hidden: true }, "not made for this frame");
     const side = { key, select, image, missing, node: el("div", { class: `side ${key}` }, image, missing), caption: el("div") };
@@ -85,7 +86,7 @@ function showViewer(viewer) {
   for (const side of viewer.sides) {
     const { preset, picture, title } = chosen(viewer, side);
     const file = fileOf(preset, picture.name);
-    const hasValues = [CAMERA, RESULT, TRUTH].includes(picture);
+    const hasValues = [CAMERA, RESULT, TRUTH].includes(picture) || (isFilm && !picture.legend && picture.swatches.length === 0);
     side.valueFile = hasValues ? file : null;
     side.missing.hidden = Boolean(file);
     side.image.hidden = !file;
