@@ -10,7 +10,7 @@ function showAlignment() {
   if (!alignment) return;
   const { focal_length, world_scale, camera, pose, lights, probe, discovered, assumed, is_long, no_light, unexplained, is_relit, n_listed, cpu_ms,
     probe_against_listed, discovered_against_listed } = alignment;
-  const verdict = found => found.is_held ? "as in a frame before" : found.is_applied || found.outcome === "corrected" ? "corrected" : "left as given: within what can be known";
+  const verdict = found => found.is_held ? "as in a frame before" : found.is_applied || found.outcome === "corrected" ? "corrected" : "left as given";
   const rows = [];
   const { lens } = data.presets[0].report;
   if (lens) rows.push(row("the lens", [verdict(lens), `k1 ${lens.distortion.k1.toFixed(4)}, k2 ${lens.distortion.k2.toFixed(4)}`, lens.outcome]));
