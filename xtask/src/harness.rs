@@ -3,7 +3,7 @@
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result};
 
@@ -33,6 +33,32 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
 
 /// Runs a program with `args` and hands on its exit code.
 pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
+    let mut cargo = command_of(toolchain, program, args)?;
+    let status = cargo.status().with_context(|| line(&cargo))?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// Becomes the program, so that a signal to this process ends it, and none is left behind; if a system has no such thing, the
+/// same as [`run`].
+pub(crate) fn become_program(
+    toolchain: &Toolchain,
+    program: &Program,
+    args: &[OsString],
+) -> Result<ExitCode> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::CommandExt;
+        let mut cargo = command_of(toolchain, program, args)?;
+        // Cargo, too, becomes what it runs. This returns only if there is no cargo.
+        let error = cargo.exec();
+        Err(error).with_context(|| line(&cargo))
+    }
+    #[cfg(not(unix))]
+    run(toolchain, program, args)
+}
+
+fn command_of(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<Command> {
     if program.needs_device && !asks_only(args) {
         vulkan::ensure()?;
     }
@@ -42,13 +68,8 @@ pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -
     if asks_only(args) || args.iter().any(|arg| arg == OsStr::new("--quiet")) {
         cargo.arg("--quiet");
     }
-    let status = cargo
-        .arg("--")
-        .args(args)
-        .status()
-        .with_context(|| line(&cargo))?;
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+    cargo.arg("--").args(args);
+    Ok(cargo)
 }
 
 fn asks_only(args: &[OsString]) -> bool {

@@ -114,7 +114,7 @@ fn run(mut args: Parser) -> Result<ExitCode> {
         let toolchain = Toolchain::pinned()?;
         return match program.name {
             "bless" => bless(&toolchain, program, &rest),
-            _ => harness::run(&toolchain, program, &rest),
+            _ => harness::become_program(&toolchain, program, &rest),
         };
     }
     let asks = |args: &[OsString]| args.iter().any(|arg| arg == "--help" || arg == "-h");

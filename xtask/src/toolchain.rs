@@ -89,7 +89,7 @@ impl Toolchain {
             .arg(self.root.join("Cargo.toml"));
         // What the cargo that runs us says about itself must not reach another version.
         cargo.env_remove("CARGO");
-        if env::var_os("XDG_RUNTIME_DIR").is_none() {
+        if env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| !Path::new(&folder).is_dir()) {
             // Without a desktop, Mesa's choice among its devices only prints an error of its own.
             cargo.env("NODEVICE_SELECT", "1");
         }

@@ -35,6 +35,10 @@ const SIGNED_RAMP: Ramp = &[[33, 102, 172], [247, 247, 247], [178, 24, 43]];
 
 const RECEIVER: [u8; 3] = [86, 180, 233];
 const TOY: [u8; 3] = [230, 159, 0];
+/// Of a light that was found or corrected: yellow.
+pub const LIGHT_FOUND: [u8; 3] = [255, 220, 40];
+/// Of one that was given: red.
+pub const LIGHT_GIVEN: [u8; 3] = [255, 40, 40];
 const NOTHING: [u8; 4] = [0; 4];
 /// Residual, in plates, at which the ramp ends.
 const RESIDUAL_END: f32 = 0.1;
@@ -50,8 +54,19 @@ pub struct Shown {
     pub title: &'static str,
     /// What is to be seen.
     pub caption: &'static str,
-    /// The meaning of its colours; none where the caption tells it.
+    /// The meaning of its colours; none where single ones have a meaning, or where they are those of a picture.
     pub legend: Option<Legend>,
+    /// Single colours and their meanings.
+    pub swatches: &'static [Swatch],
+}
+
+/// The meaning of a single colour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Swatch {
+    /// The colour, as 8-bit sRGB.
+    pub color: [u8; 3],
+    /// What it means.
+    pub meaning: &'static str,
 }
 
 /// The meaning of a ramp.
@@ -77,10 +92,13 @@ pub const ERROR: Shown = shown(
 pub const LIGHTS: Shown = shown(
     "lights",
     "Lights",
-    "From the toy a ray towards each light, with a ring as wide as the light; yellow as found or corrected, its dashed ring two deviations of \
-     the direction; red as listed.",
+    "From the toy a ray towards each light, with a ring as wide as the light. A dashed ring is two standard deviations of the direction.",
     None,
-);
+)
+.with_swatches(&[
+    swatch(LIGHT_FOUND, "as found or corrected"),
+    swatch(LIGHT_GIVEN, "as listed"),
+]);
 
 const fn shown(
     name: &'static str,
@@ -97,6 +115,46 @@ const fn shown(
         title,
         caption,
         legend,
+        swatches: &[],
+    }
+}
+
+const fn swatch(color: [u8; 3], meaning: &'static str) -> Swatch {
+    Swatch { color, meaning }
+}
+
+impl Shown {
+    const fn with_swatches(self, swatches: &'static [Swatch]) -> Self {
+        Self { swatches, ..self }
+    }
+}
+
+const MASK_CAPTION: &str = "Where the real toy is in the camera frame (figure 3a of the paper).";
+const ELIGIBLE_CAPTION: &str =
+    "The real shadow, and where samples of it may be taken (figures 3b and 3c of the paper).";
+
+const VALIDITY_SWATCHES: &[Swatch] = &[
+    swatch(RECEIVER, "the table alone"),
+    swatch(TOY, "one surface of the toy"),
+    swatch([0; 3], "mixed: not used"),
+];
+const MASK_SWATCHES: &[Swatch] = &[
+    swatch([255; 3], "the real toy"),
+    swatch([0; 3], "everything else"),
+];
+const ELIGIBLE_SWATCHES: &[Swatch] = &[
+    swatch(RECEIVER, "the real shadow"),
+    swatch(TOY, "the part of it that samples are taken from"),
+    swatch([0; 3], "no shadow"),
+];
+
+/// Single colours of a map, and their meanings.
+const fn swatches_of(map: Map) -> &'static [Swatch] {
+    match map {
+        Map::Validity => VALIDITY_SWATCHES,
+        Map::Masks => MASK_SWATCHES,
+        Map::Eligible => ELIGIBLE_SWATCHES,
+        _ => &[],
     }
 }
 
@@ -108,7 +166,7 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::Validity => (
             "validity",
             "Validity",
-            "Blue: the frame shows the table alone. Orange: it shows one surface of the toy. Neither: mixed, not used.",
+            "What each pixel of the camera frame shows, and so what it may be used for.",
             None,
         ),
         Map::GbufferBase => (
@@ -163,16 +221,12 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::DirectFraction => (
             "share",
             "Share of the lights (f)",
-            "How much of the table's light comes from the listed lights, for red, green and blue; the rest is ambient.",
-            None,
+            "How much of the table's light comes from the lights on the list, for red, green and blue; the rest comes from all around \
+             (ambient). It is f in the paper.",
+            Some(("0: all of it is ambient", "1: all of it is from the lights", GRAY)),
         ),
-        Map::Masks => ("mask", "Object mask (3a)", "White: the real toy.", None),
-        Map::Eligible => (
-            "eligible",
-            "Shadow masks (3b, 3c)",
-            "Blue: the real shadow. Orange: the part of it that samples may be taken from.",
-            None,
-        ),
+        Map::Masks => ("mask", "Object mask", MASK_CAPTION, None),
+        Map::Eligible => ("eligible", "Shadow masks", ELIGIBLE_CAPTION, None),
         Map::SearchTaps => (
             "taps",
             "Sample distance",
@@ -181,7 +235,7 @@ pub fn describe(map: Map) -> Option<Shown> {
         ),
         _ => return None,
     };
-    Some(shown(name, title, caption, legend))
+    Some(shown(name, title, caption, legend).with_swatches(swatches_of(map)))
 }
 
 /// The colour at `t` of a ramp; below 0 its first, above 1 its last.

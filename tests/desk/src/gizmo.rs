@@ -9,11 +9,8 @@ use glam::{DVec2, DVec3};
 
 use crate::alignment::{SeenLight, middle};
 use crate::false_color::{ERROR_RAMP, Ramp, color_at};
+pub use crate::false_color::{LIGHT_FOUND as FOUND, LIGHT_GIVEN as GIVEN};
 
-/// Of a light that was found or corrected: yellow.
-pub const FOUND: [u8; 3] = [255, 220, 40];
-/// Of one that was given: red.
-pub const GIVEN: [u8; 3] = [255, 40, 40];
 /// Length of a ray over the diagonal of the toy's box.
 const RAY: f64 = 0.45;
 /// Dots along a line, and around a ring.

@@ -6,6 +6,7 @@ pub mod check;
 pub mod convert;
 pub mod false_color;
 pub mod files;
+pub mod frames;
 pub mod gizmo;
 pub mod import;
 pub mod lens;

@@ -155,10 +155,7 @@ pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Score
     let ssim = ssim::map(&luma(actual), &luma(truth), regions.width_px as usize);
     let pixels = actual.rgba8.chunks_exact(4).zip(truth.rgba8.chunks_exact(4));
     for (((actual, truth), ssim), &members) in pixels.zip(ssim).zip(&regions.members) {
-        let squared_error = (0..3)
-            .map(|i| f64::from(actual[i].abs_diff(truth[i])).powi(2))
-            .sum::<f64>()
-            / 3.0;
+        let squared_error = squared_error(actual, truth);
         for (i, sum) in sums.iter_mut().enumerate() {
             if members & (1 << i) != 0 {
                 sum.add(squared_error, ssim);
@@ -172,6 +169,40 @@ pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Score
         edge,
         frame,
     })
+}
+
+/// RMSE of a camera frame against the truth beyond shadows and toy, where they show the same: the noise of both and their
+/// rounding. None if the picture has no such place.
+///
+/// # Errors
+/// When frame or truth is not of the mask's size.
+pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
+    let regions = Regions::from_mask(&truth.mask);
+    regions.check_size("frame", frame)?;
+    regions.check_size("truth", &truth.image)?;
+    let pixels = frame
+        .rgba8
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .zip(truth.image.rgba8.as_chunks::<4>().0);
+    let mut sum = RegionSum::default();
+    for ((frame, truth), _) in pixels
+        .zip(&regions.members)
+        .filter(|(_, members)| **members == Regions::FRAME)
+    {
+        sum.add(squared_error(frame, truth), 1.0);
+    }
+    Ok((sum.n_pixels > 0).then(|| sum.score().rmse))
+}
+
+/// Mean over red, green and blue.
+fn squared_error(actual: &[u8], truth: &[u8]) -> f64 {
+    let channels = actual.iter().zip(truth).take(3);
+    channels
+        .map(|(actual, truth)| f64::from(actual.abs_diff(*truth)).powi(2))
+        .sum::<f64>()
+        / 3.0
 }
 
 #[derive(Clone, Copy, Default)]

@@ -1,6 +1,8 @@
 //! Files of a result: each is written under a temporary name beside its place and then renamed, so that it is there
 //! whole or not at all.
 
+pub mod folder;
+
 use std::path::{Path, PathBuf};
 use std::{fs, io, process};
 
@@ -52,6 +54,11 @@ pub fn remove_file(path: &Path) -> Result<(), WriteError> {
 /// # Errors
 /// When its bytes do not fit its size, or the system refuses. What stood at `path` before then still does.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), WriteError> {
+    write_whole(path, &png_of(path, image)?)
+}
+
+/// A picture as the bytes of a PNG, alpha included, to be written at `path`.
+fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
     let n_bytes = u64::from(image.width_px) * u64::from(image.height_px) * 4;
     if image.rgba8.len() as u64 != n_bytes {
         let reason = format!("the picture has {} bytes instead of {n_bytes}", image.rgba8.len());
@@ -66,7 +73,7 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), WriteError> {
             ExtendedColorType::Rgba8,
         )
         .map_err(|error| WriteError::new(path, error))?;
-    write_whole(path, &png)
+    Ok(png)
 }
 
 /// Writes a file.

@@ -1,8 +1,10 @@
 //! The report as a page: one file to open from disk, with its pictures beside it and nothing from a network.
 
+pub mod film;
 pub(crate) mod pictures;
+pub(crate) mod values;
 
-use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 
 use app_core::scene::{Image, Scene};
@@ -11,8 +13,10 @@ use app_pipeline::readback::Map;
 use serde::Serialize;
 
 use crate::false_color::{ERROR, LIGHTS, Shown, describe};
-use crate::output::{WriteError, write_whole};
+use crate::output::WriteError;
+use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
+pub use crate::page::values::VALUES_FOLDER;
 use crate::report::Report;
 
 /// File name of the page in the output folder.
@@ -24,10 +28,15 @@ pub const MAPS_FOLDER: &str = "maps";
 
 const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
-/// The last starts the others.
-const SCRIPTS: [&str; 3] = [
+/// Each uses what those before it define; the last starts the page.
+const SCRIPTS: [&str; 8] = [
+    include_str!("page/base.js"),
+    include_str!("page/values.js"),
+    include_str!("page/view.js"),
     include_str!("page/viewer.js"),
     include_str!("page/numbers.js"),
+    include_str!("page/times.js"),
+    include_str!("page/found.js"),
     include_str!("page/page.js"),
 ];
 
@@ -59,16 +68,16 @@ struct PresetData<'a> {
 
 /// The page of a replay, while it runs.
 pub(crate) struct Page {
-    out: PathBuf,
+    output: Rc<OutputFolder>,
     pictures: Pictures,
     frames: Vec<Inputs>,
 }
 
 impl Page {
-    pub(crate) fn new(out: &Path) -> Self {
+    pub(crate) fn new(output: &Rc<OutputFolder>) -> Self {
         Self {
-            out: out.to_owned(),
-            pictures: Pictures::new(out, INPUTS_FOLDER),
+            output: Rc::clone(output),
+            pictures: Pictures::new(output, "", INPUTS_FOLDER).with_values(),
             frames: Vec::new(),
         }
     }
@@ -108,12 +117,11 @@ impl Page {
                 })
                 .collect(),
         };
-        let path = self.out.join(PAGE_FILE);
         let html = html(&data).map_err(|error| WriteError {
-            path: path.clone(),
+            path: self.output.root().join(PAGE_FILE),
             reason: error.to_string(),
         })?;
-        write_whole(&path, html.as_bytes())
+        self.output.write(PAGE_FILE, html.as_bytes())
     }
 }
 
@@ -125,7 +133,7 @@ pub(crate) fn folder_of(preset: &str, n_presets: usize) -> String {
     }
 }
 
-fn html(data: &Data<'_>) -> Result<String, serde_json::Error> {
+fn html(data: &impl Serialize) -> Result<String, serde_json::Error> {
     // No text from a session may end the element that the data stands in.
     let json = serde_json::to_string(data)?.replace('<', "\\u003c");
     // The data comes last: what it holds is not looked at for marks.

@@ -1,8 +1,8 @@
 //! Replays a session: every camera frame through the core, each picture written and scored, the whole reported.
 
 use std::iter;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use app_core::alignment::{AlignError, LensAlignment};
@@ -23,13 +23,15 @@ use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::false_color;
 use crate::false_color::{ERROR, describe};
 use crate::files::SESSION_FILE;
+use crate::frames::{Frames, NoSuchFrames};
 use crate::lens::{map_through_lens, through_lens};
 use crate::lights_drawn::write_lights;
 use crate::metrics::flicker::Follower;
-use crate::metrics::{SizeError, score};
-use crate::output::{WriteError, make_folder, remove_file, write_png, write_whole};
+use crate::metrics::{SizeError, floor, score};
+use crate::output::WriteError;
+use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
-use crate::page::{MAPS_FOLDER, PAGE_FILE, Page, folder_of};
+use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
 use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
 
@@ -43,8 +45,8 @@ pub struct Options {
     pub presets: Vec<Preset>,
     /// What is turned down of the presets, as the governor does it.
     pub turned_down: &'static [QualityStep],
-    /// The frames to replay, all without it.
-    pub frames: Option<Range<usize>>,
+    /// The frames to replay.
+    pub frames: Frames,
     /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
     ///
     /// One preset writes its pictures and report right there, several each into a folder of its name.
@@ -64,7 +66,7 @@ impl Default for Options {
         Self {
             presets: vec![Preset::default()],
             turned_down: &[],
-            frames: None,
+            frames: Frames::ALL,
             out: None,
             is_aligned: true,
             lights: Lights::default(),
@@ -125,13 +127,8 @@ pub enum ReplayError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Frames that the session does not have.
-    #[error("frames {}..{} are asked for, but the session has {n_frames}, counted from 0", frames.start, frames.end)]
-    NoSuchFrames {
-        /// The frames asked for.
-        frames: Range<usize>,
-        /// Number of frames that there are.
-        n_frames: usize,
-    },
+    #[error(transparent)]
+    NoSuchFrames(#[from] NoSuchFrames),
     /// An output folder whose files are someone's photographs.
     #[error("{}: holds a session, whose camera frames would be overwritten", folder.display())]
     OutIsSession {
@@ -151,7 +148,7 @@ pub fn picture_file(index: usize) -> String {
 /// # Errors
 /// When there are no such frames, or one cannot be read or aligned.
 pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments, ReplayError> {
-    let frames = frames_of(session, options)?;
+    let frames = options.frames.within(session.n_frames())?;
     let found = match options.asked() {
         Some(asked) => Alignments::find(session, frames, asked)?,
         None => Alignments::none(),
@@ -164,11 +161,12 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
 /// Each frame is read once, aligned, and made with one preset after the other. Only if a number is looked for that holds for the
 /// whole session, all frames are aligned before the first is made.
 ///
-/// Report and page left by an earlier run are removed first, so that one in the output folder means that all frames
-/// were written.
+/// What an earlier run left in the output folder is removed first, so that a report there means that all frames were
+/// written, and no old one lies beside them.
 ///
 /// # Errors
-/// When a frame cannot be read, made or written; those before it stay.
+/// When a frame cannot be read, made or written; those before it stay. When the output folder holds files that no run
+/// wrote, or another run writes into it.
 pub fn replay(
     session: &dyn Session,
     truth: Option<&dyn GroundTruth>,
@@ -197,17 +195,15 @@ pub fn replay_aligned(
     alignments: &mut Alignments,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
-    let indices = frames_of(session, options)?;
+    let indices = options.frames.within(session.n_frames())?;
     let others = options.presets.iter().skip(1);
     let mut others: Vec<Core> = others.map(|_| core.beside()).collect();
     let runs = options.presets.iter().zip(iter::once(core).chain(&mut others));
+    let output = options.out.as_deref().map(take).transpose()?;
     let mut runs = runs
-        .map(|(preset, core)| Run::new(*preset, core, options))
+        .map(|(preset, core)| Run::new(*preset, core, options, output.as_ref()))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut page = options.out.as_deref().map(Page::new);
-    if let Some(out) = &options.out {
-        prepare(out)?;
-    }
+    let mut page = output.as_ref().map(Page::new);
     let presets: Vec<&str> = options.presets.iter().map(|preset| preset.name()).collect();
     let title = format!("{} with {}", session.scene().name, presets.join(", "));
     progress.start(&title, indices.len() * runs.len());
@@ -215,13 +211,18 @@ pub fn replay_aligned(
         let frame = session.frame(index)?;
         alignments.align(session.scene(), index, &frame)?;
         let recorded = FrameInput::from(&frame);
+        let photograph = session.photograph(index)?;
+        let truth = truth.map(|truth| truth.truth(index)).transpose()?.flatten();
+        let failed = |reason| ReplayError::Score { index, reason };
+        let floor = truth.as_ref().map(|truth| floor(&photograph, truth));
         let shot = Shot {
+            floor_rmse: floor.transpose().map_err(failed)?.flatten(),
             grain: Grain::of(session.scene(), recorded.image.rgba(), &recorded.camera),
             session,
             alignments,
             index,
             frame,
-            truth: truth.map(|truth| truth.truth(index)).transpose()?.flatten(),
+            truth,
         };
         for run in &mut runs {
             let entry = run.frame(&shot)?;
@@ -229,7 +230,7 @@ pub fn replay_aligned(
             run.frames.push(entry);
         }
         if let Some(page) = &mut page {
-            page.add(index, session.photograph(index)?, shot.truth)?;
+            page.add(index, photograph, shot.truth)?;
         }
     }
     let reports = runs.into_iter().map(|run| run.report(session, alignments));
@@ -250,6 +251,8 @@ pub(crate) struct Shot<'a> {
     /// Of the camera's picture.
     pub(crate) grain: Option<Grain>,
     pub(crate) truth: Option<Truth>,
+    /// What an error has of noise and rounding alone.
+    floor_rmse: Option<f64>,
 }
 
 impl Shot<'_> {
@@ -270,17 +273,35 @@ impl Shot<'_> {
 
 /// Where one preset's pictures go.
 struct Out {
-    folder: PathBuf,
+    output: Rc<OutputFolder>,
+    /// Goes before the names of files; empty, or ends in `/`.
+    prefix: String,
     maps: Pictures,
 }
 
 impl Out {
-    fn new(folder: PathBuf) -> Result<Self, ReplayError> {
-        prepare(&folder)?;
-        Ok(Self {
-            maps: Pictures::new(&folder, MAPS_FOLDER),
-            folder,
-        })
+    fn new(output: &Rc<OutputFolder>, prefix: String) -> Self {
+        Self {
+            output: Rc::clone(output),
+            maps: Pictures::new(output, &prefix, MAPS_FOLDER),
+            prefix,
+        }
+    }
+
+    fn write_picture(&self, name: &str, picture: &Image) -> Result<(), WriteError> {
+        let file = format!("{}{name}", self.prefix);
+        let png = self.output.write_png(&file, picture)?;
+        values::write(&self.output, &file, &png)
+    }
+
+    fn write_report(&self, report: &Report) -> Result<(), WriteError> {
+        let file = format!("{}{REPORT_FILE}", self.prefix);
+        let mut json = serde_json::to_vec_pretty(report).map_err(|error| WriteError {
+            path: self.output.root().join(&file),
+            reason: error.to_string(),
+        })?;
+        json.push(b'\n');
+        self.output.write(&file, &json)
     }
 }
 
@@ -295,15 +316,19 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(preset: Preset, core: &'a mut Core, options: &Options) -> Result<Self, ReplayError> {
+    fn new(
+        preset: Preset,
+        core: &'a mut Core,
+        options: &Options,
+        output: Option<&Rc<OutputFolder>>,
+    ) -> Result<Self, ReplayError> {
         core.time_passes(true)?;
-        let folder = folder_of(preset.name(), options.presets.len());
-        let out = options.out.as_ref().map(|out| Out::new(out.join(folder)));
+        let prefix = folder_of(preset.name(), options.presets.len());
         Ok(Self {
             preset,
             core,
             turned_down: options.turned_down,
-            out: out.transpose()?,
+            out: output.map(|output| Out::new(output, prefix)),
             follower: Follower::default(),
             frames: Vec::new(),
         })
@@ -359,6 +384,7 @@ impl<'a> Run<'a> {
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
             scores: None,
+            floor_rmse: shot.floor_rmse,
             flicker: None,
         };
         Ok((entry, through_lens(shot.session, shot.index, picture)?))
@@ -370,7 +396,7 @@ impl<'a> Run<'a> {
             return Ok(());
         };
         let name = picture_file(shot.index);
-        write_png(&out.folder.join(&name), picture)?;
+        out.write_picture(&name, picture)?;
         entry.picture = Some(name);
         if let Some(truth) = &shot.truth {
             let error = false_color::error(picture, &truth.image);
@@ -397,11 +423,12 @@ impl<'a> Run<'a> {
             warnings: warnings_of(session, self.core)?,
             lens: alignments.lens().copied(),
             mean: Mean::of(&self.frames),
+            mean_of_moving: Mean::of_moving(&self.frames),
             fit: fit.map(|fit| FitEntry::new(&fit, alignments.n_lights(scene, self.preset))),
             frames: self.frames,
         };
         if let Some(out) = &self.out {
-            write_report(&out.folder, &report)?;
+            out.write_report(&report)?;
         }
         Ok(report)
     }
@@ -437,34 +464,13 @@ fn warnings_of(session: &dyn Session, core: &Core) -> Result<Vec<String>, CoreEr
         .collect())
 }
 
-fn frames_of(session: &dyn Session, options: &Options) -> Result<Range<usize>, ReplayError> {
-    let n_frames = session.n_frames();
-    match options.frames.clone() {
-        None => Ok(0..n_frames),
-        Some(frames) if frames.end <= n_frames && !frames.is_empty() => Ok(frames),
-        Some(frames) => Err(ReplayError::NoSuchFrames { frames, n_frames }),
-    }
-}
-
-fn prepare(folder: &Path) -> Result<(), ReplayError> {
-    make_folder(folder)?;
-    if folder.join(SESSION_FILE).exists() {
+fn take(out: &Path) -> Result<Rc<OutputFolder>, ReplayError> {
+    if out.join(SESSION_FILE).exists() {
         return Err(ReplayError::OutIsSession {
-            folder: folder.to_owned(),
+            folder: out.to_owned(),
         });
     }
-    remove_file(&folder.join(PAGE_FILE))?;
-    Ok(remove_file(&folder.join(REPORT_FILE))?)
-}
-
-fn write_report(folder: &Path, report: &Report) -> Result<(), WriteError> {
-    let path = folder.join(REPORT_FILE);
-    let mut json = serde_json::to_vec_pretty(report).map_err(|error| WriteError {
-        path: path.clone(),
-        reason: error.to_string(),
-    })?;
-    json.push(b'\n');
-    write_whole(&path, &json)
+    Ok(Rc::new(OutputFolder::take(out)?))
 }
 
 fn ms(time: Duration) -> f64 {

@@ -31,6 +31,8 @@ pub struct Report {
     pub lens: Option<LensAlignment>,
     /// Means over frames.
     pub mean: Mean,
+    /// The same over frames that were worked on: those that passed through, whose error is none of ours, are left out.
+    pub mean_of_moving: Mean,
     /// What was learned from the real shadow, as of the last frame; none where nothing was learned.
     pub fit: Option<FitEntry>,
     /// One entry a replayed frame.
@@ -46,6 +48,8 @@ pub struct Mean {
     pub scores: Option<Scores>,
     /// Mean flicker over frames of which that before has a truth as well; none where there are none.
     pub flicker: Option<Flicker>,
+    /// Mean of their floors; none if there are none.
+    pub floor_rmse: Option<f64>,
     /// Steady frames: a region was worked on and nothing was learned anew.
     pub n_steady: usize,
     /// Mean of their device time, where each has one.
@@ -90,6 +94,9 @@ pub struct FrameEntry {
     pub sharpness: SharpnessEntry,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
+    /// RMSE of the camera frame against the truth beyond both shadows, where they show the same: the noise of both and their
+    /// rounding, below which no error of a picture that is made of that frame can be expected; none without a truth.
+    pub floor_rmse: Option<f64>,
     /// Flicker since the frame before, where both have a truth.
     pub flicker: Option<Flicker>,
 }
@@ -181,10 +188,23 @@ impl FrameEntry {
             .chain(self.report.warnings.iter().map(ToString::to_string))
     }
 
+    /// Whether it was worked on rather than passed through.
+    #[must_use]
+    pub fn is_retargeted(&self) -> bool {
+        self.report.region.is_some()
+    }
+
+    /// Why it was passed through; none if it was worked on.
+    #[must_use]
+    pub fn reason_to_pass(&self) -> Option<&'static str> {
+        let reason = self.report.skipped.iter().map(|skipped| skipped.reason).next();
+        (!self.is_retargeted()).then(|| reason.unwrap_or("no reason was given"))
+    }
+
     /// Whether nothing was learned anew, so that its times are those of a frame in the long run.
     #[must_use]
     pub fn is_steady(&self) -> bool {
-        self.report.region.is_some() && self.report.ran.iter().all(|run| run.path != PassGroup::Capture)
+        self.is_retargeted() && self.report.ran.iter().all(|run| run.path != PassGroup::Capture)
     }
 }
 
@@ -192,9 +212,21 @@ impl Mean {
     /// Means over `frames`.
     #[must_use]
     pub fn of(frames: &[FrameEntry]) -> Self {
+        Self::of_all(&frames.iter().collect::<Vec<_>>())
+    }
+
+    /// Means over those of `frames` that were worked on.
+    #[must_use]
+    pub fn of_moving(frames: &[FrameEntry]) -> Self {
+        let moving = frames.iter().filter(|frame| frame.is_retargeted());
+        Self::of_all(&moving.collect::<Vec<_>>())
+    }
+
+    fn of_all(frames: &[&FrameEntry]) -> Self {
         let scores: Vec<Scores> = frames.iter().filter_map(|frame| frame.scores).collect();
         let flicker: Vec<Flicker> = frames.iter().filter_map(|frame| frame.flicker).collect();
-        let steady: Vec<&FrameEntry> = frames.iter().filter(|frame| frame.is_steady()).collect();
+        let floors: Vec<f64> = frames.iter().filter_map(|frame| frame.floor_rmse).collect();
+        let steady: Vec<&FrameEntry> = frames.iter().copied().filter(|frame| frame.is_steady()).collect();
         let aligned = frames.iter().filter_map(|frame| frame.alignment.as_ref());
         let align_ms: Vec<f64> = aligned.map(|alignment| alignment.cpu_ms).collect();
         let gpu_ms: Option<Vec<f64>> = steady.iter().map(|frame| frame.gpu_ms).collect();
@@ -202,6 +234,7 @@ impl Mean {
             n_scored: scores.len(),
             scores: mean_scores(&scores),
             flicker: mean_flicker(&flicker),
+            floor_rmse: mean(floors.into_iter()),
             n_steady: steady.len(),
             gpu_ms: gpu_ms.and_then(|times| mean(times.into_iter())),
             cpu_ms: mean(steady.iter().map(|frame| frame.cpu_ms)),

@@ -4,7 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 use std::process::{self, Command, Output};
 
@@ -15,8 +15,11 @@ use app_core::scene::Image;
 use app_core::session::{Capture, GroundTruth, Session};
 use app_core::wgpu;
 use desk::files::{BUNDLED_SESSION, Folder};
+use desk::frames::Frames;
 use desk::metrics::{Score, Scores, score};
-use desk::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE};
+use desk::output::folder::{MANIFEST_FILE, OutputFolder};
+use desk::page::film::{self, Film, FilmFrame};
+use desk::page::{INPUTS_FOLDER, MAPS_FOLDER, PAGE_FILE, VALUES_FOLDER};
 use desk::progress::Quiet;
 use desk::replay::{Options, REPORT_FILE, ReplayError, picture_file, replay};
 use desk::report::{Report, mean_scores};
@@ -48,9 +51,7 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
     };
     let report = run(&session, &options).unwrap();
 
-    let mut expected: Vec<String> = (0..session.n_frames()).map(picture_file).collect();
-    expected.extend([PAGE_FILE, INPUTS_FOLDER, MAPS_FOLDER, REPORT_FILE].map(str::to_owned));
-    assert_eq!(out.names(), expected);
+    assert_eq!(out.names(), names_of(0..session.n_frames()));
     for index in 0..session.n_frames() {
         let picture = image::open(out.join(picture_file(index))).unwrap().into_rgba8();
         let frame = session.frame(index).unwrap().image;
@@ -69,6 +70,12 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
         json["frames"][0]["flicker"].is_null() && json["frames"][1]["flicker"]["toy"].as_f64().unwrap() > 0.0
     );
     assert!(json["mean"]["flicker"]["shadow"].as_f64().unwrap() > 0.0);
+    // The frame that passes through has no error, which must not flatter those that move.
+    let [all, moving] =
+        [&report.mean, &report.mean_of_moving].map(|mean| (mean.n_scored, mean.scores.unwrap().shadow.rmse));
+    assert_eq!((all.0, moving.0), (5, 4));
+    assert!((moving.1 * 4.0 - all.1 * 5.0).abs() < 1e-9, "{all:?} {moving:?}");
+    assert_eq!(json["mean_of_moving"]["n_steady"], json["mean"]["n_steady"]);
     assert_eq!(
         json["fit"]["direct_fraction"].as_array().unwrap().len(),
         session.scene().lights.len()
@@ -78,11 +85,10 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
 }
 
 #[test]
-fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
+fn only_the_frames_asked_for_are_written_and_an_old_replay_goes_first() {
     let (session, out) = (bundled(), TemporaryFolder::new("some"));
-    fs::write(out.join(REPORT_FILE), "of an earlier run").unwrap();
     let options = |frames| Options {
-        frames: Some(frames),
+        frames: Frames::from(frames),
         out: Some(out.to_owned()),
         ..Options::default()
     };
@@ -92,39 +98,91 @@ fn only_the_frames_asked_for_are_written_and_an_old_report_goes_first() {
     fs::create_dir_all(obstacle.join("full")).unwrap();
     let error = run(&session, &options(3..5)).unwrap_err().to_string();
     assert!(error.contains(obstacle.to_str().unwrap()), "{error}");
+    let whole = [picture_file(3), picture_file(4)];
+    let whole = [
+        &[MANIFEST_FILE.to_owned()],
+        &whole[..],
+        &[INPUTS_FOLDER, MAPS_FOLDER, VALUES_FOLDER].map(str::to_owned),
+    ];
     assert_eq!(
         out.names(),
-        [&picture_file(3), &picture_file(4), INPUTS_FOLDER, MAPS_FOLDER],
+        whole.concat(),
         "what was whole stays, and no remnants"
     );
 
     fs::remove_dir_all(&obstacle).unwrap();
     let report = run(&session, &options(4..5)).unwrap();
-    assert_eq!(
-        report.frames.iter().map(|frame| frame.index).collect::<Vec<_>>(),
-        [4]
+    let indices: Vec<usize> = report.frames.iter().map(|frame| frame.index).collect();
+    assert_eq!(indices, [4]);
+    assert_eq!(out.names(), names_of(4..5), "nothing of the run before");
+}
+
+#[test]
+fn a_folder_loses_only_what_a_run_wrote_and_takes_one_run_at_a_time() {
+    let out = TemporaryFolder::new("owned");
+    let refusal = || OutputFolder::take(&out).unwrap_err().to_string();
+    let own = out.join("holiday.png");
+    fs::write(&own, "a user's").unwrap();
+    assert!(refusal().contains("holiday.png is not of an earlier run"));
+    assert_eq!(out.names(), ["holiday.png"]);
+    fs::remove_file(&own).unwrap();
+
+    let folder = OutputFolder::take(&out).unwrap();
+    folder.write("flat/frame_0099.png", b"ours").unwrap();
+    folder.write("report.json", b"ours").unwrap();
+    assert!(refusal().contains("another run is writing"), "{}", refusal());
+    assert!(out.join("report.json").exists());
+    drop(folder);
+
+    // What a killed run leaves, and what a desktop does, are in nobody's way.
+    fs::write(out.join("report.json.4711.partial"), "half").unwrap();
+    fs::write(out.join(".DS_Store"), "of a desktop").unwrap();
+    fs::write(out.join("report.json"), "a user's notes").unwrap();
+    assert!(refusal().contains("report.json was changed"), "{}", refusal());
+    assert!(
+        out.join("flat/frame_0099.png").exists(),
+        "a refusal removes nothing"
     );
-    assert_eq!(
-        out.names(),
-        [
-            &picture_file(3),
-            &picture_file(4),
-            PAGE_FILE,
-            INPUTS_FOLDER,
-            MAPS_FOLDER,
-            REPORT_FILE
-        ]
-    );
+    fs::write(out.join("report.json"), "ours").unwrap();
+    // A list that someone wrote cannot reach beyond its folder.
+    let list = fs::read_to_string(out.join(MANIFEST_FILE)).unwrap();
+    fs::write(out.join(MANIFEST_FILE), format!("{list}00000000 ../outside\n")).unwrap();
+    drop(OutputFolder::take(&out).unwrap());
+    assert_eq!(out.names(), [".DS_Store", MANIFEST_FILE]);
+}
+
+#[test]
+fn frames_are_named_by_one_number_or_by_a_range_that_may_be_open() {
+    let named = |text: &str| text.parse::<Frames>().map(|frames| frames.within(5));
+    for (text, range) in [("3", 3..4), ("3..", 3..5), ("..2", 0..2), ("1..5", 1..5)] {
+        assert_eq!(named(text).unwrap().unwrap(), range, "{text}");
+    }
+    for text in [
+        "",
+        "..",
+        "3..3",
+        "4..2",
+        "-1",
+        "1..2..3",
+        "a",
+        "18446744073709551615",
+    ] {
+        assert!(named(text).is_err(), "{text}");
+    }
+    for text in ["5", "5..", "..6", "4..6"] {
+        let error = named(text).unwrap().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!("frames {text} are asked for, but the session has 5, counted from 0")
+        );
+    }
 }
 
 #[test]
 fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     const NAME: &str = "</script><script>alert(1)</script>";
     let (folder, out) = (TemporaryFolder::new("named"), TemporaryFolder::new("page"));
-    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
-        let path = entry.unwrap().path();
-        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
-    }
+    copy_bundled(&folder);
     let index = fs::read_to_string(folder.join("capture.json")).unwrap();
     let mut index: serde_json::Value = serde_json::from_str(&index).unwrap();
     index["name"] = NAME.into();
@@ -132,7 +190,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     let session = Capture::open(Folder::open(&*folder).unwrap()).unwrap();
     let options = Options {
         presets: vec![Preset::Flat, Preset::Balanced],
-        frames: Some(1..2),
+        frames: Frames::from(1..2),
         out: Some(out.to_owned()),
         ..Options::default()
     };
@@ -147,11 +205,13 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     for remote in [
         "http:", "https:", "src=\"", "href=", "url(", "@import", "fetch(", "{{",
     ] {
-        assert!(!page.contains(remote), "{remote}");
+        // A filter of the page's own is no file.
+        assert!(!page.replace("url(#", "").contains(remote), "{remote}");
     }
-    let (_, data) = page.split_once("id=\"data\">").unwrap();
-    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let data = data_of(&out);
     assert_eq!(data["session"], NAME);
+    check_values(&out, "flat/frame_0001.png");
+    check_values(&out, "inputs/truth_0001.png");
     let mut n_pictures = 0;
     let mut check = |folder: &serde_json::Value, file: &serde_json::Value| {
         let path = out.join(folder.as_str().unwrap()).join(file.as_str().unwrap());
@@ -176,6 +236,64 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     }
     // Inputs, then picture, error and maps of each preset, the lights over the photograph among them.
     assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 5 + 2 + 11));
+}
+
+#[test]
+fn the_page_of_a_film_says_what_each_frame_is_made_of() {
+    let out = TemporaryFolder::new("film");
+    let output = OutputFolder::take(&out).unwrap();
+    let scores = |rmse| {
+        let score = Score { rmse, ssim: 1.0 };
+        Scores {
+            shadow: score,
+            toy: score,
+            edge: score,
+            frame: score,
+        }
+    };
+    let frame = |index: usize| FilmFrame {
+        index: 1001 + index,
+        time_secs: index as f64 / 24.0,
+        picture: picture_file(1001 + index),
+        words: vec![format!("key {index} </script>")],
+        scores: Some(scores(1.0 + 2.0 * index as f64)),
+        ..FilmFrame::default()
+    };
+    let pictures = bundled().frame(0).unwrap().image;
+    film::write_picture(&output, &picture_file(1001), &pictures).unwrap();
+    let film = Film {
+        title: "walk",
+        size_px: [640, 360],
+        pictures: Vec::new(),
+        frames: vec![frame(0), frame(1)],
+    };
+    film::write(&output, &film).unwrap();
+    check_values(&out, &picture_file(1001));
+    let data = data_of(&out);
+    assert_eq!(data["frames"][1]["index"], 1002);
+    let report = &data["presets"][0]["report"];
+    assert_eq!(report["frames"][1]["words"][0], "key 1 </script>");
+    assert_eq!(report["mean_of_moving"]["scores"]["toy"]["rmse"], 2.0);
+}
+
+/// What a page hands to its script.
+fn data_of(out: &Path) -> serde_json::Value {
+    let page = fs::read_to_string(out.join(PAGE_FILE)).unwrap();
+    let (_, data) = page.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// The script that hands a picture's bytes to the page has all of them.
+fn check_values(out: &Path, file: &str) {
+    let script = fs::read_to_string(out.join(VALUES_FOLDER).join(format!("{file}.js"))).unwrap();
+    let text = script
+        .strip_prefix(&format!("takeValues(\"{file}\", \""))
+        .unwrap();
+    let text = text.strip_suffix("\");\n").unwrap();
+    let bytes = text
+        .chars()
+        .map(|character| u8::try_from(u32::from(character) - 0x100).unwrap());
+    assert!(bytes.eq(fs::read(out.join(file)).unwrap()), "{file}");
 }
 
 #[test]
@@ -278,16 +396,64 @@ fn the_program_says_what_is_wrong() {
 #[test]
 fn the_program_replays_quietly() {
     let out = TemporaryFolder::new("quiet");
-    let output = program(&["--quiet", "--frames", "4..5", "--out", out.to_str().unwrap()]);
-    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
-    let expected = [
-        &picture_file(4),
-        PAGE_FILE,
-        INPUTS_FOLDER,
-        MAPS_FOLDER,
-        REPORT_FILE,
+    let args = [
+        "--quiet",
+        "--strict",
+        "--frames",
+        "4..",
+        "--out",
+        out.to_str().unwrap(),
     ];
-    assert_eq!(out.names(), expected);
+    let output = program(&args);
+    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
+    assert_eq!(out.names(), names_of(4..5));
+}
+
+#[test]
+fn a_strict_replay_fails_by_a_warning() {
+    let (folder, out) = (TemporaryFolder::new("dark"), TemporaryFolder::new("strict"));
+    copy_bundled(&folder);
+    let index = fs::read_to_string(folder.join("capture.json")).unwrap();
+    let mut index: serde_json::Value = serde_json::from_str(&index).unwrap();
+    index["backgrounds"] = serde_json::json!([]);
+    fs::write(folder.join("capture.json"), index.to_string()).unwrap();
+    let args = [
+        "--preset",
+        "flat",
+        "--frames",
+        "1",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let args = [&[folder.to_str().unwrap()], &args[..]].concat();
+    let lenient = program(&args);
+    assert!(lenient.status.success(), "{lenient:?}");
+    let said = String::from_utf8_lossy(&lenient.stdout);
+    assert!(
+        said.contains("0 of 1 frames retargeted; 1 passed through"),
+        "{said}"
+    );
+    let strict = program(&[&args[..], &["--strict"]].concat());
+    assert_eq!(strict.status.code(), Some(1), "{strict:?}");
+    assert!(
+        String::from_utf8_lossy(&strict.stderr).contains("--strict"),
+        "{strict:?}"
+    );
+}
+
+/// All that a replay of these frames with one preset leaves in its folder.
+fn names_of(frames: Range<usize>) -> Vec<String> {
+    let mut names = vec![MANIFEST_FILE.to_owned()];
+    names.extend(frames.map(picture_file));
+    names.extend([PAGE_FILE, INPUTS_FOLDER, MAPS_FOLDER, REPORT_FILE, VALUES_FOLDER].map(str::to_owned));
+    names
+}
+
+fn copy_bundled(folder: &Path) {
+    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
 }
 
 fn program(args: &[&str]) -> Output {

@@ -8,8 +8,6 @@ mod pull;
 mod table;
 mod withheld;
 
-use std::ops::Range;
-
 use app_core::camera_frame::PlaneError;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
@@ -23,6 +21,7 @@ use crate::count::count;
 use crate::planar::{BT601_FULL, planar};
 use crate::sized::{SizePx, sized_input, sized_scene};
 use desk::alignment::{Alignments, Lights, Ratio};
+use desk::frames::Frames;
 use desk::metrics::Scores;
 use desk::metrics::flicker::Flicker;
 use desk::progress::Quiet;
@@ -51,7 +50,7 @@ pub struct Options {
     /// How often each frame is timed; at least 1.
     pub n_repeats: usize,
     /// The frames, all without it.
-    pub frames: Option<Range<usize>>,
+    pub frames: Frames,
     /// Size of the pictures that are timed and counted, the session's own without it; errors are always of that.
     pub size_px: Option<SizePx>,
     /// Whether they come as a phone's planes rather than as pixels.
@@ -206,7 +205,7 @@ fn replay_options(options: &Options) -> replay::Options {
     replay::Options {
         presets: options.presets.clone(),
         turned_down: &[],
-        frames: options.frames.clone(),
+        frames: options.frames,
         out: None,
         is_aligned: options.is_aligned,
         lights: options.lights,

@@ -17,7 +17,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
         presets: vec![Preset::Balanced, Preset::Paper],
         with_front: true,
         n_repeats: 1,
-        frames: Some(0..2),
+        frames: (0..2).into(),
         size_px: None,
         as_planes: true,
         with_exact: false,

@@ -15,7 +15,7 @@ use app_core::wgpu;
 
 use desk::gizmo;
 use desk::gizmo::Gizmo;
-use desk::output::write_png;
+use desk::output::folder::OutputFolder;
 use desk::page::PAGE_FILE;
 use desk::progress::Quiet;
 use desk::replay::{Options, replay};
@@ -69,17 +69,17 @@ impl Moment {
             ..Options::default()
         };
         replay(self, None, &mut core, &options, &mut Quiet)?;
-        self.draw_lights(&folder.join(LIGHTS_FILE))?;
+        self.draw_lights(&OutputFolder::reopen(folder)?)?;
         Ok(folder.join(PAGE_FILE))
     }
 
     /// The lights that the picture was made with, as rays from the toy's middle.
-    fn draw_lights(&self, path: &Path) -> anyhow::Result<()> {
+    fn draw_lights(&self, folder: &OutputFolder) -> anyhow::Result<()> {
         let mut picture = Image::clone(&self.frame.image);
         let input = FrameInput::from(&self.frame);
         let lights = Gizmo::listed(&self.scene, &input);
         gizmo::rays(&mut picture, (&self.scene, &input), &lights, gizmo::FOUND);
-        write_png(path, &picture)?;
+        folder.write_png(LIGHTS_FILE, &picture)?;
         Ok(())
     }
 }

@@ -1,10 +1,9 @@
 //! Replays a recorded session through the core and writes its pictures and a report.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
@@ -12,17 +11,21 @@ use app_core::wgpu;
 use clap::Parser;
 use desk::alignment::{Lights, RatioArgs};
 use desk::files::BUNDLED_SESSION;
+use desk::frames::Frames;
 use desk::opened;
 use desk::opened::Opened;
 use desk::page::PAGE_FILE;
 use desk::program::{exit_code, print, repository};
 use desk::progress::{Progress, Quiet, on_stderr};
 use desk::replay::{Options, REPORT_FILE, replay};
-use desk::report::Report;
+use desk::report::{FrameEntry, Report};
 use desk::shaders::ShaderArgs;
 
 /// Where results go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/replay";
+
+/// Why a frame is passed through whose toy is to be shown as it stands.
+const AS_RECORDED: &str = "the shown pose is the physical pose";
 
 /// Replay a recorded session: one picture per frame, report.json with times, passes and, where there is a truth, errors,
 /// and index.html to look at it all.
@@ -37,9 +40,9 @@ struct Args {
     /// How much work a frame may cost; several are shown side by side
     #[arg(long = "preset", value_name = "NAME,...", value_delimiter = ',', default_values_t = [Preset::default()])]
     presets: Vec<Preset>,
-    /// Only frames A up to, but without, B
-    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
-    frames: Option<Range<usize>>,
+    /// Only these frames: 3 is one, A..B goes from A up to, but without, B, 3.. goes to the last, ..2 has the first two
+    #[arg(long, value_name = "A..B")]
+    frames: Option<Frames>,
     /// Part of a graphics adapter's name [default: the fastest]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -53,6 +56,9 @@ struct Args {
     lights: Lights,
     #[command(flatten)]
     ratio: RatioArgs,
+    /// End with exit code 1 if there was any warning, or a frame was passed through though the toy is to be shown elsewhere
+    #[arg(long)]
+    strict: bool,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -79,7 +85,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let options = Options {
         presets: without_repeats(&args.presets),
         turned_down: &[],
-        frames: args.frames.clone(),
+        frames: args.frames.unwrap_or(Frames::ALL),
         out: Some(out.clone()),
         is_aligned: !args.as_given,
         lights: args.lights,
@@ -91,19 +97,15 @@ fn run(args: &Args) -> anyhow::Result<()> {
     if !args.quiet {
         print(&summary(&reports, &out))?;
     }
-    Ok(())
-}
-
-/// `A..B` with A < B.
-fn parse_frames(text: &str) -> Result<Range<usize>, String> {
-    let wanted = "two numbers A..B, the first smaller than the second";
-    let (start, end) = text.split_once("..").ok_or(wanted)?;
-    let number = |text: &str| text.parse::<usize>().map_err(|_| wanted);
-    let frames = number(start)?..number(end)?;
-    if frames.is_empty() {
-        Err(wanted.to_owned())
-    } else {
-        Ok(frames)
+    let complaints = complaints(&reports);
+    match complaints.first() {
+        Some(first) if args.strict => {
+            bail!(
+                "{} complaints under --strict, the first: {first}",
+                complaints.len()
+            )
+        }
+        _ => Ok(()),
     }
 }
 
@@ -146,6 +148,7 @@ fn summary_of(report: &Report) -> Vec<String> {
         "{} with preset {} on {}",
         report.session, report.preset, report.adapter
     )];
+    lines.push(frames_of(report));
     lines.extend(
         report
             .warnings
@@ -158,7 +161,8 @@ fn summary_of(report: &Report) -> Vec<String> {
             lens.distortion.k1, lens.distortion.k2, lens.outcome
         ));
     }
-    if let Some(scores) = report.mean.scores {
+    let mean = &report.mean_of_moving;
+    if let Some(scores) = mean.scores {
         let regions = [
             ("shadow", scores.shadow),
             ("toy", scores.toy),
@@ -167,15 +171,51 @@ fn summary_of(report: &Report) -> Vec<String> {
         ]
         .map(|(name, score)| format!("{name} {:.2} ({:.4})", score.rmse, score.ssim));
         lines.push(format!(
-            "mean RMSE (SSIM) against the truth: {}",
+            "mean RMSE (SSIM) against the truth over {} retargeted frames: {}",
+            mean.n_scored,
             regions.join(", ")
         ));
     }
-    if let Some(flicker) = report.mean.flicker {
+    if let Some(flicker) = mean.flicker {
         lines.push(format!(
             "mean flicker (RMSE of changes from frame to frame): shadow {:.2}, toy {:.2}, edge {:.2}, frame {:.2}",
             flicker.shadow, flicker.toy, flicker.edge, flicker.frame
         ));
     }
     lines
+}
+
+/// How many frames were retargeted, and why the others were not.
+fn frames_of(report: &Report) -> String {
+    let mut reasons: Vec<(&str, usize)> = Vec::new();
+    for reason in report.frames.iter().filter_map(FrameEntry::reason_to_pass) {
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, n_frames)) => *n_frames += 1,
+            None => reasons.push((reason, 1)),
+        }
+    }
+    let n_retargeted = report.frames.iter().filter(|frame| frame.is_retargeted()).count();
+    let passed = reasons
+        .iter()
+        .map(|(reason, n_frames)| format!("; {n_frames} passed through, since {reason}"));
+    format!(
+        "{n_retargeted} of {} frames retargeted{}",
+        report.frames.len(),
+        passed.collect::<String>()
+    )
+}
+
+/// What a strict replay must not have: each warning, and each frame that was passed through though it asks for another pose.
+fn complaints(reports: &[Report]) -> Vec<String> {
+    let mut all = Vec::new();
+    for report in reports {
+        all.extend(report.warnings.iter().cloned());
+        for frame in &report.frames {
+            let place = format!("frame {} with {}", frame.index, report.preset);
+            all.extend(frame.warnings().map(|warning| format!("{place}: {warning}")));
+            let reason = frame.reason_to_pass().filter(|reason| *reason != AS_RECORDED);
+            all.extend(reason.map(|reason| format!("{place} was passed through, since {reason}")));
+        }
+    }
+    all
 }

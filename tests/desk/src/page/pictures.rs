@@ -1,32 +1,47 @@
 //! The pictures that a page shows beside the results.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 
 use app_core::scene::Image;
 
-use crate::output::{WriteError, make_folder, write_png};
+use crate::output::WriteError;
+use crate::output::folder::OutputFolder;
+use crate::page::values;
 
 /// Writes pictures into one folder. One that is the same as the last of its name is not written again: what is learned
 /// from the real shadow stays for many frames.
 pub(crate) struct Pictures {
-    root: PathBuf,
+    output: Rc<OutputFolder>,
+    /// Goes before the paths that are returned.
+    prefix: String,
     folder: &'static str,
+    has_values: bool,
     latest: HashMap<&'static str, (Arc<Image>, String)>,
 }
 
 impl Pictures {
-    /// Into `folder` below `root`; nothing is made yet.
-    pub(crate) fn new(root: &Path, folder: &'static str) -> Self {
+    /// Into `folder` below `prefix`, which is empty or ends in `/`; nothing is made yet.
+    pub(crate) fn new(output: &Rc<OutputFolder>, prefix: &str, folder: &'static str) -> Self {
         Self {
-            root: root.to_owned(),
+            output: Rc::clone(output),
+            prefix: prefix.to_owned(),
             folder,
+            has_values: false,
             latest: HashMap::new(),
         }
     }
 
-    /// Writes the picture `name` of frame `index` and returns its path below the root.
+    /// The same, of pictures whose values the page can name.
+    pub(crate) fn with_values(self) -> Self {
+        Self {
+            has_values: true,
+            ..self
+        }
+    }
+
+    /// Writes the picture `name` of frame `index` and returns its path below the prefix.
     pub(crate) fn write(
         &mut self,
         name: &'static str,
@@ -38,9 +53,12 @@ impl Pictures {
         {
             return Ok(file.clone());
         }
-        make_folder(&self.root.join(self.folder))?;
         let file = format!("{}/{name}_{index:04}.png", self.folder);
-        write_png(&self.root.join(&file), &image)?;
+        let path = format!("{}{file}", self.prefix);
+        let png = self.output.write_png(&path, &image)?;
+        if self.has_values {
+            values::write(&self.output, &path, &png)?;
+        }
         self.latest.insert(name, (image, file.clone()));
         Ok(file)
     }

@@ -43,7 +43,7 @@ pub(super) fn measure(
 ) -> Result<Row, ReplayError> {
     let scene = session.scene();
     core.set_scene(scene.clone(), preset)?;
-    let frames = options.frames.clone().unwrap_or(0..session.n_frames());
+    let frames = options.frames.within(session.n_frames())?;
     let n_frames = frames.len();
     let (mut scores, mut flicker) = (Vec::new(), Vec::new());
     let mut follower = Follower::default();

@@ -1,7 +1,6 @@
 //! Measures presets over recorded sessions: speed against error, as a table and as bench.csv.
 
 use std::io::{self, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -14,6 +13,7 @@ use app_core::wgpu;
 use clap::Parser;
 use desk::alignment::{Lights, RatioArgs};
 use desk::files::BUNDLED_SESSION;
+use desk::frames::Frames;
 use desk::opened;
 use desk::opened::Opened;
 use desk::output::{make_folder, remove_file, write_png, write_whole};
@@ -44,13 +44,21 @@ struct Args {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Presets, apart by commas [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(
+        long = "preset",
+        alias = "presets",
+        value_name = "NAME,...",
+        value_delimiter = ','
+    )]
     presets: Vec<Preset>,
     /// How often each frame is timed
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// Only the first N frames of each session
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    /// Only these frames of each session: 3 is one, A..B goes from A up to, but without, B, 3.. goes to the last, ..2 has the first two
+    #[arg(long, value_name = "A..B")]
+    frames: Option<Frames>,
+    /// The first N, as it was written before
+    #[arg(long, hide = true, conflicts_with = "frames", value_parser = clap::value_parser!(u16).range(1..))]
     first: Option<u16>,
     /// Time and count pictures of this size; errors are of the session's own [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
@@ -65,10 +73,10 @@ struct Args {
     #[arg(long)]
     exact: bool,
     /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
-    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens"])]
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "frames", "lights", "focal_length", "world_scale", "lens"])]
     withheld: bool,
     /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
-    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
+    #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "frames", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
     basin: bool,
     /// Where the directions of these disturbances are drawn from
     #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
@@ -183,16 +191,18 @@ fn presets(args: &Args) -> Vec<Preset> {
     }
 }
 
+fn frames(args: &Args) -> Frames {
+    let first = args.first.map(|n_frames| Frames::from(0..usize::from(n_frames)));
+    args.frames.or(first).unwrap_or(Frames::ALL)
+}
+
 fn measure(folder: &Path, core: &mut Core, args: &Args) -> anyhow::Result<Vec<Row>> {
     let Opened { capture, .. } = opened::open(folder, args.ratio.lens(), args.lights)?;
     let options = Options {
         presets: presets(args),
         with_front: args.front,
         n_repeats: usize::from(args.repeats),
-        frames: args.first.map(|n_frames| Range {
-            start: 0,
-            end: usize::from(n_frames),
-        }),
+        frames: frames(args),
         size_px: args.size,
         as_planes: args.planes,
         with_exact: args.exact,

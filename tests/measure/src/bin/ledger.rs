@@ -24,7 +24,13 @@ struct Args {
     /// Folder of the session, or a recording [default: the bundled one]
     session: Option<PathBuf>,
     /// Presets, apart by commas
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "balanced")]
+    #[arg(
+        long = "preset",
+        alias = "presets",
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        default_value = "balanced"
+    )]
     presets: Vec<Preset>,
     /// In pictures, and on a screen, of this size [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]

@@ -1,0 +1,203 @@
+//! A folder of results that belongs to one run while it writes. A list of what was written lies in it, so that the next run
+//! can take away what is ours, and nothing else.
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Write};
+use std::path::{Component, Path, PathBuf};
+
+use app_core::scene::Image;
+
+use crate::output::{WriteError, make_folder, png_of, remove_file, write_whole};
+
+/// The list of what was written, which the running program holds locked.
+pub const MANIFEST_FILE: &str = ".written";
+/// Files that desktops leave wherever a folder is looked at; they have no say. Hidden files have none, either.
+const OF_DESKTOPS: [&str; 2] = ["Thumbs.db", "desktop.ini"];
+
+/// A folder that this run alone writes to, until it is dropped.
+#[derive(Debug)]
+pub struct OutputFolder {
+    root: PathBuf,
+    manifest: File,
+}
+
+impl OutputFolder {
+    /// Takes a folder, which is made if it is missing, and removes what earlier runs wrote into it.
+    ///
+    /// # Errors
+    /// When another run writes into it, or a file lies in it that no run wrote, or that was changed since: nothing is removed
+    /// then.
+    pub fn take(root: &Path) -> Result<Self, WriteError> {
+        refuse_unlisted(root)?;
+        let folder = Self::reopen(root)?;
+        let written = folder.written()?;
+        let present = check(root, &written)?;
+        present.iter().try_for_each(|path| remove_file(path))?;
+        for file in written.keys() {
+            remove_empty_folders(root, file);
+        }
+        folder
+            .manifest
+            .set_len(0)
+            .map_err(|error| WriteError::new(&root.join(MANIFEST_FILE), error))?;
+        Ok(folder)
+    }
+
+    /// Takes a folder to go on in it: what is there stays.
+    ///
+    /// # Errors
+    /// When another run writes into it, or the system refuses.
+    pub fn reopen(root: &Path) -> Result<Self, WriteError> {
+        make_folder(root)?;
+        let path = root.join(MANIFEST_FILE);
+        let failed = |error| WriteError::new(&path, error);
+        let options = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .create(true)
+            .open(&path);
+        let manifest = options.map_err(failed)?;
+        match manifest.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(WriteError::new(root, "another run is writing into this folder"));
+            }
+            // There are file systems without locks; the list is worth having there, too.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(failed(error)),
+        }
+        Ok(Self {
+            root: root.to_owned(),
+            manifest,
+        })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Writes a file; its path is below the folder, with `/` between its parts.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn write(&self, file: &str, bytes: &[u8]) -> Result<(), WriteError> {
+        let path = self.root.join(file);
+        if let Some(folder) = path.parent() {
+            make_folder(folder)?;
+        }
+        // Listed before it is there: a run that is killed between the two leaves nothing behind that is not on the list.
+        let line = format!("{:08x} {file}\n", crc32fast::hash(bytes));
+        (&self.manifest)
+            .write_all(line.as_bytes())
+            .map_err(|error| WriteError::new(&self.root.join(MANIFEST_FILE), error))?;
+        write_whole(&path, bytes)
+    }
+
+    /// Writes a picture as PNG, alpha included, and returns its bytes.
+    ///
+    /// # Errors
+    /// When its bytes do not fit its size, or the system refuses.
+    pub fn write_png(&self, file: &str, image: &Image) -> Result<Vec<u8>, WriteError> {
+        let png = png_of(&self.root.join(file), image)?;
+        self.write(file, &png)?;
+        Ok(png)
+    }
+
+    /// The checksums under which each file was written.
+    fn written(&self) -> Result<HashMap<String, Vec<u32>>, WriteError> {
+        let mut text = String::new();
+        (&self.manifest)
+            .read_to_string(&mut text)
+            .map_err(|error| WriteError::new(&self.root.join(MANIFEST_FILE), error))?;
+        let mut written: HashMap<String, Vec<u32>> = HashMap::new();
+        // A line that was cut off by a kill, or by a hand, lists nothing.
+        for (checksum, file) in text.lines().filter_map(|line| line.split_once(' ')) {
+            let is_below = Path::new(file)
+                .components()
+                .all(|part| matches!(part, Component::Normal(_)));
+            if let (Ok(checksum), true) = (u32::from_str_radix(checksum, 16), is_below) {
+                written.entry(file.to_owned()).or_default().push(checksum);
+            }
+        }
+        Ok(written)
+    }
+}
+
+/// Refuses a folder that has files but no list, before a list is made in it.
+fn refuse_unlisted(root: &Path) -> Result<(), WriteError> {
+    if !root.is_dir() || root.join(MANIFEST_FILE).exists() {
+        return Ok(());
+    }
+    check(root, &HashMap::new()).map(drop)
+}
+
+/// The files that are there of those that were written; an error if there are others.
+fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf>, WriteError> {
+    let mut present = Vec::new();
+    for (file, path) in files_below(root)? {
+        let refused = |reason| Err(WriteError::new(root, format!("{file} {reason}")));
+        match written.get(&file) {
+            Some(checksums) => {
+                let bytes = fs::read(&path).map_err(|error| WriteError::new(&path, error))?;
+                if !checksums.contains(&crc32fast::hash(&bytes)) {
+                    return refused(
+                        "was changed since an earlier run wrote it; move it away, or choose another folder",
+                    );
+                }
+            }
+            None if is_remnant(&file, written) => {}
+            None => {
+                return refused("is not of an earlier run; move it away, or choose another folder");
+            }
+        }
+        present.push(path);
+    }
+    Ok(present)
+}
+
+/// Whether it is what a killed run has left of a file.
+fn is_remnant(file: &str, written: &HashMap<String, Vec<u32>>) -> bool {
+    let whole = file
+        .strip_suffix(".partial")
+        .and_then(|file| file.rsplit_once('.'));
+    whole.is_some_and(|(file, process)| process.parse::<u32>().is_ok() && written.contains_key(file))
+}
+
+/// All files below a folder that have a say, in order, each with its path as the list has it.
+fn files_below(root: &Path) -> Result<Vec<(String, PathBuf)>, WriteError> {
+    let mut files = Vec::new();
+    let mut folders = vec![(String::new(), root.to_owned())];
+    while let Some((prefix, folder)) = folders.pop() {
+        let failed = |error| WriteError::new(&folder, error);
+        for entry in fs::read_dir(&folder).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.starts_with('.') || OF_DESKTOPS.contains(&name.as_str()) {
+                continue;
+            }
+            let file = format!("{prefix}{name}");
+            // A link is not followed: what it leads to is not ours.
+            if entry.file_type().map_err(failed)?.is_dir() {
+                folders.push((format!("{file}/"), entry.path()));
+            } else {
+                files.push((file, entry.path()));
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Removes the folders around a file, up to the first that is not empty.
+fn remove_empty_folders(root: &Path, file: &str) {
+    let folders = Path::new(file).ancestors().skip(1);
+    for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
+        // One that holds something stays, which is no error.
+        if fs::remove_dir(root.join(folder)).is_err() {
+            return;
+        }
+    }
+}
